@@ -14,7 +14,7 @@ from sevenbar.description.forms import from_description
 from sevenbar.description.load_tables import with_rows
 from sevenbar.description.toml_text import is_tables
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
-from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
+from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of, masses_of
 from sevenbar.kinematics.factors import Place
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.linkage import Linkage
@@ -90,7 +90,7 @@ class Draft:
 
         Raises `RequestError` where there is none.
         """
-        for dimension in self.dimensions:
+        for dimension in (*self.dimensions, *self.masses):
             if name in (dimension.name, dimension.key):
                 return dimension
         known = [dimension.name for dimension in self.dimensions]
@@ -150,8 +150,13 @@ class Draft:
 
     @cached_property
     def dimensions(self) -> tuple[Dimension, ...]:
-        """Every number that can be changed, in the order of the file."""
+        """Every number that can be changed and moves something, in the order of the file."""
         return dimensions_of(description_of(self.linkage), self.linkage)
+
+    @cached_property
+    def masses(self) -> tuple[Dimension, ...]:
+        """The masses of bodies, in the order of the file."""
+        return masses_of(description_of(self.linkage))
 
     def written(self, dimension: Dimension, value: float) -> object:
         """What stands in the file for a value of a dimension: a speed with its unit, else the number."""

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.factors import Place
 from sevenbar.kinematics.geometry import Joint, Loop
-from sevenbar.text.units import ANGLES, examples_of
+from sevenbar.text.units import ANGLES, MASSES, examples_of
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,10 @@ class Dimension:
         return f"{self.name}_{self.unit.replace('/', '_')}" if self.unit else self.name
 
     @property
-    def kind(self) -> Literal["length", "angle", "pitch", "number", "speed"]:
+    def kind(self) -> Literal["length", "angle", "pitch", "number", "speed", "mass"]:
         """What its value is."""
+        if self.unit in MASSES:
+            return "mass"
         if "/" in self.unit or self.unit == "rpm":
             return "pitch" if self.unit.endswith("turn") else "speed"
         if self.unit in ANGLES:
@@ -52,8 +54,8 @@ class Dimension:
 
     @property
     def scale(self) -> float:
-        """The size of its unit beside the one that is carried: radian, length unit."""
-        return ANGLES.get(self.unit, 1.0)
+        """The size of its unit beside the one that is carried: radian, length unit, kilogram."""
+        return ANGLES.get(self.unit, MASSES.get(self.unit, 1.0))
 
     def read(self, text: str) -> float:
         """The value that a person wrote, in the dimension's unit: "250", "25 cm", "30deg".
@@ -127,6 +129,22 @@ def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimens
     # a point may have the name of a joint
     taken = Counter(dimension.name for dimension in found)
     return tuple(replace(d, name=d.key) if taken[d.name] > 1 else d for d in found)
+
+
+def masses_of(description: Mapping[str, Any]) -> tuple[Dimension, ...]:
+    """The mass of each body that has one: mass_2 is that of the one body of link 2."""
+    bodies = description.get("body", ())
+    unit = str(description.get("forces", {}).get("mass_unit", "kg"))
+    alone = Counter(body["link"] for body in bodies)
+    found = []
+    for i, body in enumerate(bodies):
+        if "mass" in body:
+            name, group = f"mass_{body['link']}", f"body of link {body['link']}"
+            one = Dimension(
+                name, ("body", i, "mass"), "mass", group, unit, float(body["mass"]), positive=True
+            )
+            found.append(one if alone[body["link"]] == 1 else replace(one, name=one.key))
+    return tuple(found)
 
 
 def _of_drawn(index: int, table: Mapping[str, Any], joint: Joint, length: str) -> list[Dimension]:

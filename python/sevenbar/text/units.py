@@ -87,7 +87,7 @@ def sizes_of(unit: str) -> dict[str, float]:
     >>> sizes_of("mm/turn")["in/turn"], sizes_of("")
     (25.4, {'': 1.0})
     """
-    for same in (ANGLES, TURNING_SPEEDS):
+    for same in (ANGLES, TURNING_SPEEDS, MASSES):
         if unit in same:
             return {other: size / same[unit] for other, size in same.items()} | {unit: 1.0}
     length, slash, per = unit.partition("/")

@@ -187,7 +187,7 @@ def _judged(model: TaskModel, index: int, values: Floats) -> tuple[str, Kept | N
     best: tuple[str, Kept] | None = None
     for seed in sorted(seeds_at(model, values), key=lambda seed: seed.error)[:TRIED]:
         problem = TaskProblem(model, seed)
-        here = problem.at(problem.start)
+        here = problem.tried(problem.start)
         if here is None:
             continue
         missed: list[str] = [fault for fault, room in here.least.items() if room < -ROUNDING]

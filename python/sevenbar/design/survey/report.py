@@ -104,7 +104,7 @@ def of_task(found: SurveyResult, name: str, source: str) -> TaskDesigns:
     assert found.found is not None
     facts, survey = tally_facts(found), {"survey": tally_dict(found)}
     designs = replace(found.found, unfinished=found.unfinished)
-    return TaskDesigns(designs, name, source, found.task.count, found.task.seed, facts, survey)
+    return TaskDesigns(designs, name, source, found.tally.count, found.task.seed, facts, survey)
 
 
 def as_dict(found: SurveyResult) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from sevenbar.design.task.musts import places_in
 from sevenbar.design.task.task import (
     DesignTask,
     DwellWant,
+    FigureMust,
     FigureWant,
     FunctionWant,
     InBox,
@@ -33,6 +34,7 @@ from sevenbar.kinematics.ball_angle import ball_angle
 from sevenbar.kinematics.circuit_path import NotFollowedError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.measures import FORCE_MEASURES, JOINT_MEASURES
 from sevenbar.kinematics.rigid import flaw_of_rotation
 
 #: The most that residuals are where points are to be met exactly.
@@ -193,13 +195,18 @@ def _free(task: DesignTask) -> Iterator[Problem]:
                 place, f"{low:g}:{high:g} are no bounds; give the least value first, then the greatest"
             )
         elif d.positive and not low > 0:
-            yield Problem(place, f"{low:g} is no length of a link; give bounds > 0")
+            what = "length of a link" if d.kind == "length" else d.kind
+            yield Problem(place, f"{low:g} is no {what}; give bounds > 0")
         elif not low <= d.value <= high:
             unit = f" {d.unit}" if d.unit else ""
             yield Problem(
                 place,
                 f"begins at {d.value:g}{unit}, outside {low:g}:{high:g}; "
                 "give bounds that hold it, or another start",
+            )
+        if d.kind == "mass" and not any(_of_forces(name) for name in _figure_names(task)):
+            yield Problem(
+                place, "no measure of forces is wanted or must hold, so this changes nothing; leave it out"
             )
         if d.name in task.follow:
             yield Problem(place, "is to follow from the others; leave it out here, or in follow")
@@ -213,6 +220,14 @@ def _free(task: DesignTask) -> Iterator[Problem]:
 def _owner(task: DesignTask, place: tuple[object, ...]) -> str | None:
     """The point that a number belongs to."""
     return task.draft.raw["point"][int(str(place[1]))]["name"] if place[0] == "point" else None
+
+
+def _figure_names(task: DesignTask) -> list[str]:
+    return [one.name for one in (*task.wants, *task.musts) if isinstance(one, (FigureWant, FigureMust))]
+
+
+def _of_forces(name: str) -> bool:
+    return name in FORCE_MEASURES or name.partition(":")[0] in JOINT_MEASURES
 
 
 def _used_points(task: DesignTask) -> set[str]:

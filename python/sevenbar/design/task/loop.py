@@ -59,15 +59,20 @@ class TaskLoop:
     def __init__(self, draft: Draft, free: Sequence[str]) -> None:
         self.draft, self.linkage = draft, draft.linkage
         self.numbers = Numbers(self.linkage)
-        places = {d.name: i for i, d in enumerate(self.numbers.dimensions)}
+        #: The numbers that move something, then the masses of bodies.
+        self.dimensions = (*self.numbers.dimensions, *draft.masses)
+        places = {d.name: i for i, d in enumerate(self.dimensions)}
         self.free = [places[name] for name in free]
+        #: Which of the free numbers move something: these have slopes at poses.
+        self._moving = [k for k, i in enumerate(self.free) if i < len(self.numbers.names)]
         self.input = self.linkage.columns.index(self.linkage.drive.joint)
         self.output = self.linkage.columns.index(self.linkage.drive.output)
         #: The longest dimension [length], and what is 1 of each column: a radian, or the size.
         self.size, self.units = self.numbers.size, self.numbers.scales
         #: What is 1 of each free number, as a radian is of an angle.
-        self.scales = self.numbers.units[self.free]
-        self.coupler = Following.among(self.numbers.dimensions, self.free)
+        masses = [abs(d.value) or 1.0 for d in draft.masses]
+        self.scales = np.concatenate([self.numbers.units, masses])[self.free]
+        self.coupler = Following.among(self.numbers.dimensions, [self.free[k] for k in self._moving])
         self._points: dict[Carried, int] = {}
         self._loop: tuple[bytes, NumberedLoop] | None = None
         self._motion: tuple[bytes, Motion | None] | None = None
@@ -75,7 +80,7 @@ class TaskLoop:
     @property
     def start(self) -> Floats:
         """The description's own values (k,)."""
-        return self.numbers.nominal[self.free]
+        return np.array([self.dimensions[i].value for i in self.free])
 
     def named(self, name: str) -> int:
         """The number of a named point."""
@@ -104,14 +109,15 @@ class TaskLoop:
     def whole(self, values: Floats) -> Floats:
         """All numbers of the description (all,)."""
         found = self.numbers.nominal.copy()
-        found[self.free] = values
+        found[[self.free[k] for k in self._moving]] = values[self._moving]
         return found if self.coupler is None else self.coupler.whole(found)
 
     def at(self, values: Floats) -> NumberedLoop:
         """The loop of these values, kept for the next question."""
         key = values.tobytes()
         if self._loop is None or self._loop[0] != key:
-            only = [*self.free, *([self.coupler.own] if self.coupler else ())]
+            moving = [self.free[k] for k in self._moving]
+            only = [*moving, *([self.coupler.own] if self.coupler else ())]
             self._loop = key, self.numbers.loop(self.input, self.whole(values), only)
         return self._loop[1]
 
@@ -139,10 +145,11 @@ class TaskLoop:
         )
 
     def _led(self, values: Floats, by: Floats) -> Floats:
-        """Slopes (.., k + 1), those by the coupler passed on to what it follows from."""
+        """Slopes (.., k), none by masses, those by the coupler passed on to what it follows from."""
+        found = np.zeros((*by.shape[:-1], len(self.free)))
+        found[..., self._moving] = by[..., : len(self._moving)]
         if self.coupler is None:
-            return by
-        found = by[..., :-1].copy()
+            return found
         whole = self.whole(values)
         for number, part in zip(self.coupler.leaders, self.coupler.slopes(whole), strict=True):
             if number in self.free:
@@ -152,16 +159,39 @@ class TaskLoop:
     def all_slopes(self, values: Floats, by: Floats) -> Floats:
         """Slopes (.., all) by all numbers of the description, as slopes (.., k) by the free ones."""
         by = by if self.coupler is None else self.coupler.chained(by, self.whole(values))
-        return np.asarray(by[..., self.free])
+        found = np.zeros((*by.shape[:-1], len(self.free)))
+        found[..., self._moving] = by[..., [self.free[k] for k in self._moving]]
+        return found
+
+    def mass_slopes(self, by: Floats) -> Floats:
+        """Slopes by the masses of all links that have a body [1/kg], as slopes (k,) by the free numbers.
+
+        NaN by a mass that is not all of its link, or whose inertia the file gives: it stays as it is.
+        """
+        found = np.zeros(len(self.free))
+        bodies = self.linkage.description.get("body", ())
+        links = sorted({body["link"] for body in bodies})
+        for k, i in enumerate(self.free):
+            one = self.dimensions[i]
+            if one.kind == "mass":
+                body = bodies[one.place[1]]
+                whole = one.name == f"mass_{body['link']}" and "inertia" not in body
+                found[k] = one.scale * by[links.index(body["link"])] if whole else np.nan
+        return found
+
+    @property
+    def free_masses(self) -> bool:
+        """Whether a mass is free."""
+        return len(self._moving) < len(self.free)
 
     def openings(self, values: Floats, q: Floats) -> list[int]:
         """The free numbers that cannot change alone without opening the loop, at closed poses."""
         opening = self.at(values).slopes(q, 0).opening
-        return [i for i, opens in enumerate(opening[: len(self.free)]) if opens]
+        return [k for k, opens in zip(self._moving, opening, strict=False) if opens]
 
     def drawn(self, values: Floats) -> Draft:
         """The draft with these values (k,)."""
-        own = [(self.numbers.dimensions[i], float(x)) for i, x in zip(self.free, values, strict=True)]
+        own = [(self.dimensions[i], float(x)) for i, x in zip(self.free, values, strict=True)]
         return self.draft.with_places({d.place: self.draft.written(d, x) for d, x in own})
 
     def motion(self, values: Floats) -> Motion | None:

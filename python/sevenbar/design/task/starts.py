@@ -130,7 +130,7 @@ def _seed(
 def _scaled(model: TaskModel, seed: TaskSeed) -> TaskSeed:
     """The seed with its lengths, all of which are free, in the scale of its placing, within the bounds."""
     loop, scale = model.loop, seed.placing.scale
-    kinds = [loop.numbers.dimensions[i].kind for i in loop.free]
+    kinds = [loop.dimensions[i].kind for i in loop.free]
     lengths = np.array([kind in ("length", "pitch") for kind in kinds])
     values = np.clip(np.where(lengths, scale * seed.values, seed.values), model.task.low, model.task.high)
     turns = loop.numbers.turns

@@ -150,7 +150,7 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
 
 def _free(draft: Draft, form: TaskForm, mistakes: _Mistakes) -> list[FreeNumber]:
     """The free numbers in the order of the linkage's file; a name goes before a pattern."""
-    every = [d for d in draft.dimensions if d.kind != "speed"]
+    every = [*(d for d in draft.dimensions if d.kind != "speed"), *draft.masses]
     chosen: dict[str, tuple[str, FreeNumber]] = {}
     for name, ends in sorted(form.free.items(), key=lambda item: _is_pattern(item[0])):
         with mistakes.of(f"free.{name}"):

@@ -10,7 +10,7 @@ from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.task import FigureWant
 from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.measures import gradient, measures_named
+from sevenbar.kinematics.measures import gradient, mass_gradient, measures_named
 from sevenbar.kinematics.motion import Motion
 
 #: Step of the differences that stand in for slopes where a measure has none of its own [of a unit].
@@ -45,6 +45,9 @@ class Figures:
         if slopes:
             known = gradient(motion, circuit.index)
             own = {name: self._loop.all_slopes(values, one.slopes) for name, one in known.items()}
+            if self._loop.free_masses:
+                for name, one in mass_gradient(motion, circuit.index).items():
+                    own[name] = own[name] + self._loop.mass_slopes(one.slopes)
             rest = [i for i, name in enumerate(self.names) if not np.isfinite(own.get(name, np.nan)).all()]
             for i, name in enumerate(self.names):
                 by[i] = own[name] if i not in rest else 0.0
