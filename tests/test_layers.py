@@ -21,7 +21,16 @@ CORE_IMPORTERS = {
     "__init__",
     *(
         f"kinematics/{name}"
-        for name in ("batches", "closed_form", "forces", "from_core", "general", "sensitivity", "surveys")
+        for name in (
+            "batches",
+            "closed_form",
+            "forces",
+            "from_core",
+            "general",
+            "sensitivity",
+            "surveys",
+            "word",
+        )
     ),
 }
 

@@ -22,7 +22,7 @@ survey: draw figures kind swing transmission cone wish readings pose tally judge
 loops::equation: dense rotations flat screws chain kinds lanes complex_frame closure
 loops::rates: velocities turns points
 loops::mobility: rank idle singular_place
-loops::numbers: twists numbered_loop slopes
+loops::numbers: twists factors word numbered_loop slopes
 loops::forces: acting stations reactions
 loops::description: spun spin_axis reduce described_loop joint_values
 loops::modes: phases continuation straight circle poles geometry starts chain_closure polish many_starts finder assembly

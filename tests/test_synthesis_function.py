@@ -10,16 +10,18 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.description.draft import Draft
 from sevenbar.design.closure import NAMES
 from sevenbar.design.limits import Limits
-from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.generation import function_generation
 from sevenbar.design.synthesis.function.report import synthesis_report
-from sevenbar.design.wish import wish_of_function, wish_of_pairs
+from sevenbar.design.task import DesignTask, FreeNumber, FunctionWant
+from sevenbar.design.task.loop import TaskLoop
+from sevenbar.design.task.rssr import RssrLoop, loop_of
+from sevenbar.design.wish import wish_of_pairs
 from sevenbar.errors import RequestError
 from sevenbar.text.expression import function_of
 
-QUARTER = (0.0, math.pi / 2)
 PAGE = Path(__file__).parent.parent / "docs" / "synthesis.md"
 
 
@@ -51,18 +53,28 @@ def squared():
 
 
 @pytest.mark.parametrize("branch", [0, 1])
-def test_the_slopes_of_errors_and_limits_are_their_differences(branch):
-    wish = wish_of_function(function_of("x^2"), (0, 1), QUARTER, QUARTER, points=3)
-    fit = Fit(wish, Limits(0.5, (50, 1000), "crank-rocker"))
-    z = np.array([0.3, 5.0, 3.0, 6.5, -2.0, 1.6, 1.7])
-    if branch:
-        z[5:] = 1.6, 4.4
-    for values in (lambda z: fit.errors(z, branch), fit.room, fit.transmission):
-        slopes = values(z)[1]
-        for k in range(7):
-            step = 1e-6 * np.eye(7)[k]
-            difference = (values(z + step)[0] - values(z - step)[0]) / 2e-6
-            np.testing.assert_allclose(slopes[:, k], difference, atol=2e-8)
+@pytest.mark.parametrize("sides", [(1.0, 1.0), (1.0, 2.6), (0.1, 0.3)])
+@pytest.mark.parametrize("names", [NAMES, ("M", "L3")])
+def test_the_closed_form_of_crank_and_rocker_is_the_general_loop(branch, sides, names):
+    """The product of joint motions and its slopes know nothing of the closed form."""
+    linkage = sb.rssr(M=sides[0], N=0.4, L1=sides[0], L2=sides[1] + 0.4, L3=sides[1], D=-0.3)
+    draft = Draft.of_linkage(linkage)
+    circuits = linkage.motion(24).circuits
+    circuit = circuits[branch % len(circuits)]
+    q = circuit.q[np.isfinite(circuit.q).all(axis=1)]
+    want = FunctionWant(q[:, 0], q[:, -1])
+    general = TaskLoop(draft, names)
+    plain = loop_of(DesignTask(draft, tuple(FreeNumber(name, -9, 9) for name in names), (want,)))
+    assert isinstance(plain, RssrLoop)
+    poses = general.poses(general.start, q)
+    found, known = plain.here(plain.start, poses), general.here(general.start, poses)
+    far = np.abs(found.q_by[:, -1]).max(axis=1) < 1e3  # from dead centres of the input
+    assert far.sum() > 4
+    np.testing.assert_allclose(found.q_by[far, -1], known.q_by[far, -1], rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(found.q_by[far, 0], known.q_by[far, 0], atol=1e-12)
+    moved, poses = plain.start * (1 + 1e-3), poses[far]
+    closed = general.closed(moved, poses[:, 0], poses)[:, -1]
+    np.testing.assert_allclose(plain.closed(moved, poses[:, 0], poses)[:, -1], closed, atol=1e-10)
 
 
 @pytest.mark.slow
@@ -248,19 +260,6 @@ def test_wrong_pairs_are_told_in_a_line(a, b, words):
     with pytest.raises(RequestError, match=r"^[^\n]*$") as told:
         wish_of_pairs(a, b)
     assert words in str(told.value)
-
-
-def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
-    wish = wish_of_function(function_of("x^2"), (0, 1), QUARTER, QUARTER)
-    fit = Fit(wish, Limits())
-    point = Estimate(np.array([0.3, 5.0, 3.0, 6.5, 1.0, -2.0]), np.array([1.6, 1.7]), 1)
-    back = fit.unpacked(fit.packed(point), 1)
-    np.testing.assert_array_equal(back.row, point.row)
-    np.testing.assert_array_equal(back.zeros, point.zeros)
-    # half a turn of the input's zero is a negative L1, and the same function
-    z = fit.packed(point)
-    turned = z * np.array([1, 1, -1, 1, 1, 1, 1]) + np.array([0, 0, 0, 0, 0, math.pi, 0])
-    np.testing.assert_allclose(fit.errors(turned, 1)[0], fit.errors(z, 1)[0], atol=1e-12)
 
 
 @pytest.mark.slow

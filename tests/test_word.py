@@ -75,7 +75,7 @@ def turned(value):
 def word_at(linkage):
     """The word of a linkage's description, its numbers, and the transforms of its base, links and ground."""
     numbers = Numbers(linkage)
-    values, word = numbers.values(numbers.nominal), word_of(linkage.form, linkage.kind)
+    values, word = numbers.values(numbers.nominal), word_of(linkage.form, linkage.kind, numbers.word.slots)
     return numbers, values, [one.pose(values) for one in (word.base, *word.links, word.ground)]
 
 

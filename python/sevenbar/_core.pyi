@@ -9,11 +9,14 @@ import numpy.typing as npt
 __all__ = [
     "AGREE",
     "Acting",
+    "Carried",
     "CoreError",
     "Course",
     "Loop",
     "LoopBatch",
+    "LoopWord",
     "Numbers",
+    "Product",
     "RawCircuit",
     "RawCount",
     "RawFound",
@@ -112,32 +115,82 @@ class Loop:
     ) -> RawCircuit | float | list[int] | None: ...
     def point(self, rows: Rows, link: int, at: _Floats) -> _Floats: ...
 
+_Three = tuple[int, int, int]
+
 @final
-class Numbers:
-    """A loop that knows what its numbers move; lengths relative to the size."""
+class Product:
+    """A rigid motion that depends on numbers of a description, in radians and lengths."""
+
+    def __new__(cls) -> Product: ...
+    @staticmethod
+    def still(matrix: _Floats) -> Product: ...
+    @staticmethod
+    def turn(axis: int, number: int) -> Product: ...
+    @staticmethod
+    def slide(axis: int, number: int) -> Product: ...
+    @staticmethod
+    def drawn(
+        at: _Three, axes: Sequence[_Three], which: int, towards: _Three, has_plane: bool
+    ) -> Product: ...
+    @staticmethod
+    def held(line: Sequence[_Three], which: int, written: _Three | None, given: _Floats) -> Product: ...
+    def __add__(self, other: Product) -> Product: ...
+    def __eq__(self, other: object) -> bool: ...
+    @property
+    def back(self) -> Product: ...
+    @property
+    def slides(self) -> list[int]: ...
+    def pose(self, values: _Floats) -> _Floats: ...
+
+@final
+class Carried:
+    """A point that the link behind so many joints carries; its coordinates are numbers, or given."""
+
+    def __new__(
+        cls,
+        steps: int,
+        frame: Product,
+        place: _Three | None = None,
+        at: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    ) -> Carried: ...
+    def __eq__(self, other: object) -> bool: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def frame(self) -> Product: ...
+    @property
+    def place(self) -> _Three | None: ...
+    @property
+    def at(self) -> tuple[float, float, float]: ...
+
+@final
+class LoopWord:
+    """The joints of a loop, and what is between them by the numbers of a description."""
 
     def __new__(
         cls,
         letters: str,
-        advances: _Floats,
-        fixed: _Floats,
-        input: int,
+        pitches: Sequence[int | None],
+        fixed: Sequence[Product],
         held: Sequence[int],
         spins: int,
-        numbers: int,
-        moves: Sequence[tuple[int, int]],
-        twists: _Floats,
-        pitches: Sequence[tuple[int, int, float]],
-        points: Sequence[tuple[int, _Floats, Sequence[tuple[int, _Floats]]]],
-    ) -> Numbers: ...
+        scales: Sequence[float],
+        size: float,
+    ) -> LoopWord: ...
+    def at(self, numbers: _Floats, input: int, only: Sequence[int], points: Sequence[Carried]) -> Numbers: ...
+
+@final
+class Numbers:
+    """A loop that knows what its numbers move; lengths relative to the size."""
+
+    def twists(self, frame: Product) -> list[tuple[int, list[float]]]: ...
     def slopes(self, values: _Floats, order: int) -> list[_Floats]: ...
     def places(self, values: _Floats) -> _Floats: ...
     def follow(
         self,
         values: _Floats,
         inputs: _Floats,
-        fixed: _Floats,
-        advances: _Floats,
+        numbers: _Floats | None = None,
         steps: _Floats | None = None,
     ) -> tuple[_Floats, _Floats]: ...
 

@@ -73,7 +73,7 @@ mod _core {
     #[pymodule_export]
     use super::loops::Loop;
     #[pymodule_export]
-    use super::numbers::Numbers;
+    use super::numbers::{Carried, LoopWord, Numbers, Product};
     #[pymodule_export]
     use super::rows::{Course, Rows};
     #[pymodule_export]

@@ -67,7 +67,7 @@ def task(
         check_out(report, out, force=force)
         with progress_bar(f"searching a front of {read.name}") as progress:
             front = front_of(read.task, *pair, points=points, starts=starts, seed=seed, progress=progress)
-        whole = FrontFound(front.found, read.name, read.source, starts, seed, front)
+        whole = FrontFound(front.found, read.name, read.source, starts, seed, front=front)
         deliver(whole, report, out, json=json, force=force)
         end_of_work(front.unfinished)
         return

@@ -99,17 +99,18 @@ def half_angle(directions: Floats) -> float:
     """Half the opening [rad] of the smallest cone about unit vectors (k, 3)."""
 
     def some(count: int) -> Floats:
-        return directions[np.linspace(0, len(directions) - 1, count).astype(int)]
+        chosen: Floats = directions[np.linspace(0, len(directions) - 1, count).astype(int)]
+        return chosen
 
     def farthest(axis: Floats) -> Floats:
-        return directions[[int((directions @ axis).argmin())]]
+        return np.asarray(directions[[int((directions @ axis).argmin())]])
 
     return float(angles(directions, exchanged(some, farthest)).max())
 
 
 def least_cone(curve: Along) -> LeastCone:
     """The smallest cone about a curve of unit vectors (3,), as `exchanged` finds it."""
-    ends = curve.edges[[0, -1]]
+    ends = float(curve.edges[0]), float(curve.edges[-1])
 
     def some(count: int) -> Floats:
         return curve.at(np.linspace(*ends, count, endpoint=False))

@@ -14,8 +14,7 @@ from sevenbar.description.forms import from_description
 from sevenbar.description.load_tables import with_rows
 from sevenbar.description.toml_text import is_tables
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
-from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of, masses_of
-from sevenbar.kinematics.factors import Place
+from sevenbar.kinematics.dimensions import Dimension, Place, description_of, dimensions_of, masses_of
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.linkage import Linkage
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import count
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -15,13 +16,13 @@ from sevenbar.description.loads import loading_of
 from sevenbar.description.proportions import disproportions
 from sevenbar.description.stop_values import stops_of
 from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
-from sevenbar.kinematics.factors import Place, Values, between
+from sevenbar.kinematics.dimensions import Place
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
 from sevenbar.kinematics.joint_text import check_own_unit
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import unit
-from sevenbar.kinematics.word import word_of
+from sevenbar.kinematics.word import Slots, word_of
 from sevenbar.text.grid import listed
 from sevenbar.text.table import name_and_unit
 from sevenbar.text.units import LENGTHS, measured_unit
@@ -323,7 +324,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     )
 
 
-def _values(form: LinkageForm) -> Values:
+def _values(form: LinkageForm) -> dict[Place, float]:
     """The numbers of a form by their places, as its word asks for them."""
     found: dict[Place, float] = {}
     if form.rssr is not None:
@@ -336,12 +337,14 @@ def _values(form: LinkageForm) -> Values:
         vectors |= {("axes", which): axis for which, axis in enumerate(joint.axes or ())}
         for place, vector in vectors.items():
             found |= {("joint", i, *place, k): value for k, value in enumerate(vector)}
-    return Values(found)
+    return found
 
 
 def _linkage(form: LinkageForm, written: Form, joints: tuple[Joint, ...], **parts: Any) -> Linkage:
     """The linkage of a form's word at its numbers."""
-    word, values = word_of(written, [joint.kind for joint in joints]), _values(form)
+    numbers = _values(form)
+    slots, values = Slots(zip(numbers, count())), np.array([*numbers.values()], dtype=np.float64)
+    word = word_of(written, [joint.kind for joint in joints], slots)
     return Linkage(
         name=form.name,
         joints=joints,
@@ -403,13 +406,19 @@ def _from_drawing(form: LinkageForm, drawn: tuple[JointForm, ...], source: str) 
             joint.kind,
             name,
             joint.pitch or 0.0,
-            between(*joint.axes) if joint.axes else 0.0,
+            _between(*joint.axes) if joint.axes else 0.0,
             backwards=i == last,
         )
         for i, (joint, name) in enumerate(zip(drawn, names, strict=True))
     )
     points = (Point("A", 1, drawn[1].at), Point("B", 3, drawn[2].at)) if rssr else ()
     return _linkage(form, "drawn", joints, points=points)
+
+
+def _between(first: tuple[float, ...], second: tuple[float, ...]) -> float:
+    """The angle [rad] from one axis to another."""
+    a, b = unit(first), unit(second)
+    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
 
 
 def _coincident(drawn: tuple[JointForm, ...], names: Sequence[str]) -> list[Problem]:

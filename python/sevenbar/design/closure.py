@@ -51,15 +51,10 @@ def scaled(row: Floats, longest: float) -> Floats:
     return np.where(np.abs(row) < ROUNDING * longest, 0.0, row)
 
 
-def outputs(designs: Floats, inputs: Floats, branch: int, *, floor: float | None = None) -> Floats:
-    """The output angle (n, m) [rad] of a branch of each design; NaN where it cannot be reached.
-
-    With a `floor` no squared sine of the transmission angle counts as less: the output is held there.
-    """
+def outputs(designs: Floats, inputs: Floats, branch: int) -> Floats:
+    """The output angle (n, m) [rad] of a branch of each design; NaN where it cannot be reached."""
     _, y, k, w = _terms(designs, inputs)
-    n, l2, l3 = designs[:, 1, None], designs[:, 3, None], designs[:, 4, None]
-    if floor is not None:
-        w = np.maximum(w, floor * (l2 * l3) ** 2)
+    n, l3 = designs[:, 1, None], designs[:, 4, None]
     with np.errstate(invalid="ignore"):
         turn = np.arctan2(k, np.sqrt(w))
     return np.asarray((np.pi - turn if branch else turn) - np.arctan2(l3 * y, l3 * n))

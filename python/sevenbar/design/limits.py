@@ -23,6 +23,9 @@ MOST_RATIO = 20.0
 #: Length of the longest dimension where no size is given [mm].
 USUAL_SIZE = 1000.0
 
+#: Room that is left at each limit for what lies between the inputs looked at [rad, or of the squared sine].
+MARGIN = 1e-4
+
 #: Inputs of a full turn at which a crank must be able to stand: the worst lies less than 0.1% of W's
 #: amplitude below the least of them.
 TURN_SAMPLES = 72
@@ -92,39 +95,31 @@ _PAIRS = [
 ]
 
 
-def size_room(row: Floats, limits: Limits, *, scale_free: bool) -> tuple[Floats, Floats]:
-    """What must not be negative for the size, relative to it (k,), and its derivatives (k, 6).
-
-    `scale_free` where all lengths may be made longer together: then only their ratio counts.
-    """
-    if scale_free or limits.size is None:
-        values, slopes = np.empty(len(_PAIRS)), np.zeros((len(_PAIRS), 6))
-        for k, (column, sign, short) in enumerate(_PAIRS):
-            values[k] = row[short] - sign * row[column] / limits.ratio
-            slopes[k, short] += 1.0
-            slopes[k, column] -= sign / limits.ratio
-        return values, slopes
-    low, high = limits.size
-    links, longest = np.eye(6)[2:5], np.concatenate([np.eye(6), -np.eye(6)])
-    values = np.concatenate([links @ row - low, high - longest @ row])
-    return values / high, np.concatenate([links, -longest]) / high
+def size_room(row: Floats, limits: Limits) -> tuple[Floats, Floats]:
+    """What must not be negative for the ratio of the lengths (k,), and its derivatives (k, 6)."""
+    values, slopes = np.empty(len(_PAIRS)), np.zeros((len(_PAIRS), 6))
+    for k, (column, sign, short) in enumerate(_PAIRS):
+        values[k] = row[short] - sign * row[column] / limits.ratio
+        slopes[k, short] += 1.0
+        slopes[k, column] -= sign / limits.ratio
+    return values, slopes
 
 
 def transmission_room(row: Floats, inputs: Floats, limits: Limits) -> tuple[Floats, Floats, Floats]:
     """sin^2 of the transmission angle less that of its limit at inputs (m,); must not be negative.
 
     With its derivatives by the dimensions (m, 6) and by the input (m,). Where no limit is given the input
-    must be reached at least.
+    must be reached at least. A margin is left.
     """
     by_dimension, by_input = transmission_slopes(row[None], inputs)
-    room = transmissions(row[None], inputs)[0] - math.sin(limits.transmission_lowest) ** 2
-    return room, by_dimension[0], by_input[0]
+    least = max(math.sin(limits.transmission_lowest + MARGIN) ** 2, MARGIN)
+    return transmissions(row[None], inputs)[0] - least, by_dimension[0], by_input[0]
 
 
 def turning_room(row: Floats) -> tuple[Floats, Floats]:
-    """sin^2 of the transmission angle over a full turn of the input (72,), with its derivatives (72, 6).
+    """sin^2 of the transmission angle over a full turn of the input (72,), less a margin, and slopes (72, 6).
 
     Where none is negative the input turns fully.
     """
     inputs = np.arange(TURN_SAMPLES) * math.tau / TURN_SAMPLES
-    return transmissions(row[None], inputs)[0], transmission_slopes(row[None], inputs)[0][0]
+    return transmissions(row[None], inputs)[0] - MARGIN, transmission_slopes(row[None], inputs)[0][0]

@@ -8,9 +8,11 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.factors import Place
 from sevenbar.kinematics.geometry import Joint, Loop
 from sevenbar.text.units import ANGLES, MASSES, examples_of
+
+#: A place in a description: keys of tables, and counts from 0 in lists.
+Place = tuple[str | int, ...]
 
 
 @dataclass(frozen=True)

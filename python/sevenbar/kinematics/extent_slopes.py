@@ -24,7 +24,6 @@ from sevenbar.errors import RequestError
 from sevenbar.kinematics.ball_angle import KINK, joint_at, line_angles, sides
 from sevenbar.kinematics.circuit_extents import chosen, rod_pairs
 from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.factors import Product
 from sevenbar.kinematics.gradients import MeasureSlopes
 from sevenbar.kinematics.joint_course import JointCourse, joint_course
 from sevenbar.kinematics.rods import distance_slopes
@@ -151,23 +150,12 @@ def _arms(numbers: Numbers, place: int, given: Mapping[str, tuple[float, ...] | 
     for side, link in (("seat", place or count), ("stud", place + 1)):
         direction = given[side]
         if direction is None:
-            start, end = rod_points(numbers, link)
+            start, end = numbers.word.rod(link)
             points += [start, end] if link == place + 1 else [end, start]
         else:
-            steps, frame = numbers.word.carrier(link)
             x, y, z = (numbers.size * value / math.hypot(*direction) for value in direction)
-            points += [Carried(steps, frame), Carried(steps, frame, None, (x, y, z))]
+            points += [numbers.word.place(link, at) for at in ((0.0, 0.0, 0.0), (x, y, z))]
     return points
-
-
-def rod_points(numbers: Numbers, link: int) -> tuple[Carried, Carried]:
-    """The places of the joints before and after a link, the ground being the last, as points of its word."""
-    word = numbers.word
-    if link == len(word.freedoms):
-        return Carried(0, word.ground), Carried(0, word.base)
-    steps = sum(map(len, word.freedoms[:link]))
-    behind = word.inner[link - 1][-1] if word.inner[link - 1] else Product(())
-    return Carried(steps, behind), Carried(steps, behind + word.links[link - 1])
 
 
 def _of_clearance(course: JointCourse, numbers: Numbers, name: str) -> MeasureSlopes | None:
@@ -184,7 +172,7 @@ def _of_clearance(course: JointCourse, numbers: Numbers, name: str) -> MeasureSl
     slopes = np.full(len(numbers.names), np.nan)
     if distance > CROSSED * course.size:
         q, driver = course.pose(place)
-        points = [point for link in pair for point in rod_points(numbers, link)]
+        points = [point for link in pair for point in numbers.word.rod(link)]
         here = numbers.loop(driver, extra=points).slopes(q, 0)
         by = here.points_by_number[:, -4:, 0].swapaxes(2, 3)
         slopes = distance_slopes(here.points[:, -4:, 0], by)[1][0]

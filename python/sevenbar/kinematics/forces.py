@@ -24,7 +24,6 @@ from sevenbar.forces.loading import Load, Loading, Spring, Three
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.driven import driven
-from sevenbar.kinematics.factors import Product
 from sevenbar.kinematics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import half_turn, inverse, placed
@@ -63,7 +62,7 @@ class ForceSolver:
         """The bodies of the links, one each; where a link spins idly, as balls without friction move them."""
         return as_moved(self.linkage, resolved(self.loading, self.linkage))
 
-    def _carrier(self, link: int) -> tuple[int, Product]:
+    def _carrier(self, link: int) -> tuple[int, _core.Product]:
         """The steps before a link, and the frame there in which its points are written."""
         return self.numbers.word.carrier(int(link))
 
@@ -76,7 +75,7 @@ class ForceSolver:
     def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, Floats]]]:
         steps, product = self._carrier(link)
         place = placed(self._frame(link), at) / self.numbers.size
-        return steps, place, self.loop.twists_of(product) if self.by_numbers else []
+        return steps, place, self.loop.core.twists(product) if self.by_numbers else []
 
     def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, list[tuple[int, Floats]]]:
         assert body.centre is not None

@@ -47,7 +47,7 @@ def rows_of(numbers: Numbers, poses: Floats) -> Floats:
     rows = poses.copy()
     values = numbers.values(numbers.nominal)
     for joint in numbers.spun:
-        a, b = (numbers.word.inner[joint][k].factors[-1].pose(values)[:3, 2] for k in (0, 1))
+        a, b, _ = (axis.pose(values)[:3, 2] for axis in numbers.word.axes_of_spun(joint))
         column = numbers.word.freedoms[joint][0].columns[0]
         turn = turns_about(a, poses[:, column]) @ turns_about(b, poses[:, column + 1])
         middle = -np.arcsin(np.clip(turn[:, 2, 0], -1.0, 1.0))

@@ -15,9 +15,6 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 
-#: Below this share of the way to a place the place lies on an axis.
-ON_AXIS = 1e-12
-
 #: How far the product of a rotation and its transpose may be from 1: figures written with four decimals pass.
 ROUNDED = 1e-3
 
@@ -107,20 +104,6 @@ def cross(a: Floats, b: Floats) -> Floats:
     return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
 
 
-def frame_about(axis: npt.ArrayLike, towards: Floats) -> Floats:
-    """Columns x, y, z: z along the axis, x across it towards a place (any where that lies on the axis)."""
-    z = unit(axis)
-    across = towards - (towards @ z) * z
-    if np.linalg.norm(across) <= ON_AXIS * np.linalg.norm(towards):
-        across = np.eye(3)[np.argmin(np.abs(z))]
-        across = across - (across @ z) * z
-    x = across / np.linalg.norm(across)
-    # of a place almost on the axis the first step leaves little but rounding, some of it along the axis
-    x = x - (x @ z) * z
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, cross(z, x), z])
-
-
 def perpendicular(vector: Floats) -> Floats:
     """A unit vector (3,) at right angles to a vector (3,) that is not zero."""
     return unit(np.cross(vector, np.eye(3)[np.argmin(np.abs(vector))]))
@@ -188,12 +171,3 @@ def axis_to_z(axis: int) -> Floats:
     matrix = np.eye(4)
     matrix[:3, :3] = np.roll(np.eye(3), 2 - axis, axis=1)
     return matrix
-
-
-def adjoint(motion: Floats) -> Floats:
-    """The matrix (6, 6) that takes twists of a frame (4, 4) to the frame in which that is given."""
-    rotation = motion[:3, :3]
-    found = np.zeros((6, 6))
-    found[:3, :3] = found[3:, 3:] = rotation
-    found[3:, :3] = cross_matrix(motion[:3, 3]) @ rotation
-    return found

@@ -17,7 +17,7 @@ Source: docs/theory_design.md, (1) to (5).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,10 +28,9 @@ from sevenbar.arrays import Booleans, Floats, Integers
 from sevenbar.kinematics.circuit_values import Sensitivity
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
-from sevenbar.kinematics.factors import Place, Product, Values, vector
 from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.rigid import about, adjoint, cross, placed, zyx_turns
-from sevenbar.kinematics.word import Carried, holding_axis, points_of, word_of
+from sevenbar.kinematics.rigid import about, zyx_turns
+from sevenbar.kinematics.word import Slots, holding_axis, points_of, word_of
 
 #: Part of what one of a number moves [rad, or relative to the size, for a radian or the size of it] that no
 #: joint can follow: rounding leaves 1e-15 of it, near dead centres 1e-9; tolerances are 1e-6 and more.
@@ -98,26 +97,33 @@ class Numbers:
         self.scales = np.where(self.turns, 1.0, self.size)
         #: Balls, counted among the joints, that stand as two turns.
         self.spun, self.held, self.spins = linkage.held
-        # a design is followed first and then asked for its derivatives: its motions are worked out once
-        self._last: tuple[bytes, Values] | None = None
+        #: What one of each number is in radians or lengths.
+        self.carried_units = np.array([d.scale for d in self.dimensions])
         form, kinds, values = linkage.form, linkage.kind, self.values(self.nominal)
+        slots = Slots({d.place: k for k, d in enumerate(self.dimensions)})
         axes = {
-            ball: holding_axis(form, kinds, ball, linkage.spin_axes[linkage.joints[ball].name], values)
+            ball: holding_axis(form, kinds, slots, values, ball, linkage.spin_axes[linkage.joints[ball].name])
             for ball in self.spun
         }
         #: Whether a column (columns,) is a turn of a ball.
         self.is_ball = np.array([j.row.is_ball for j in linkage.joints for _ in j.columns])
         #: The word of the loop, with balls as the core holds them, and its points.
-        self.word = word_of(form, kinds, axes)
+        self.word = word_of(form, kinds, slots, axes)
         self.points = points_of(form, self.word, linkage.description, kinds)
+        #: What the core knows of it for any numbers.
+        self.core = _core.LoopWord(
+            "".join(step.letter for step in self.word.steps),
+            [step.pitch for step in self.word.steps],
+            self.word.fixed,
+            self.held,
+            self.spins,
+            self.carried_units.tolist(),
+            self.size,
+        )
 
-    def values(self, p: Floats) -> Values:
-        """The numbers p (k,) by their places, angles in radians."""
-        key = p.tobytes()
-        if self._last is None or self._last[0] != key:
-            numbers = {d.place: float(x) * d.scale for d, x in zip(self.dimensions, p, strict=True)}
-            self._last = key, Values(numbers)
-        return self._last[1]
+    def values(self, p: Floats) -> Floats:
+        """The numbers p (k,) in radians and lengths."""
+        return np.asarray(p * self.carried_units)
 
     def loop(
         self,
@@ -125,7 +131,7 @@ class Numbers:
         p: Floats | None = None,
         only: Sequence[int] | None = None,
         marks: int | None = None,
-        extra: Sequence[Carried] = (),
+        extra: Sequence[_core.Carried] = (),
     ) -> NumberedLoop:
         """The loop driven by a column at numbers p, the description's own by default.
 
@@ -143,7 +149,7 @@ class Numbers:
         q = q.copy()
         values = self.values(self.nominal if p is None else p)
         for joint in sorted(self.spun):
-            a, b, line = (self.word.inner[joint][k].factors[-1].pose(values)[:3, 2] for k in range(3))
+            a, b, line = (axis.pose(values)[:3, 2] for axis in self.word.axes_of_spun(joint))
             column = self.word.freedoms[joint][0].columns[0]
             turn = ball_rotations(q[:, column : column + 3])
             if joint + 1 < len(self.word.links):
@@ -193,81 +199,17 @@ class NumberedLoop:
         p: Floats,
         only: Sequence[int] | None = None,
         marks: int | None = None,
-        extra: Sequence[Carried] = (),
+        extra: Sequence[_core.Carried] = (),
     ) -> None:
         self.numbers, self.input, self.p = numbers, input, p
-        word, values = numbers.word, numbers.values(p)
         self.only = range(len(p)) if only is None else only
-        own = self._places = {numbers.dimensions[k].place: i for i, k in enumerate(self.only)}
-        scale = np.array([1.0, 1.0, 1.0, numbers.size, numbers.size, numbers.size])
-        factors = [numbers.dimensions[k].scale for k in self.only]
-        moves, twists = [], []
-        for place, product in enumerate(word.fixed if own else ()):
-            for key, twist in product.moves(values, own).items():
-                moves.append((own[key], place))
-                twists.append(factors[own[key]] * twist / scale)
-        pitches = [
-            (own[key], joint, factors[own[key]] / math.tau / numbers.size)
-            for joint, key in enumerate(step.pitch for step in word.steps)
-            if key in own
-        ]
-        points = [self._point(point, values, own) for point in numbers.points]
+        points = list(numbers.points)
         if marks is not None:
-            count = next(k for k, step in enumerate(word.steps, 1) if marks in step.columns)
-            points += [(count, np.array([0.0, 0.0, end]), []) for end in (0.0, 1.0)]
-        points += [self._point(point, values, own) for point in extra]
-        self._own = fixed, advances = self._design(values)
+            count = next(k for k, step in enumerate(numbers.word.steps, 1) if marks in step.columns)
+            axis = _core.Product()
+            points += [_core.Carried(count, axis, None, (0.0, 0.0, end)) for end in (0.0, numbers.size)]
         #: What the core knows of it.
-        self.core = _core.Numbers(
-            "".join(step.letter for step in word.steps),
-            advances,
-            fixed,
-            input,
-            numbers.held,
-            numbers.spins,
-            len(self.only),
-            moves,
-            np.array(twists).reshape(-1, 6),
-            pitches,
-            points,
-        )
-
-    def _design(self, values: Values) -> tuple[Floats, Floats]:
-        """The fixed transforms, lengths relative to the size, and the advances for a radian."""
-        word, size = self.numbers.word, self.numbers.size
-        fixed = np.array([product.pose(values) for product in word.fixed])
-        fixed[:, :3, 3] /= size
-        pitches = [0.0 if step.pitch is None else values.get(step.pitch, 0.0) for step in word.steps]
-        return fixed, np.array(pitches) / math.tau / size
-
-    def _point(
-        self, point: Carried, values: Values, own: Mapping[Place, int]
-    ) -> tuple[int, Floats, list[tuple[int, Floats]]]:
-        """A point as the core takes it: the steps before it, its place there, what moves it."""
-        frame, place = point.frame, point.place
-        size, dimensions = self.numbers.size, self.numbers.dimensions
-        matrix = frame.pose(values)
-        at = np.array(point.at) if place is None else vector(values, place)
-        ways: dict[int, Floats] = {}
-        for key, twist in frame.moves(values, own).items() if own else ():
-            ways[own[key]] = matrix[:3, :3] @ (cross(twist[:3], at) + twist[3:])
-        keys = () if place is None else tuple((*place, k) for k in range(3))
-        for k, key in enumerate(keys):
-            if key in own:
-                ways[own[key]] = ways.get(own[key], 0.0) + matrix[:3, k]
-        scales = {i: dimensions[k].scale for i, k in enumerate(self.only)}
-        ready = [(i, scales[i] * way / size) for i, way in sorted(ways.items())]
-        return point.steps, placed(matrix, at) / size, ready
-
-    def twists_of(self, frame: Product) -> list[tuple[int, Floats]]:
-        """By number, the twist (6,) of a link's frame against the steps before it, as the core takes it."""
-        values, dimensions = self.numbers.values(self.p), self.numbers.dimensions
-        matrix = adjoint(frame.pose(values))
-        scale = np.repeat([1.0, self.numbers.size], 3)
-        return [
-            (self._places[key], dimensions[self.only[self._places[key]]].scale * (matrix @ twist) / scale)
-            for key, twist in frame.moves(values, self._places).items()
-        ]
+        self.core = numbers.core.at(p, input, self.only, [*points, *extra])
 
     def followed(
         self, x: npt.ArrayLike, q: Floats, designs: Floats | None = None, steps: Floats | None = None
@@ -279,14 +221,11 @@ class NumberedLoop:
         its sign: that determinant (designs, n) comes second.
         """
         scales = self.numbers.scales
-        changed = [] if designs is None else [self._design(self.numbers.values(p)) for p in designs]
-        built = [self._own] if designs is None else changed
         inputs = np.ascontiguousarray(np.broadcast_to(np.asarray(x) / scales[self.input], (len(q),)))
-        fixed, advances = (np.array([design[k] for design in built]) for k in (0, 1))
         scaled = None if steps is None else np.ascontiguousarray(steps / scales)
         start = np.ascontiguousarray(q / scales)
         start[:, self.numbers.held] = 0.0
-        found, sides = self.core.follow(start, inputs, fixed, advances, scaled)
+        found, sides = self.core.follow(start, inputs, designs, scaled)
         return found * scales, sides
 
     def opening(self, circuit: Circuit) -> Booleans:

@@ -3,7 +3,8 @@
     F_0 Z_1 F_1 Z_2 .. Z_n F_n = 1                                                                        (1)
 
 with one step Z for each freedom, and each F a product of factors: turns about and slides along an axis by a
-number (RSSR, Denavit-Hartenberg rows), frames on drawn lines, constants.
+number (RSSR, Denavit-Hartenberg rows), frames on drawn lines, constants. The core has the factors and moves
+them by their numbers (`crates/sevenbar-core/src/loops/numbers/factors.rs`).
 
 The last joint of a drawing counts the link before it against the ground, right-handed about its axes as they
 are written. It moves in a frame that is turned from the drawn one by half, so that its axes are reversed:
@@ -21,32 +22,27 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
 
+import sevenbar._core as _core
+from sevenbar._core import Product
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.factors import (
-    SPIN_UNDEFINED,
-    Back,
-    DrawnFrame,
-    Factor,
-    Held,
-    Place,
-    Product,
-    Still,
-    TurnAndSlide,
-    Values,
-)
+from sevenbar.kinematics.dimensions import Place
 from sevenbar.kinematics.geometry import Form
 from sevenbar.kinematics.joints import KINDS, JointKind, Z
-from sevenbar.kinematics.rigid import (
-    axis_to_z,
-    cross,
-    frame_about,
-    half_turn,
-    pose,
-)
+from sevenbar.kinematics.rigid import axis_to_z, cross, half_turn, pose, unit
+
+#: A point that a link carries.
+Carried = _core.Carried
+
+#: Where the three numbers of a vector stand among those of a description.
+Three = tuple[int, int, int]
+
+#: Below this sine another axis than that of the joint before holds a spin.
+ANOTHER_AXIS = 1e-8
 
 #: Report frame of Denavit-Hartenberg rows against the frame of the ground link: x is j, y is k, z is i.
 I_ALONG_LAST_AXIS = pose([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], np.zeros(3))
@@ -58,8 +54,8 @@ UVW = pose([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], np.zeros(3))
 ROCKER_GROUND = pose([[0, 0, -1], [-1, 0, 0], [0, 1, 0]], np.zeros(3))
 
 #: Half turns about x and z.
-HALF_TURN_X = pose(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
-HALF_TURN_Z = pose(np.diag([-1.0, -1.0, 1.0]), np.zeros(3))
+HALF_TURN_X = half_turn((1, 0, 0))
+HALF_TURN_Z = half_turn((0, 0, 1))
 
 #: The table of each form in a file.
 TABLES: Mapping[Form, str] = {"rssr": "rssr", "rows": "link", "planar": "link", "drawn": "joint"}
@@ -75,21 +71,24 @@ class WordStep:
     letter: str
     joint: int
     columns: tuple[int, ...]
-    pitch: Place | None = None
+    pitch: int | None = None
     held: bool = False
 
 
-@dataclass(frozen=True)
-class Carried:
-    """A point that a link carries, behind so many `steps`, none for the ground.
+class Slots(dict[Place, int]):
+    """Where numbers of a description stand among all, by their places; what it leaves out is 0."""
 
-    `frame` is that of its coordinates there; they stand at a `place` of the description, or are `at`.
-    """
+    def three(self, place: Place) -> Three:
+        """Where the numbers of a vector stand."""
+        return self[*place, 0], self[*place, 1], self[*place, 2]
 
-    steps: int
-    frame: Product
-    place: Place | None = None
-    at: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    def slide(self, axis: int, place: Place) -> Product:
+        """A slide along an axis by a number."""
+        return Product.slide(axis, self[place]) if place in self else Product()
+
+    def turn(self, axis: int, place: Place) -> Product:
+        """A turn about an axis by a number."""
+        return Product.turn(axis, self[place]) if place in self else Product()
 
 
 @dataclass(frozen=True)
@@ -99,6 +98,8 @@ class Word:
     `inner` stands before, between and behind the freedoms of joint i, empty where nothing does. `frames` take
     a point as it is written to its link's own.
     """
+
+    slots: Slots
 
     base: Product
     links: tuple[Product, ...]
@@ -118,7 +119,7 @@ class Word:
         outer = [*self.links, self.ground.back]
         found = [self.base]
         for freedoms, inside, behind in zip(self.freedoms, self.inner, outer, strict=True):
-            parts = inside or (Product(()),) * (len(freedoms) + 1)
+            parts = inside or (Product(),) * (len(freedoms) + 1)
             found[-1] = found[-1] + parts[0]
             found += [*parts[1:-1], parts[-1] + behind]
         return tuple(found)
@@ -129,16 +130,38 @@ class Word:
         if link == len(self.freedoms):
             # the ground's own frame is that of the report
             return 0, frame
-        behind = self.inner[link - 1][-1:] or (Product(()),)
-        return sum(map(len, self.freedoms[:link])), behind[0] + frame
+        return sum(map(len, self.freedoms[:link])), self._behind(link) + frame
+
+    def _behind(self, link: int) -> Product:
+        """What stands behind the freedoms of the joint before a link."""
+        inner = self.inner[link - 1]
+        return inner[-1] if inner else Product()
+
+    def axes_of_spun(self, joint: int) -> list[Product]:
+        """The frames of the axes about which a ball that holds a spin turns, both and the held one."""
+        return list(accumulate(self.inner[joint][:3]))
+
+    def rod(self, link: int) -> tuple[Carried, Carried]:
+        """The places of the joints before and behind a link, counted from 1, the ground being the last."""
+        if link == len(self.freedoms):
+            return Carried(0, self.ground), Carried(0, self.base)
+        steps = sum(map(len, self.freedoms[:link]))
+        behind = self._behind(link)
+        return Carried(steps, behind), Carried(steps, behind + self.links[link - 1])
+
+    def place(self, link: int, at: tuple[float, float, float]) -> Carried:
+        """A point of a link, counted from 1, that no number moves on it."""
+        return Carried(*self.carrier(link), None, at)
 
     def point(self, link: int, place: Place) -> Carried:
         """A point of a link, counted from 1, as it is written at a place."""
-        return Carried(*self.carrier(link), place)
+        return Carried(*self.carrier(link), self.slots.three(place))
 
 
-def word_of(form: Form, kinds: Sequence[str], spun: Mapping[int, Floats | None] | None = None) -> Word:
-    """The word of a form with joints of these kinds.
+def word_of(
+    form: Form, kinds: Sequence[str], slots: Slots, spun: Mapping[int, Floats | None] | None = None
+) -> Word:
+    """The word of a form with joints of these kinds, whose numbers stand in `slots`.
 
     `spun` are the balls, counted from 0, before a link that is held from spinning on to the next ball: they
     stand as two turns, and a third that is held. Each has the axis that holds the spin, in the frame of the
@@ -151,17 +174,17 @@ def word_of(form: Form, kinds: Sequence[str], spun: Mapping[int, Floats | None] 
         columns = range(column, column := column + len(row.freedoms))
         if i in spun:
             own = [WordStep("R", i, (c,), held=c == columns[-1]) for c in columns]
-            inner.append(_turns_of_spun(form, kinds, i, spun[i]))
+            inner.append(_turns_of_spun(form, kinds, slots, i, spun[i]))
         elif row.is_ball or row.is_screw:
-            pitch: Place | None = (TABLES[form], i, "pitch") if row.is_screw else None
+            pitch = slots.get((TABLES[form], i, "pitch")) if row.is_screw else None
             own = [WordStep(kind, i, tuple(columns), pitch)]
             inner.append(())
         else:
             own = [WordStep(step.letter, i, (c,)) for c, step in zip(columns, row.steps, strict=True)]
-            inner.append(_inner(kinds, i, row))
+            inner.append(_inner(kinds, slots, i, row))
         freedoms.append(tuple(own))
     shape = {"rssr": _rssr, "rows": _rows, "planar": _planar, "drawn": _drawn}[form]
-    return Word(*shape(kinds), tuple(freedoms), tuple(inner))
+    return Word(slots, *shape(kinds, slots), tuple(freedoms), tuple(inner))
 
 
 def _rows_of(form: Form, kinds: Sequence[str]) -> list[JointKind]:
@@ -173,16 +196,18 @@ def _rows_of(form: Form, kinds: Sequence[str]) -> list[JointKind]:
 def _turned(kinds: Sequence[str], joint: int) -> Product:
     """From the frame of a drawn joint to that in which it moves: by half a turn of the last one, (2)."""
     last = joint + 1 == len(kinds)
-    return Product((Still(half_turn(KINDS[kinds[joint]].half_turn)),) if last else ())
+    return Product.still(half_turn(KINDS[kinds[joint]].half_turn)) if last else Product()
 
 
-def holding_axis(form: Form, kinds: Sequence[str], ball: int, axis: Floats, values: Values) -> Floats | None:
+def holding_axis(
+    form: Form, kinds: Sequence[str], slots: Slots, values: Floats, ball: int, axis: Floats
+) -> Floats | None:
     """The axis that holds the spin beyond a ball, `None` where it is that of the joint before."""
     if form == "rssr":
         return None
     if ball > 0 and not KINDS[kinds[ball - 1]].is_ball:
-        before = _drawn_frames(kinds, ball - 1)[1].direction(values)[0]
-        if math.hypot(*cross(before, axis)) < SPIN_UNDEFINED:
+        before = unit(values[list(_axes(kinds, slots, ball - 1)[-1])])
+        if math.hypot(*cross(before, axis)) < ANOTHER_AXIS:
             return None
     return axis
 
@@ -190,107 +215,107 @@ def holding_axis(form: Form, kinds: Sequence[str], ball: int, axis: Floats, valu
 _Outer = tuple[Product, tuple[Product, ...], Product, tuple[Product, ...]]
 
 
-def _rssr(kinds: Sequence[str]) -> _Outer:
-    def slide(axis: int, key: str) -> TurnAndSlide:
-        return TurnAndSlide(axis, slide=("rssr", key))
-
-    turned = Still(HALF_TURN_X)
-    links = (
-        Product((slide(0, "L1"),)),
-        Product((slide(0, "L2"),)),
-        Product((slide(0, "L3"), turned)),
+def _rssr(kinds: Sequence[str], slots: Slots) -> _Outer:
+    m, n, d, crank, coupler, rocker = (
+        slots.slide(axis, ("rssr", key))
+        for axis, key in ((0, "M"), (2, "N"), (1, "D"), (0, "L1"), (0, "L2"), (0, "L3"))
     )
-    ground = Product((slide(0, "M"), slide(1, "D"), Still(ROCKER_GROUND)))
-    return Product((slide(2, "N"),)), links, ground, (Product(()),) * len(kinds)
+    ground = m + d + Product.still(ROCKER_GROUND)
+    return n, (crank, coupler, rocker + Product.still(HALF_TURN_X)), ground, (Product(),) * len(kinds)
 
 
-def _rows(kinds: Sequence[str]) -> _Outer:
+def _rows(kinds: Sequence[str], slots: Slots) -> _Outer:
     """Rows `Rz(theta) Tz(offset) Tx(length) Rx(twist)`: the joint's own motion, then turn, then span."""
-    report = Still(I_ALONG_LAST_AXIS)
+    report = Product.still(I_ALONG_LAST_AXIS)
     count = range(len(kinds))
     # of a slide the angle is fixed and the offset moves
     turns = [
-        TurnAndSlide(2, turn=("link", i, "angle"))
+        slots.turn(2, ("link", i, "angle"))
         if "angle" in KINDS[kinds[i]].row_keys
-        else TurnAndSlide(2, slide=("link", i, "offset"))
+        else slots.slide(2, ("link", i, "offset"))
         for i in count
     ]
-    spans = [TurnAndSlide(0, turn=("link", i, "twist"), slide=("link", i, "length")) for i in count]
-    ground = Product((report, Back(turns[-1])))
+    spans = [slots.turn(0, ("link", i, "twist")) + slots.slide(0, ("link", i, "length")) for i in count]
+    ground = report + turns[-1].back
     # v of a point goes along the link, so behind the fixed angle; u counts from before the offset
-    frames = [Product((TurnAndSlide(2, turn=("link", i, "angle")), Still(UVW))) for i in count]
+    frames = [slots.turn(2, ("link", i, "angle")) + Product.still(UVW) for i in count]
     frames[-1] = ground + frames[-1]
-    links = tuple(Product(pair) for pair in zip(turns[:-1], spans[:-1], strict=True))
-    return Product((report, spans[-1])), links, ground, tuple(frames)
+    links = tuple(turn + span for turn, span in zip(turns[:-1], spans[:-1], strict=True))
+    return report + spans[-1], links, ground, tuple(frames)
 
 
-def _planar(kinds: Sequence[str]) -> _Outer:
+def _planar(kinds: Sequence[str], slots: Slots) -> _Outer:
     """The rows as planar textbooks lay them out: x runs along the ground, from the first joint to the last.
 
     The first angle counts from x, half a turn off that of the rows; the last one is that of the link before
     the ground, which the ground's in the rows is backwards.
     """
-    _, links, ground, frames = _rows(kinds)
-    # without the report frame of the rows
-    (_, *rest), (_, *last) = ground.factors, frames[-1].factors
-    span = TurnAndSlide(0, turn=("link", len(kinds) - 1, "twist"), slide=("link", len(kinds) - 1, "length"))
-    start = Product((Still(HALF_TURN_Z), Back(span)))
-    under = Still(HALF_TURN_X)
-    links = (*links[:-1], links[-1] + Product((under,)))
-    frames = (*frames[:-1], start + Product(tuple(last)))
-    return Product(()), links, start + Product((*rest, under)), frames
+    base, links, ground, frames = _rows(kinds, slots)
+    # in place of the report frame of the rows
+    start = Product.still(HALF_TURN_Z) + base.back
+    under = Product.still(HALF_TURN_X)
+    links = (*links[:-1], links[-1] + under)
+    return Product(), links, start + ground + under, (*frames[:-1], start + frames[-1])
 
 
-def _drawn_frames(kinds: Sequence[str], joint: int) -> tuple[DrawnFrame, DrawnFrame]:
+def _axes(kinds: Sequence[str], slots: Slots, joint: int) -> list[Three]:
+    """Where the axes of a drawn joint stand: one, two of U, none of a ball."""
+    keys, place = KINDS[kinds[joint]].drawn_keys, ("joint", joint)
+    if "axes" in keys:
+        return [slots.three((*place, "axes", which)) for which in (0, 1)]
+    return [slots.three((*place, "axis"))] if "axis" in keys else []
+
+
+def _drawn_frames(kinds: Sequence[str], slots: Slots, joint: int) -> tuple[Product, Product]:
     """The frames before and behind a joint."""
     # x goes towards the joint behind, of the last one towards that before
-    towards = joint + 1 if joint + 1 < len(kinds) else joint - 1
-    row = KINDS[kinds[joint]]
-    key = next((key for key in row.drawn_keys if key in ("axis", "axes")), "")
-    before = DrawnFrame(joint, key, 0, towards, row.has_plane)
-    return before, DrawnFrame(joint, key, 1, towards) if row.has_cross else before
+    at, towards = (
+        slots.three(("joint", i, "at")) for i in (joint, joint + 1 if joint + 1 < len(kinds) else joint - 1)
+    )
+    row, axes = KINDS[kinds[joint]], _axes(kinds, slots, joint)
+    before = Product.drawn(at, axes, 0, towards, row.has_plane)
+    return before, Product.drawn(at, axes, 1, towards, False) if row.has_cross else before
 
 
-def _drawn(kinds: Sequence[str]) -> _Outer:
+def _drawn(kinds: Sequence[str], slots: Slots) -> _Outer:
     """Joints as drawn, all at zero: the frames on both sides of each, in ground coordinates."""
-    pairs = [_drawn_frames(kinds, i) for i in range(len(kinds))]
-    sides = [[Product((side,)) + _turned(kinds, i) for side in pair] for i, pair in enumerate(pairs)]
+    pairs = [_drawn_frames(kinds, slots, i) for i in range(len(kinds))]
+    sides = [[side + _turned(kinds, i) for side in pair] for i, pair in enumerate(pairs)]
     before, behind = zip(*sides, strict=True)
     links = tuple(a.back + b for a, b in zip(behind[:-1], before[1:], strict=True))
-    frames = (*(frame.back for frame in behind[:-1]), Product(()))
+    frames = (*(frame.back for frame in behind[:-1]), Product())
     return before[0], links, behind[-1], frames
 
 
-def _inner(kinds: Sequence[str], joint: int, row: JointKind) -> tuple[Product, ...]:
+def _inner(kinds: Sequence[str], slots: Slots, joint: int, row: JointKind) -> tuple[Product, ...]:
     """What stands before, between and behind the steps of a joint, each about or along z."""
-    parts, ahead = [], Product(())
+    parts, ahead = [], Product()
     for step in row.steps:
         if step.tilted:
-            before, behind = _drawn_frames(kinds, joint)
+            before, behind = _drawn_frames(kinds, slots, joint)
             turned = _turned(kinds, joint)
-            ahead += turned.back + Product((Back(before), behind)) + turned
+            ahead += turned.back + before.back + behind + turned
         if step.axis == Z:
             parts.append(ahead)
-            ahead = Product(())
+            ahead = Product()
         else:
-            frame = Still(axis_to_z(step.axis))
-            parts.append(ahead + Product((frame,)))
-            ahead = Product((Back(frame),))
+            frame = Product.still(axis_to_z(step.axis))
+            parts.append(ahead + frame)
+            ahead = frame.back
     return (*parts, ahead)
 
 
-def _turns_of_spun(form: Form, kinds: Sequence[str], ball: int, axis: Floats | None) -> tuple[Product, ...]:
+def _turns_of_spun(
+    form: Form, kinds: Sequence[str], slots: Slots, ball: int, axis: Floats | None
+) -> tuple[Product, ...]:
     """What stands before, between and behind the turns of a ball that holds a spin."""
-    axes: list[Factor]
     if form == "rssr":
-        axes = [Still(pose(frame_about(np.eye(3)[k], np.eye(3)[k - 1]), np.zeros(3))) for k in (2, 1, 0)]
-    elif axis is None:
-        before = _drawn_frames(kinds, ball - 1)[1]
-        axes = [Held(ball, k, before) for k in range(3)]
+        a, b, c = (Product.still(axis_to_z(k)) for k in (2, 1, 0))
     else:
-        axes = [Held(ball, k, given=tuple(axis.tolist())) for k in range(3)]
-    a, b, c = axes
-    return Product((a,)), Product((Back(a), b)), Product((Back(b), c)), Product((Back(c),))
+        written = _axes(kinds, slots, ball - 1)[-1] if axis is None else None
+        line = [slots.three(("joint", i, "at")) for i in (ball, ball + 1)]
+        a, b, c = (Product.held(line, k, written, np.zeros(3) if axis is None else axis) for k in range(3))
+    return a, a.back + b, b.back + c, c.back
 
 
 def points_of(form: Form, word: Word, description: Mapping[str, Any], kind: str) -> list[Carried]:
@@ -298,8 +323,8 @@ def points_of(form: Form, word: Word, description: Mapping[str, Any], kind: str)
     found: list[Carried] = []
     if form == "rssr":
         found += [
-            Carried(1, Product((TurnAndSlide(0, slide=("rssr", "L1")),))),
-            Carried(len(word.steps) - 1, Product(())),
+            Carried(1, word.slots.slide(0, ("rssr", "L1"))),
+            Carried(len(word.steps) - 1, Product()),
         ]
     elif kind == "RSSR":
         found += [word.point(link, ("joint", joint, "at")) for link, joint in ((1, 1), (3, 2))]

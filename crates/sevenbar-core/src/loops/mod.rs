@@ -32,5 +32,7 @@ pub use motions::circuit::{Circuit, Course};
 pub use motions::measures::{Driven, Measures, measures};
 pub use motions::motion::{ChangePoint, Motion, Through, circuit_through, mobility, motion};
 pub use motions::rows::{ROW_NUMBERS, Rows, Tally, joint_table, point};
-pub use numbers::numbered_loop::{Advance, Design, Move, NumberedLoop, NumberedPoint};
+pub use numbers::factors::{Axis, DrawnFrame, Factor, Held, Product, Three};
+pub use numbers::numbered_loop::NumberedLoop;
 pub use numbers::slopes::slopes;
+pub use numbers::word::{Carried, Word};

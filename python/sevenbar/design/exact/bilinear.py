@@ -16,6 +16,7 @@ Source: docs/theory_design.md, (30).
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -162,10 +163,14 @@ def _sorted_out(a: Complexes, b: Complexes, forms: Floats) -> PointPairs:
 def on_cubic(forms: Floats, first: Floats, second: Floats) -> Floats:
     """The real points b (n, 3) on the line through two points at which three forms (3, 3, 3) have an a."""
     cubic, monomials = cubic_of(forms), np.array(_CUBICS)
-    places = np.array([0.0, 1.0, -1.0, 2.0])
-    values = [np.prod((first + x * second) ** monomials, axis=1) @ cubic for x in places]
-    sides = np.vander(places, 4)
-    roots = np.roots(np.linalg.solve(sides, values)) if np.any(values) else np.empty(0)
-    real = roots[np.abs(roots.imag) < REAL * (1 + np.abs(roots))].real
-    points = first + real[:, None] * second
+    roots = cubic_roots(lambda x: float(np.prod((first + x * second) ** monomials, axis=1) @ cubic))
+    points = first + roots[:, None] * second
     return np.asarray(points / np.linalg.norm(points, axis=1, keepdims=True))
+
+
+def cubic_roots(value: Callable[[float], float]) -> Floats:
+    """The real places x (n,) at which a cubic vanishes, by its values; none where it does everywhere."""
+    places = np.array([0.0, 1.0, -1.0, 2.0])
+    values = [value(float(x)) for x in places]
+    roots = np.roots(np.linalg.solve(np.vander(places, 4), values)) if np.any(values) else np.empty(0)
+    return np.asarray(roots[np.abs(roots.imag) < REAL * (1 + np.abs(roots))].real)

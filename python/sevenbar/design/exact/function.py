@@ -19,6 +19,7 @@ Source: docs/theory_design.md, (38) to (40).
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +29,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Claim
 from sevenbar.design.closure import draft_of
 from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers, judged
+from sevenbar.design.exact.bilinear import cubic_roots
 from sevenbar.design.exact.closures import SkewRssr, designed, products, rssr_of
 from sevenbar.design.exact.draws import directions
 from sevenbar.design.synthesis.function.precision import null_angles, reflected
@@ -148,6 +150,9 @@ def _closures(
             return found, 2, 2, "the angle of the axes is a quadratic along the pencil of null vectors"
         pencil = False  # all of it has the angle wanted
     how = f"members of a family of {size} coefficients, drawn with seed {seed}"
+    if cosine is None and zeros is None and _all_parallel(base):
+        lines = directions(samples, 2 * size, seed)
+        return _in_planes(base, lines), None, None, f"{how}; all have parallel axes"
     draws = directions(samples, size * (1 + pencil), seed)
     if not pencil:
         return list(np.einsum("nk,kij->nij", draws, base)), None, None, how
@@ -173,6 +178,35 @@ def _null_space(a: Floats, b: Floats, cosine: float | None, zeros: tuple[float, 
     _, sizes, base = np.linalg.svd(rows)
     rank = int((sizes > RANK * sizes[0]).sum())
     return np.asarray((base[rank:] @ back).reshape(-1, 3, 3))
+
+
+def _all_parallel(base: Floats) -> bool:
+    """Whether every closure of a space (k, 3, 3) has parallel axes: blocks of products that only turn."""
+    block = base[:, 1:, 1:]
+    for way in (1.0, -1.0):
+        off = np.abs([block[:, 0, 0] - way * block[:, 1, 1], block[:, 0, 1] + way * block[:, 1, 0]])
+        if off.max() < NO_QUADRATIC:
+            return True
+    return False
+
+
+def _in_planes(base: Floats, lines: Floats) -> list[Floats]:
+    """Where lines (n, 2k) of a space with parallel axes meet what is a linkage: one common normal for both.
+
+    With M the block of products the sides `M^T f_a` and `f_b` must be parallel, a cubic along a line.
+    """
+
+    def aside(place: float, first: Floats, second: Floats) -> float:
+        f = first + place * second
+        x, y = f[1:, 1:].T @ f[1:, 0]
+        return float(x * f[0, 2] - y * f[0, 1])
+
+    found: list[Floats] = []
+    for line in lines:
+        first, second = (np.einsum("k,kij->ij", half, base) for half in np.split(line, 2))
+        roots = cubic_roots(partial(aside, first=first, second=second))
+        found += [first + x * second for x in roots]
+    return found
 
 
 def _of_pencil(first: Floats, second: Floats, c: float) -> Floats:

@@ -89,7 +89,9 @@ def planar_poses(
         pairs = on_curve(forms, samples, seed)
         how = f"moving pivots on their curve, a cubic, drawn with seed {seed}"
     else:
-        pairs = anywhere(forms, _given_points(moving, task) if moving is not None else _drawn(samples, seed))
+        pairs = anywhere(
+            forms, directions(samples, 3, seed) if moving is None else _given_points(moving, task)
+        )
         how = "each moving pivot has one fixed pivot" + (f"; seed {seed}" if moving is None else "")
     dyads = _dyads(pairs, task)
     answers = loops_of_pairs(dyads, task, "Planar four-bar", length_unit)
@@ -149,11 +151,6 @@ def _given_points(moving: npt.ArrayLike, task: Displacements) -> Floats:
             f"moving: {shown(moving)} are no pivots; give two or more places x, y in the first pose"
         )
     return np.column_stack([(points - task.origin[:2]) / task.reach, np.ones(len(points))])
-
-
-def _drawn(samples: int, seed: int) -> Floats:
-    """Moving pivots all over the plane (samples, 3), mostly near."""
-    return directions(samples, 3, seed)
 
 
 def _refuse_special(task: Displacements) -> None:

@@ -216,7 +216,7 @@ def as_dict(found: LeastPoint | NearestPath | Inertia) -> dict[str, Any]:
         "drive": {"input": motion.input, "speed": None if motion.law is not None else motion.speed},
         "circuit": cycle.circuit.index,
         "branch": cycle.branch,
-        "notes": notes(cycle),
+        "notes": notes(cycle, [mass.link for mass in found.masses] if isinstance(found, Inertia) else ()),
     }
     if isinstance(found, LeastPoint):
         return common | _least_dict(found)

@@ -168,6 +168,8 @@ class Polish:
             # what is at a bound stays there
             slopes[:, own][:, (z[own] <= self.low) | (z[own] >= self.high)] = 0.0
             z = z - np.linalg.lstsq(slopes, off, rcond=None)[0]
+        # what has not arrived may have left its bounds
+        z[own] = np.clip(z[own], self.low, self.high)
         return z
 
     def polished(self) -> Floats:

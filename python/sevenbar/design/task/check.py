@@ -282,7 +282,8 @@ def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: L
         if isinstance(must, Most):
             number = model.sampled.index(must.want)
             one = model.wanted[number]
-            worst = float(np.abs(ways[number][0].errors).max())
+            errors = ways[number][0].errors[slice(None) if must.at is None else list(must.at)]
+            worst = float(np.abs(errors).max())
             if worst > (must.most + TORN) * one.unit:
                 found, asked = (
                     f"{math.degrees(x):.4g} deg" if one.turns else f"{x:.4g} {linkage.length_unit}"

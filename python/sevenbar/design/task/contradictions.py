@@ -12,6 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.must_contradictions import Flaws, figure_flaw, of_must
+from sevenbar.design.task.musts import places_in
 from sevenbar.design.task.task import (
     DesignTask,
     DwellWant,
@@ -41,6 +42,9 @@ EXACT = 1e-6
 
 #: Inputs of a turn at which numbers that open the loop show.
 OPENINGS = 12
+
+#: A place whose slopes are all below this part of the size stands still.
+STILL = 1e-12
 
 #: Fewest samples of a dwell or a straight way.
 FEWEST_SAMPLES = 3
@@ -75,6 +79,13 @@ def contradictions(task: DesignTask) -> Iterator[Problem]:
         yield Problem(
             "placement", f"{task.placement!r} changes nothing: no path and no poses are wanted; leave it out"
         )
+    boxes = [i for i, must in enumerate(task.musts) if isinstance(must, InBox)]
+    if task.placement != "fixed" and boxes:
+        yield Problem(
+            f"must[{boxes[0] + 1}]",
+            f"a box stands in space, and with placement {task.placement!r} the linkage may stand anywhere; "
+            "leave one of the two out",
+        )
     if task.limits.transmission_lowest and task.draft.linkage.form != "rssr":
         yield Problem(
             "limits.transmission",
@@ -92,28 +103,51 @@ def start_flaws(task: DesignTask) -> Iterator[Problem]:
     for i, must in enumerate(task.musts):
         if isinstance(must, InCone):
             yield from _far_side(f"must[{i + 1}]", must, loop.linkage, circuits)
-    found = opening_numbers(loop, circuits)
-    if found is None:
+    q = closed_poses(loop, circuits)
+    if q is None:
         yield Problem(
             "linkage",
             "moves nowhere as it is described, so it cannot be a start; give dimensions with which it moves",
         )
-    for number in found or ():
+        return
+    for number in loop.openings(loop.start, q):
         yield Problem(
             f"free.{task.free[number].name}", "cannot change alone without opening the loop; leave it out"
         )
+    yield from _outside(task, loop, q)
 
 
-def opening_numbers(loop: TaskLoop, circuits: Sequence[Circuit]) -> list[int] | None:
-    """The free numbers that open a loop as soon as they change; `None` where it moves nowhere."""
+def closed_poses(loop: TaskLoop, circuits: Sequence[Circuit]) -> Floats | None:
+    """Poses (n, columns) of the first circuit that has some; `None` where the loop moves nowhere."""
     for circuit in circuits:
         good = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
         if good.size:
             q = loop.closed(loop.start, circuit.input[good], loop.poses(loop.start, circuit.q[good]))
             q = q[np.isfinite(q).all(axis=1)]
             if len(q):
-                return loop.openings(loop.start, q)
+                return q
     return None
+
+
+def _outside(task: DesignTask, loop: TaskLoop, q: Floats) -> Iterator[Problem]:
+    """Points and joints that nothing moves, outside of the box in which they are to stay."""
+    for i, must in enumerate(task.musts):
+        if not isinstance(must, InBox):
+            continue
+        numbers = places_in(loop, must)
+        here = loop.here(loop.start, q)
+        for name, number in zip(must.names, numbers, strict=True):
+            place, by = (
+                here.points[0, number],
+                here.points_by[:, number] * [*loop.scales, loop.units[loop.input]],
+            )
+            out = (place < must.low) | (place > must.high)
+            if out.any() and np.abs(by).max() < STILL * loop.size:
+                at = ", ".join(f"{x + 0.0:.6g}" for x in place)
+                yield Problem(
+                    f"must[{i + 1}].names",
+                    f"{name} stands still at ({at}), outside the box; leave it out, or give a wider box",
+                )
 
 
 def _far_side(place: str, must: InCone, linkage: Linkage, circuits: Sequence[Circuit]) -> Iterator[Problem]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +31,7 @@ from sevenbar.text.words import say
 class FrontFound(TaskDesigns):
     """A front, with its designs as those of a search."""
 
-    front: ParetoFront
+    front: ParetoFront = field(kw_only=True)
 
     @property
     def axes(self) -> list[tuple[str, str]]:

@@ -10,7 +10,6 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
-from sevenbar.kinematics.factors import Product
 from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
@@ -73,7 +72,6 @@ class TaskLoop:
         masses = [abs(d.value) or 1.0 for d in draft.masses]
         self.scales = np.concatenate([self.numbers.units, masses])[self.free]
         self.coupler = Following.among(self.numbers.dimensions, [self.free[k] for k in self._moving])
-        self._points: dict[Carried, int] = {}
         self._loop: tuple[bytes, NumberedLoop] | None = None
         self._motion: tuple[bytes, Motion | None] | None = None
 
@@ -88,23 +86,19 @@ class TaskLoop:
 
     def place(self, link: int, at: tuple[float, float, float]) -> int:
         """The number of a place on a link, as points of it are written."""
-        steps, frame = self.numbers.word.carrier(link)
-        return self._number(Carried(steps, frame, None, at))
+        return self._number(self.numbers.word.place(link, at))
 
     def joint(self, place: int, *, ahead: bool) -> int:
         """The number of the place of a joint, counted from 0, on the link `ahead` of it, or behind it."""
-        word = self.numbers.word
-        first = sum(map(len, word.freedoms[:place]))
-        if ahead:
-            return self._number(Carried(first + len(word.freedoms[place]), Product(())))
-        return self._number(Carried(first, word.fixed[first]))
+        link = place + 1 if ahead else place or len(self.linkage.joints)
+        return self._number(self.numbers.word.rod(link)[0 if ahead else 1])
 
     def _number(self, carried: Carried) -> int:
-        if carried not in self._points:
-            self._points[carried] = len(self.numbers.points)
-            self.numbers.points.append(carried)
+        points = self.numbers.points
+        if carried not in points:
+            points.append(carried)
             self._loop = None
-        return self._points[carried]
+        return points.index(carried)
 
     def whole(self, values: Floats) -> Floats:
         """All numbers of the description (all,)."""

@@ -80,13 +80,18 @@ def _line(loop: TaskLoop, link: int, place: int, given: Three | None) -> tuple[i
     return loop.place(link, (0.0, 0.0, 0.0)), loop.place(link, (x, y, z))
 
 
-def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
+def places_in(loop: TaskLoop, must: InBox) -> list[int]:
+    """The numbers of the points and joints that stay in a box."""
     joints = [joint.name for joint in loop.linkage.joints]
     points = [point.name for point in loop.linkage.points]
-    numbers = [
+    return [
         loop.named(name) if name in points else loop.joint(joints.index(name), ahead=True)
         for name in must.names
     ]
+
+
+def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
+    numbers = places_in(loop, must)
     low, high = np.array(must.low), np.array(must.high)
 
     def rooms(here: Here) -> Rooms:

@@ -24,6 +24,7 @@ from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.match import STILL, Placing, placed
 from sevenbar.design.task.musts import FAULTS, pose_rooms
+from sevenbar.design.task.rssr import loop_of
 from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
 from sevenbar.design.task.task import (
     DesignTask,
@@ -46,9 +47,6 @@ LONGEST_STEP = 1.2
 
 #: Poses of a want, with those between its stations, at which musts are held.
 HELD = 73
-
-#: By how much the transmission angle is held with room, since it may be less between two stations [sin^2].
-TRANSMISSION = 1e-4
 
 #: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
 FLAT = 1e-9
@@ -92,7 +90,7 @@ class TaskModel:
 
     def __init__(self, task: DesignTask) -> None:
         self.task = task
-        self.loop = loop = TaskLoop(task.draft.holding(task.follow), task.names)
+        self.loop = loop = loop_of(task)
         self.wanted: list[Wanted] = [
             self._wanted(loop, want) for want in task.wants if not isinstance(want, FigureWant)
         ]
@@ -106,10 +104,10 @@ class TaskModel:
         self.placed = task.placement != "fixed"
         linkage = loop.linkage
         closed_form = linkage.form == "rssr" and loop.input == 0
-        self.transmits = closed_form and task.limits.transmission_lowest > 0
+        self.transmits = closed_form and (task.limits.transmission_lowest > 0 or task.goal == "transmission")
         self.turns = closed_form and task.limits.motion_type in INPUT_TURNS
-        #: Which of the wants have been asked to stay within a greatest residual.
-        self.most = {self.sampled.index(m.want): m.most for m in task.musts if isinstance(m, Most)}
+        #: Wants, by their places among the sampled, whose residuals have been asked to stay small.
+        self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, Most)]
 
     @staticmethod
     def _wanted(loop: TaskLoop, want: SampledWant) -> Wanted:
@@ -193,7 +191,7 @@ class TaskProblem:
         known = self.loop.closed(seed.values, inputs[: self._count], seed.poses)
         more = inputs[self._count :]
         from_row = np.abs(more[:, None] - inputs[: self._count]).argmin(axis=1)
-        return np.concatenate([known, self.loop.at(seed.values).closed(more, known[from_row])])
+        return np.concatenate([known, self.loop.closed(seed.values, more, known[from_row])])
 
     def size(self, z: Floats) -> float:
         """The root of the weighted mean squares at z; infinite where there are none."""
@@ -207,6 +205,11 @@ class TaskProblem:
     def own(self, z: Floats) -> tuple[Floats, ...]:
         """The unknowns of each want."""
         return tuple(z[place] * self.scales[place] for place in self._own)
+
+    @property
+    def looked_at(self) -> int:
+        """The number of inputs at which the linkage is seen."""
+        return len(self._stations.fixed)
 
     def inputs(self, z: Floats) -> list[Floats]:
         """The inputs (n,) of each want."""
@@ -389,20 +392,21 @@ class TaskProblem:
     ) -> list[tuple[Fault, Floats, Floats]]:
         """Rooms with their slopes, each with what is at fault where it is missed."""
         rooms: list[tuple[Fault, Floats, Floats]] = []
+        if self.model.transmits or self.model.turns:
+            rooms += self._transmission(z)  # first, where the goal "transmission" looks for them
         if self.model.rooms:
             wide = here.along(self._stations.by)
             for place, room in self.model.rooms:
                 values, by = room(wide)
                 fault = FAULTS[type(self.model.task.musts[place])]
                 rooms.append((fault, values.ravel(), self._joined(by.reshape(values.size, -1))))
-        if self.model.transmits or self.model.turns:
-            rooms += self._transmission(z)
         for i, one in enumerate(self.model.wanted):
             if one.stations.free:
                 rooms.append(("order", *self._order(z, i)))
-        for i, most in self.model.most.items():
-            left, by = wants[i]
-            rooms += [("error", most - left, -by), ("error", most + left, by)]
+        for i, must in self.model.most:
+            at = slice(None) if must.at is None else list(must.at)
+            left, by = wants[i][0][at], wants[i][1][at]
+            rooms += [("error", must.most - left, -by), ("error", must.most + left, by)]
         return rooms
 
     def _order(self, z: Floats, number: int) -> tuple[Floats, Floats]:
@@ -440,7 +444,7 @@ class TaskProblem:
         if self.model.transmits and len(self._stations.fixed):
             room, by_row, by_input = transmission_room(row, self._stations.inputs(z), limits)
             by = wide(by_row) + by_input[:, None] * self._stations.by
-            found.append(("transmission", room - TRANSMISSION, by))
+            found.append(("transmission", room, by))
         if self.model.turns:
             room, by_row = turning_room(row)
             found.append(("motion type", room, wide(by_row)))
@@ -482,7 +486,7 @@ def _spread(steady: Floats, by: Floats, stations: Stations, period: float) -> li
     n = len(steady)
     if n < 2:
         return []
-    each = max(math.ceil(HELD / n), 2)
+    each = math.ceil(HELD / n)
     found = []
     for j in range(n if stations.round else n - 1):
         then = (j + 1) % n

@@ -61,37 +61,39 @@ class MinimaxValues:
 def lowered(
     heights: Callable[[Floats], MinimaxValues | None],
     start: Floats,
-    held: tuple[int, ...] = (),
     *,
     worth: float = WORTH,
+    mended: Callable[[Floats], Floats] = lambda z: z,
 ) -> Floats:
-    """The unknowns (k,) near a start at which (1) is solved; those `held` stay, a gain below `worth` ends it.
+    """The unknowns (k,) near a start at which (1) is solved; a gain below `worth` ends it.
 
-    `heights` gives `None` where there is nothing to measure; a step never leads there.
+    `heights` gives `None` where there is nothing to measure; a step never leads there. `mended` brings the
+    end of a step to where rooms are kept that bend away.
     """
     z, reach = start, FIRST_REACH
     now = heights(z)
     if now is None:
         return z
     for _ in range(MOST_STEPS):
-        step, promised = _step(now, reach, held)
+        step, promised = _step(now, reach)
         if not promised > worth:
             break
-        then = heights(z + step)
+        end = mended(z + step)
+        then = heights(end)
         gained = _gained(now, then)
         if then is not None and not gained > KEPT_MOST * promised:
             # heights bend: the same program again with what they really were at its end
-            bent, _ = _step(_bent(now, then, step), reach, held)
-            there = heights(z + bent)
+            bent, _ = _step(_bent(now, then, end - z), reach)
+            there = heights(mended(z + bent))
             if _gained(now, there) > gained:
-                step, then, gained = bent, there, _gained(now, there)
+                step, end, then, gained = bent, mended(z + bent), there, _gained(now, there)
         longest = float(np.abs(step).max())
         if then is None or not gained > KEPT_LITTLE * promised:
             reach = min(longest, reach) / 4
             if reach < LEAST_REACH:
                 break
             continue
-        z, now = z + step, then
+        z, now = end, then
         if gained < worth:
             break
         if gained > KEPT_MOST * promised and longest > 0.9 * reach:
@@ -111,24 +113,24 @@ def _bent(now: MinimaxValues, then: MinimaxValues, step: Floats) -> MinimaxValue
     )
 
 
-def _step(now: MinimaxValues, reach: float, held: tuple[int, ...]) -> tuple[Floats, float]:
+def _step(now: MinimaxValues, reach: float) -> tuple[Floats, float]:
     """The step (k,) of one program, and the gain it promises relative to the unit."""
     from scipy.optimize import linprog
 
     unit, count = now.unit, now.height_slopes.shape[1]
-    rows, others = len(now.height), len(now.room)
+    # rows that no step within the reach comes to are left out
+    up, down = (reach * np.abs(by).sum(axis=1) for by in (now.height_slopes, now.room_slopes))
+    tall, near = ~(now.height + up < (now.height - up).max()), ~(now.room > down)
     matrix = np.block(
         [
-            [now.height_slopes / unit, -np.ones((rows, 1)), np.zeros((rows, 1))],
-            [-now.room_slopes / unit, np.zeros((others, 1)), -np.ones((others, 1))],
+            [now.height_slopes[tall] / unit, -np.ones((tall.sum(), 1)), np.zeros((tall.sum(), 1))],
+            [-now.room_slopes[near] / unit, np.zeros((near.sum(), 1)), -np.ones((near.sum(), 1))],
         ]
     )
-    sides = np.concatenate([-now.height, now.room]) / unit
+    sides = np.concatenate([-now.height[tall], now.room[near]]) / unit
     if not (np.isfinite(matrix).all() and np.isfinite(sides).all()):
         return np.zeros(count), 0.0
-    bounds: list[tuple[float, float | None]] = [
-        (0.0, 0.0) if k in held else (-reach, reach) for k in range(count)
-    ]
+    bounds: list[tuple[float, float | None]] = [(-reach, reach)] * count
     cost = np.append(np.zeros(count), [1.0, MISSED])
     found = linprog(cost, A_ub=matrix, b_ub=sides, bounds=[*bounds, (0.0, None), (0.0, None)], method="highs")
     if found.x is None:

@@ -36,6 +36,13 @@ WEIGHTS, KEPT = (1.0, 10.0, 100.0), 1e-5
 #: A room that is missed by less is kept.
 ROUNDING = 1e-9
 
+#: Gain of a linear program, relative to the greatest height, that is worth another: nobody sees 0.01 deg of a
+#: transmission angle.
+WORTH = {"minimax": 1e-9, "transmission": 1e-4}
+
+#: A room that is to be kept exactly is missed by less: rounding.
+KEPT_TO = 1e-14
+
 #: A room so near to zero may be active.
 ACTIVE = 1e-6
 
@@ -117,7 +124,7 @@ def solved(
     problem, z = found.problem, found.z
     if not whole or found.size > most:
         return _as_solved(problem, z, math.nan, minimax=False)
-    minimax = model.task.goal == "minimax"
+    minimax = model.task.goal != "least squares"
     if minimax:
         problem = TaskProblem(model, problem.seed(z), minimax=True)
         z = _lowered(problem)
@@ -125,6 +132,8 @@ def solved(
         problem, z = _programmed(problem, z)
         z = _descended(problem, z)
     z, missed = settled(problem, z, minimax=minimax)
+    if minimax and _exactly(model):
+        z = _kept(problem, z)
     return _as_solved(problem, z, missed, minimax=minimax)
 
 
@@ -197,7 +206,13 @@ def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: fl
 
 
 def _heights(problem: TaskProblem, here: TaskValues) -> tuple[Floats, Floats]:
-    """Weighted sizes (h,) of single residuals, and their slopes: distances of places, others both ways."""
+    """Weighted sizes (h,) of single residuals, and their slopes: distances of places, others both ways.
+
+    For the greatest transmission angle how far the room of its squared sine is below 1.
+    """
+    if problem.model.task.goal == "transmission":
+        rows = slice(problem.looked_at)
+        return 1.0 - here.room[rows], -here.room_by[rows]
     heights, slopes = [], []
     count = 0
     for one in problem.model.wanted:
@@ -238,7 +253,28 @@ def _lowered(problem: TaskProblem) -> Floats:
             height, height_by, np.concatenate([here.room, room]), np.concatenate([here.room_by, by])
         )
 
-    return lowered(heights, np.clip(problem.start, problem.low, problem.high), worth=1e-9)
+    start = np.clip(problem.start, problem.low, problem.high)
+    worth = WORTH[problem.model.task.goal]
+    if _exactly(problem.model):
+        return lowered(heights, start, worth=worth, mended=lambda z: _kept(problem, z))
+    return lowered(heights, start, worth=worth)
+
+
+def _exactly(model: TaskModel) -> bool:
+    """Whether anything wanted must be met exactly."""
+    return any(must.most == 0.0 for _, must in model.most)
+
+
+def _kept(problem: TaskProblem, z: Floats) -> Floats:
+    """The unknowns near by that keep every room, by Newton's shortest steps on those that are missed."""
+    for _ in range(STEPS):
+        here = problem.at(z)
+        if here is None or not (here.room < -KEPT_TO).any():
+            break
+        missed = here.room < 0
+        step = np.linalg.lstsq(here.room_by[missed], here.room[missed], rcond=None)[0]
+        z = np.clip(z - step, problem.low, problem.high)
+    return z
 
 
 def _programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:

@@ -8,6 +8,9 @@ n residuals r of a want of weight w, the task makes least
 
     sum over wants of  (w^2 / n) sum r^2                     goal "least squares"                          (1)
     the greatest  w |r|  of all                              goal "minimax"                                (2)
+    1 - sin^2 of the transmission angle, the greatest of all goal "transmission"                           (3)
+
+(3) is for RSSRs of square axes, over the range that is used; what is wanted must then be met (`Most`).
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.sensitivity import Numbers
 
 #: What is made least of the residuals.
-Goal = Literal["least squares", "minimax"]
+Goal = Literal["least squares", "minimax", "transmission"]
 
 #: How the linkage may stand: as described; anywhere in space; anywhere and in any size.
 Placement = Literal["fixed", "free", "free with scale"]
@@ -96,7 +99,8 @@ class FigureWant:
     """A measure of the circuit by its name ("swing", "time_ratio", "peak_torque", ..): a value, or the most.
 
     `value` is in the unit that the measure is read in (degrees, N m, ..), or "small" or "great". The residual
-    is what it is off, relative to `unit`; for "small" the figure itself and for "great" `unit / figure`.
+    is what it is off, relative to `unit`; for "small" the figure itself, and for "great" `unit / figure`,
+    below the unit `2 - figure / unit`.
     """
 
     name: str
@@ -192,10 +196,14 @@ class FigureMust:
 
 @dataclass(frozen=True)
 class Most:
-    """The residuals of a want, by its place among the task's, are at most so great, weights left out."""
+    """The residuals of a want, by its place among the task's, are at most so great, weights left out.
+
+    Those of all its stations, or at the places `at` among them.
+    """
 
     want: int
     most: float
+    at: tuple[int, ...] | None = None
 
 
 #: Musts about poses, and all.

@@ -9,7 +9,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.kinematics.factors import Place
+from sevenbar.kinematics.dimensions import Place
 from sevenbar.kinematics.rigid import inverse, placed
 from sevenbar.studio.state.view import View
 

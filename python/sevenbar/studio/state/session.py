@@ -10,7 +10,7 @@ import numpy as np
 
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, SevenbarError
-from sevenbar.kinematics.factors import Place
+from sevenbar.kinematics.dimensions import Place
 from sevenbar.kinematics.motion import Motion
 from sevenbar.reporting.facts import meaning
 from sevenbar.studio.state.acting import SwitchedLoading

@@ -13,12 +13,15 @@
 //!
 //! Source: docs/theory_design.md, (1) to (5).
 
-use super::twists::{determinant, plus, sliding, turned, turning, turns_near};
+use super::factors::Product;
+use super::twists::{adjoined, determinant, plus, sliding, turned, turning, turns_near};
+use super::word::{Carried, Design, NumberedPoint, Word};
 use crate::loops::equation::chain::Joint;
 use crate::loops::equation::dense::{COLUMNS, Factored, ROWS, singular_values};
 use crate::loops::equation::rotations::{Rotation, product, rotation};
 use crate::loops::equation::screws::Twist;
-use crate::rigid::{Pose, Vec3};
+use crate::rigid::Pose;
+use std::sync::Arc;
 
 /// Newton's steps on the closure: the most, the longest [rad, or relative to the size], and one after which only rounding is left.
 const MOST_STEPS: usize = 20;
@@ -27,49 +30,6 @@ const LAST: f64 = 1e-8;
 
 /// A closure error [rad, or relative to the size] that rounding leaves where the loop is ill conditioned.
 const NEARLY_CLOSED: f64 = 1e-9;
-
-/// A twist of what lies behind a fixed transform, by one of a number.
-#[derive(Clone, Copy, Debug)]
-pub struct Move {
-    /// Which number.
-    pub number: usize,
-    /// The fixed transform, counted from 0, in whose frame behind it the twist is.
-    pub place: usize,
-    /// Angular and linear part.
-    pub twist: [f64; 6],
-}
-
-/// The advance of a screw, by one of a number.
-#[derive(Clone, Copy, Debug)]
-pub struct Advance {
-    /// Which number.
-    pub number: usize,
-    /// The joint, counted from 0.
-    pub joint: usize,
-    /// What it adds to the advance for a radian.
-    pub rate: f64,
-}
-
-/// A point of the link behind so many joints, in the frame there (of the report behind none: the ground's), and what one of each
-/// number moves it by.
-#[derive(Clone, Debug)]
-pub struct NumberedPoint {
-    /// How many joints are before it.
-    pub joints: usize,
-    /// Where it is.
-    pub at: Vec3,
-    /// By number, what one of it adds.
-    pub ways: Vec<(usize, Vec3)>,
-}
-
-/// The fixed transforms of a loop for some values of its numbers, and the advances of its joints for a radian.
-#[derive(Clone, Debug)]
-pub struct Design {
-    /// Before, between and behind the joints.
-    pub fixed: Vec<Pose>,
-    /// Of each joint; only those of screws count.
-    pub advances: Vec<f64>,
-}
 
 /// A loop of turns (R), slides (P), screws (H) and balls (S) with its numbers; lengths relative to the size.
 ///
@@ -92,6 +52,10 @@ pub struct NumberedLoop {
     pub(super) moves: Vec<Vec<(usize, Twist)>>,
     pub(super) advances: Vec<Option<(usize, f64)>>,
     pub(super) points: Vec<NumberedPoint>,
+    /// The numbers, in radians and lengths, and those among them by which derivatives are.
+    values: Vec<f64>,
+    only: Vec<usize>,
+    word: Arc<Word>,
 }
 
 /// Poses of changed designs: joint values (designs, rows, columns), NaN where they do not close on the same pass, and the
@@ -133,74 +97,75 @@ impl Around {
 }
 
 impl NumberedLoop {
-    /// From the joints by their letters, the transforms before, between and behind them, the driving column, the columns that are
-    /// held, how many idle freedoms more there are, the count of numbers, and what each moves. `None` where these do not fit.
-    #[expect(clippy::too_many_arguments)]
+    /// The loop of a word at numbers, in their units, driven by a column: derivatives are by `only` some of them, and of points.
+    /// `None` where these do not fit.
     pub fn new(
-        letters: &str,
-        nominal: Design,
+        word: &Arc<Word>,
+        numbers: &[f64],
         input: usize,
-        held: Vec<usize>,
-        spins: usize,
-        numbers: usize,
-        moves: &[Move],
-        advances: &[Advance],
-        points: Vec<NumberedPoint>,
+        only: &[usize],
+        points: &[Carried],
     ) -> Option<Self> {
+        let count = numbers.len();
+        if count != word.scales.len() || only.iter().any(|&k| k >= count) || !word.fits(points) {
+            return None;
+        }
+        let values = word.values(numbers);
+        let nominal = word.design(&values);
         let mut balls = 0;
         let mut joints = Vec::new();
-        for (letter, &advance) in letters.chars().zip(&nominal.advances) {
-            joints.push(match letter {
+        let mut first = Vec::new();
+        let mut columns = 0;
+        for (letter, &advance) in word.letters.chars().zip(&nominal.advances) {
+            let joint = match letter {
                 'R' => Joint::Turn,
                 'P' => Joint::Slide,
                 'H' => Joint::Screw(advance),
                 'S' => Joint::Ball(balls),
                 _ => return None,
-            });
+            };
             balls += usize::from(letter == 'S');
-        }
-        let count = joints.len();
-        let mut first = Vec::with_capacity(count);
-        let mut columns = 0;
-        for joint in &joints {
             first.push(columns);
             columns += joint.columns();
-        }
-        let mut by_place = vec![Vec::new(); numbers * (count + 1)];
-        for m in moves.iter().filter(|m| m.number < numbers && m.place <= count) {
-            by_place[m.number * (count + 1) + m.place].push((m.place, m.twist));
-        }
-        let moves: Vec<Vec<(usize, Twist)>> = by_place.chunks(count + 1).map(|one| one.concat()).collect();
-        let mut by_number = vec![None; numbers];
-        for a in advances.iter().filter(|a| a.number < numbers && a.joint < count) {
-            by_number[a.number] = Some((a.joint, a.rate));
+            joints.push(joint);
         }
         let free: Vec<usize> = (0..columns)
-            .filter(|c| *c != input && !held.contains(c))
+            .filter(|c| *c != input && !word.held.contains(c))
             .collect();
-        let fits = nominal.fixed.len() == count + 1
-            && nominal.advances.len() == letters.len()
-            && letters.len() == count
-            && count > 0
-            && input < columns
-            && free.len() >= spins
-            && free.len() - spins <= COLUMNS
-            && points
-                .iter()
-                .all(|p| p.joints <= count && p.ways.iter().all(|w| w.0 < numbers));
-        fits.then_some(Self {
+        let fits = input < columns && free.len() >= word.spins && free.len() - word.spins <= COLUMNS;
+        fits.then(|| Self {
             joints,
             first,
             columns,
-            nominal,
             input,
-            held,
+            held: word.held.clone(),
             free,
-            spins,
-            numbers,
-            moves,
-            advances: by_number,
-            points,
+            spins: word.spins,
+            numbers: only.len(),
+            moves: word.moves(&values, only),
+            advances: word.advances(only),
+            points: points
+                .iter()
+                .map(|point| word.point(point, &values, only))
+                .collect(),
+            nominal,
+            values,
+            only: only.to_vec(),
+            word: Arc::clone(word),
+        })
+    }
+
+    /// By each number that moves it, the twist of a link's frame behind the joints before it.
+    pub fn twists(&self, frame: &Product) -> Option<Vec<(usize, Twist)>> {
+        let fits = frame.numbers().all(|k| k < self.values.len());
+        fits.then(|| {
+            let pose = frame.pose(&self.values);
+            let own = Pose { translation: pose.translation.map(|x| x / self.word.size), ..pose };
+            let twists = self.word.twists(frame, &self.values, &self.only);
+            twists
+                .into_iter()
+                .map(|(number, twist)| (number, adjoined(&own, &twist)))
+                .collect()
         })
     }
 
@@ -399,7 +364,12 @@ impl NumberedLoop {
         )
     }
 
-    /// Closed poses of designs at inputs (rows,), by Newton's method from poses (rows, columns) of this loop nearby, moved by
+    /// How many numbers its description has.
+    pub fn all_numbers(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Closed poses of designs, by their numbers (designs, all) in their units or else its own, at inputs (rows,), by Newton's method from poses (rows, columns) of this loop nearby, moved by
     /// `steps` (designs, rows, columns) at first. One that comes out beyond a dead centre of the input, where the determinant of
     /// the screws changes its sign, is on another pass and so NaN, as is one that does not close.
     pub fn follow(
@@ -407,9 +377,17 @@ impl NumberedLoop {
         values: &[f64],
         inputs: &[f64],
         steps: Option<&[f64]>,
-        designs: &[Design],
+        designs: Option<&[f64]>,
     ) -> Followed {
         let (rows, width) = (inputs.len(), self.columns);
+        let changed: Vec<Design>;
+        let designs = if let Some(numbers) = designs {
+            let own = numbers.chunks(self.values.len());
+            changed = own.map(|one| self.word.design(&self.word.values(one))).collect();
+            &changed[..]
+        } else {
+            std::slice::from_ref(&self.nominal)
+        };
         let mut out = Followed {
             values: vec![f64::NAN; designs.len() * rows * width],
             sides: vec![f64::NAN; designs.len() * rows],

@@ -1,14 +1,13 @@
 """Function generation: RSSR designs whose output follows a wanted function of the input.
 
-Exact precision points come in closed form (`precision`); a whole range from a global search, whose starts are
-designs of least linear closure error for zeros of a Sobol sequence and plain Sobol designs, thousands at
-once, the best of which are fitted (`fitting`). All go through the ordinary analysis (`candidates`).
+Starts come by the thousand in closed form (`starts`). The best of them are solved as tasks of one want
+(`design.task`) and go through the ordinary analysis (`candidates`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,11 +26,15 @@ from sevenbar.design.candidates import (
     tally,
     transmits_best,
 )
-from sevenbar.design.closure import draft_of, outputs, scaled, transmissions
+from sevenbar.design.closure import NAMES, draft_of, outputs, scaled
 from sevenbar.design.course import SearchCourse
-from sevenbar.design.limits import INPUT_TURNS, Limits
-from sevenbar.design.synthesis.function.fitting import Estimate, Fit
-from sevenbar.design.synthesis.function.precision import designs_of, reflected, system, through
+from sevenbar.design.limits import Limits
+from sevenbar.design.synthesis.function.precision import reflected
+from sevenbar.design.synthesis.function.starts import ON_BRANCH, Start, chosen, starts
+from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
+from sevenbar.design.task.rssr import RssrLoop
+from sevenbar.design.task.solve import solved
+from sevenbar.design.task.task import DesignTask, FreeNumber, FunctionWant, Most
 from sevenbar.design.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.errors import MissingExtraError, RequestError
 from sevenbar.text.expression import function_of
@@ -41,20 +44,24 @@ from sevenbar.text.progress import Progress, silent
 #: What a design must keep to where nothing else is given.
 USUAL = Limits(transmission_lowest=math.radians(30))
 
-#: Designs of the global search: of each kind.
-SEARCHED = 4096
-
 #: How many of them are fitted for each design requested, and at least.
 FITTED_EACH, FITTED_LEAST = 4, 16
 
-#: Greatest error [rad] at precision points with which a start is on one branch.
-ON_BRANCH = 1e-6
+#: The dimensions that are lengths of links.
+LINKS = ("L1", "L2", "L3")
 
-#: Two starts are one where no unknown differs by more [parts of L3, rad].
-START_APART = 0.15
+#: Two starts ended in one place where no ratio and no zero differs by more.
+ENDS_APART = 1e-2
 
-#: Two fits ended in one place where no unknown differs by more.
-ENDS_APART = 1e-3
+#: Evaluations of the least squares a start begins with: in each of three rounds where anything must hold,
+#: and in the one where nothing must.
+LOOK, FREE_LOOK = 30, 120
+
+#: Designs, at least, after which no other start is tried, where as many as are wanted differ.
+ENOUGH = 5
+
+#: A start whose least squares end so many times above those of the worst design wanted is left.
+HOPELESS = 1.1
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -178,8 +185,7 @@ def _found(
 ) -> Synthesis:
     course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
     rows, zeros = starts(wish, seed)
-    fit = Fit(wish, limits)
-    chosen = _chosen(fit, rows, zeros, course.total - 1)
+    begun = chosen(wish, limits, rows, zeros, course.total - 1)
     course.step()
     kept: list[Candidate] = []
     refused: list[tuple[float, Refusal]] = []
@@ -190,11 +196,19 @@ def _found(
     try:
         # first the best of all; where starts end in one design, each with its own zero of the input
         for hold in (False, True):
-            for fitted in _refined(fit, chosen, hold=hold):
+            ends: list[Floats] = []
+            costs: list[float] = []
+            for start in begun:
+                if len(costs) >= max(ENOUGH, 2 * count) and len(distinct(kept, scale_free=True)) >= count:
+                    break
+                others = len(costs) >= count and not hold
+                hopeless = HOPELESS * sorted(costs)[count - 1] if others else math.inf
+                fitted = _fitted(wish, limits, start, ends, hopeless, hold=hold)
                 if fitted is not None:
-                    error, result = _judged(wish, *fitted, limits, tolerance)
+                    error, result = _judged(wish, fitted, limits, tolerance)
                     if isinstance(result, Candidate):
                         kept.append(result)
+                        costs.append(fitted.cost)
                     else:
                         refused.append((error, result))
                 course.step(transmits_best(kept) if by_transmission else least_error(kept))
@@ -202,7 +216,7 @@ def _found(
             if len(best) == count:
                 break
             if not hold:
-                course.longer(len(chosen))
+                course.longer(len(begun))
         course.end()
     except KeyboardInterrupt:
         if not kept:
@@ -216,101 +230,78 @@ def _found(
         tuple(renamed(best, wish.title)),
         refusals,
         len(rows),
-        len(chosen),
+        len(begun),
         seed,
         wish,
         unfinished,
     )
 
 
-def starts(wish: Wish, seed: int) -> tuple[Floats, Floats]:
-    """Designs (n, 6), L3 = 1, and zeros (n, 2) from which fits begin: exact ones, or of a global search."""
-    from scipy.stats import qmc
+@dataclass(frozen=True, eq=False)
+class _Fitted(Start):
+    """Where a start led, its greatest error [rad] before errors were equalised, and its least squares."""
 
-    if wish.exact:
-        return through(wish.point_input, wish.point_output, zeros=wish.zeros, samples=4 * SEARCHED, seed=seed)
-    draws = qmc.Sobol(7, seed=seed).random(SEARCHED)
-    # of least closure error for given zeros: (1) of `precision` is linear
-    zeros = draws[:, :2] * math.pi if wish.zeros is None else np.tile(wish.zeros, (1, 1))
-    sides, right = system(wish.input + zeros[:, :1], wish.output + zeros[:, 1:])
-    linear = designs_of(np.einsum("mij,mj->mi", np.linalg.pinv(sides), right), zeros)
-    # and any at all, the output's zero where the mean error is none
-    rows = np.ones((SEARCHED, 6))
-    rows[:, [0, 1, 5]] = 5.0 * draws[:, :3] - 2.5
-    rows[:, [2, 3]] = 6.0 ** (2 * draws[:, 3:5] - 1)
-    first = draws[:, 5] * math.tau if wish.zeros is None else np.full(SEARCHED, wish.zeros[0])
-    branch = (draws[:, 6] < 0.5).astype(int)
-    angles = np.where(
-        branch[:, None],
-        outputs(rows, first[:, None] + wish.input, 1),
-        outputs(rows, first[:, None] + wish.input, 0),
+    before: float = math.nan
+    cost: float = 0.0
+
+
+def _task(wish: Wish, limits: Limits, start: Start, *, hold: bool) -> DesignTask:
+    """The wish as a task about a start, within the sizes; with `hold` its zero of the input stays."""
+    inputs, outputs = wish.input, wish.output
+    if wish.function is not None:
+        inputs = np.union1d(wish.input, wish.point_input)
+        outputs = wish.function(inputs)
+    own = (float(start.zeros[0]) if hold else None, None)
+    want = FunctionWant(inputs, outputs, own if wish.zeros is None else wish.zeros)
+    low, high = limits.longest / limits.ratio, limits.longest
+    row = start.row * math.sqrt(low * high / (start.row[2:5].min() * np.abs(start.row).max()))
+    free = [FreeNumber(name, low if name in LINKS else -high, high) for name in NAMES]
+    points = tuple(int(i) for i in np.searchsorted(inputs, wish.point_input))
+    return DesignTask(
+        draft_of(row, wish.title),
+        tuple(free),
+        (want,),
+        (Most(0, 0.0, points),) if wish.exact else (),
+        goal="transmission" if wish.exact and wish.function is None else "minimax",
+        limits=limits,
     )
-    good = np.isfinite(angles).all(axis=1)
-    off = np.unwrap(angles[good] - wish.output, axis=1).mean(axis=1)
-    second = off if wish.zeros is None else np.full(len(off), wish.zeros[1])
-    both = np.concatenate([linear[0], rows[good]])
-    pairs = np.concatenate([linear[1], np.column_stack([first[good], second])])
-    return (both, pairs) if wish.zeros is not None else reflected(both, pairs)
 
 
-def _chosen(fit: Fit, rows: Floats, zeros: Floats, most: int) -> list[Estimate]:
-    """The most promising starts that differ: little error, limits nearly kept, all points on one branch."""
-    wish, limits = fit.wish, fit.limits
-    scored: list[tuple[float, Estimate]] = []
-    square = transmissions(rows, zeros[:, :1] + fit.used)
-    ratio = np.abs(rows).max(axis=1) / rows[:, 2:5].min(axis=1)
-    missed = np.maximum(
-        math.sin(limits.transmission_lowest) - np.sqrt(np.maximum(square.min(axis=1), 0.0)), 0.0
-    )
-    missed = missed + 0.1 * np.maximum(np.log(ratio / limits.ratio), 0.0)
-    if limits.motion_type in INPUT_TURNS:
-        turn = np.linspace(0.0, math.tau, 36, endpoint=False)
-        missed = missed + np.maximum(-transmissions(rows, turn).min(axis=1), 0.0)
-    for branch in (0, 1):
-        angles = outputs(rows, zeros[:, :1] + fit.input, branch)
-        off = short_way(angles - zeros[:, 1:] - fit.wanted)
-        at_points = np.abs(off[:, fit.points]).max(axis=1) if wish.exact else np.zeros(len(rows))
-        rms = np.sqrt((off[:, fit.range] ** 2).mean(axis=1)) + missed
-        good = np.isfinite(off).all(axis=1) & (square.min(axis=1) > 0) & (at_points < ON_BRANCH)
-        scored += [(float(rms[i]), Estimate(rows[i], zeros[i], branch)) for i in np.flatnonzero(good)]
-    scored.sort(key=lambda pair: pair[0])
-    chosen: list[Estimate] = []
-    seen = np.empty((0, 8))
-    for _, point in scored:
-        own = np.concatenate([np.arctan(point.row), np.cos(point.zeros)])
-        if not len(seen) or np.abs(seen - own).max(axis=1).min() > START_APART:
-            chosen.append(point)
-            seen = np.concatenate([seen, own[None]])
-        if len(chosen) == most:
-            break
-    return chosen
-
-
-def _refined(fit: Fit, chosen: list[Estimate], *, hold: bool) -> Iterator[tuple[Estimate, float] | None]:
-    """The designs that starts lead to, with their greatest errors before these were equalised [rad].
-
-    `None` for a start that leads where another did.
-    """
-    seen: list[Floats] = []
-    for start in chosen:
-        free = len(fit.packed(start)) - fit.wish.point_input.size - hold
-        if fit.wish.exact and (free <= 0 or fit.wish.function is None):
-            near = fit.exact(start)
-            yield (fit.exact(fit.equalised(near, hold=hold)) if free > 0 else near), math.nan
-            continue
-        near = start if hold else fit.least_squares(start)
-        own = fit.packed(near)
-        if any(np.abs(own - other).max() < ENDS_APART for other in seen):
-            yield None
-            continue
-        seen.append(own)
-        before = float(np.abs(fit.errors(own, near.branch)[0]).max())
-        found = fit.equalised(near, hold=hold)
-        yield fit.exact(found) if fit.wish.exact else found, math.nan if hold else before
+def _fitted(
+    wish: Wish, limits: Limits, start: Start, ends: list[Floats], hopeless: float, *, hold: bool
+) -> _Fitted | None:
+    """Where a start leads; `None` where that is `hopeless`, or one of the `ends`, which become more."""
+    own = start.zeros[2 if wish.zeros is not None else int(hold) :]
+    if wish.exact and len(NAMES) - 1 + own.size <= wish.point_input.size:
+        return _Fitted(start.row, start.zeros, start.branch)
+    model = TaskModel(_task(wish, limits, start, hold=hold))
+    assert isinstance(model.loop, RssrLoop)
+    inputs = model.wanted[0].stations.inputs(own)
+    poses = model.loop.on_branch(model.loop.start, inputs, start.branch)
+    seed, before, cost = TaskSeed(model.loop.start, (own,), poses, poses[0], 0.0), math.nan, 0.0
+    if model.task.goal == "minimax":
+        look = solved(model, seed, LOOK if model.holds or model.turns else FREE_LOOK, whole=False)
+        if look is None:
+            return None
+        seed, cost = look.seed, look.cost
+        end = np.concatenate([seed.values / seed.values[4], *seed.own])
+        if cost > hopeless or any(np.abs(end - other).max() < ENDS_APART for other in ends):
+            return None
+        ends.append(end)
+        near = TaskProblem(model, seed)
+        values = near.at(near.start)
+        if values is not None and not hold:
+            before = math.sqrt(inputs.size) * float(np.abs(values.left).max())
+    found = solved(model, seed, 0)
+    if found is None:
+        return None
+    zeros = start.zeros.copy()
+    zeros[zeros.size - own.size :] = found.seed.own[0]
+    return _Fitted(found.seed.values, zeros, start.branch, before, cost)
 
 
 def _judged(
-    wish: Wish, point: Estimate, before: float, limits: Limits, tolerance: float
+    wish: Wish, point: _Fitted, limits: Limits, tolerance: float
 ) -> tuple[float, Candidate | Refusal]:
     """A design as the ordinary analysis finds it, and its greatest error [rad], infinite without one."""
     rows, zeros = point.row[None], point.zeros[None]
@@ -333,7 +324,7 @@ def _judged(
         )
         return greatest, Refusal("error", detail)
     figures = {"input_zero_deg": math.degrees(zero[0]), "output_zero_deg": math.degrees(zero[1])}
-    if math.isfinite(before):
-        figures["error_greatest_least_squares_deg"] = math.degrees(before)
+    if math.isfinite(point.before):
+        figures["error_greatest_least_squares_deg"] = math.degrees(point.before)
     claim = Claim(zero[0] + dense, angles, errors, "deg", figures)
     return greatest, checked(draft_of(row, wish.title), claim, limits)

@@ -33,8 +33,7 @@ from sevenbar.design.candidates import (
 )
 from sevenbar.design.closure import draft_of, outputs, scaled, transmissions
 from sevenbar.design.course import SearchCourse
-from sevenbar.design.limits import Limits, size_room, turning_room
-from sevenbar.design.synthesis.function.fitting import FREE
+from sevenbar.design.limits import MARGIN, Limits, size_room, turning_room
 from sevenbar.design.synthesis.function.generation import USUAL, Synthesis, need_scipy
 from sevenbar.design.synthesis.function.precision import reflected
 from sevenbar.design.task.programs import MinimaxValues, lowered
@@ -57,8 +56,8 @@ END_SAMPLES = 181
 #: G and G_alpha, relative to the size squared, with which they have arrived.
 MOST_NEWTON, LAST_STEP, ARRIVED = 30, 1e-14, 1e-11
 
-#: Room that is left at each limit for what lies between the inputs looked at.
-MARGIN = 1e-4
+#: Columns of a row (6,) that are unknown: all but L3.
+FREE = (0, 1, 2, 3, 5)
 
 #: Gain of a squared sine that is not worth another step.
 WORTH = 1e-4
@@ -232,7 +231,7 @@ class _Wish:
             if there is None:
                 return None
             square, slopes = turning_room(moved)
-            size, size_slopes = size_room(moved, self.limits, scale_free=True)
+            size, size_slopes = size_room(moved, self.limits)
             off, off_slopes = self.missed(there, rising)
             return MinimaxValues(
                 1.0 - square,

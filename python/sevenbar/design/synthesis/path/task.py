@@ -16,13 +16,12 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.limits import Limits
-from sevenbar.design.task.contradictions import OPENINGS, opening_numbers
+from sevenbar.design.task.contradictions import OPENINGS, closed_poses
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.task import DesignTask, FreeNumber, PathWant, Placement
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.dimensions import Dimension
-from sevenbar.kinematics.factors import TurnAndSlide
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.linkage import Linkage
 
@@ -223,13 +222,14 @@ def _varied(draft: Draft, point: Point, vary: Sequence[str] | None) -> list[Dime
         raise RequestError(f"vary: no dimension may change; give some of {', '.join(names)}")
     chosen.sort()
     motion = draft.linkage.motion(OPENINGS)
-    openers = opening_numbers(TaskLoop(draft, [names[i] for i in chosen]), motion.circuits)
-    if openers is None:
+    loop = TaskLoop(draft, [names[i] for i in chosen])
+    q = closed_poses(loop, motion.circuits)
+    if q is None:
         raise RequestError(
             f"linkage: {motion.motion_type}, the loop moves nowhere as it is described, so it cannot be a "
             "start; give dimensions with which it moves"
         )
-    opening = [chosen[k] for k in openers]
+    opening = [chosen[k] for k in loop.openings(loop.start, q)]
     if vary is None:
         # the point's own coordinates open nothing
         chosen = [i for i in chosen if i not in opening]
@@ -350,12 +350,10 @@ def _reach(task: PathTask) -> float | None:
     letters = {step.letter for step in word.steps[: point.steps]}
     if task.draft.linkage.form == "drawn" or letters & {"P", "H"}:
         return None
-    most = {d.place: abs(value) for d, value in zip(numbers.dimensions, numbers.nominal, strict=True)}
+    places = {d.place: k for k, d in enumerate(numbers.dimensions)}
+    most = np.abs(numbers.nominal)
     for d, low, high in zip(task.dimensions, task.low, task.high, strict=True):
-        most[d.place] = max(abs(low), abs(high))
-    products = (*word.fixed[: point.steps], point.frame)
-    factors = [factor for product in products for factor in product.factors]
-    slides = [f.slide for f in factors if isinstance(f, TurnAndSlide) and f.slide in most]
-    place = point.place
-    coordinates = point.at if place is None else [most[*place, k] for k in range(3)]
-    return sum((most[slide] for slide in slides if slide is not None), math.hypot(*coordinates))
+        most[places[d.place]] = max(abs(low), abs(high))
+    slides = [k for product in (*word.fixed[: point.steps], point.frame) for k in product.slides]
+    coordinates = point.at if point.place is None else most[list(point.place)].tolist()
+    return float(most[slides].sum()) + math.hypot(*coordinates)

@@ -18,7 +18,7 @@ from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
 from sevenbar.design.task.file.musts import must_of
 from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form
-from sevenbar.design.task.file.units import length_span
+from sevenbar.design.task.file.units import amount
 from sevenbar.design.task.file.wants import want_of
 from sevenbar.design.task.task import DesignTask, FreeNumber, Most, Must, Want
 from sevenbar.errors import (
@@ -199,5 +199,6 @@ def _musts(linkage: Linkage, form: TaskForm, wants: list[Want], mistakes: _Mista
 
 
 def _limits(form: LimitsForm, linkage: Linkage) -> Limits:
-    size = None if form.size is None else length_span("size", form.size, linkage.length_unit)
-    return Limits(form.transmission, size, form.motion_type)
+    unit = linkage.length_unit
+    ends = form.size and (amount("size", form.size[0], unit), amount("size", form.size[1], unit))
+    return Limits(form.transmission, ends, form.motion_type)

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, ValidationError, WithJsonSchema
 
 from sevenbar.description.mistakes import FileForms
 from sevenbar.description.table_form import TableForm, key
-from sevenbar.description.values import Direction, Text, one_of, refuse
+from sevenbar.description.values import Angle, Direction, Length, Text, Vector, one_of, refuse
 from sevenbar.design.limits import MOTION_TYPES
 from sevenbar.design.task.file.values import (
     Flag,
@@ -22,11 +22,8 @@ from sevenbar.design.task.file.values import (
     Matrix,
     Numbers,
     Pairs,
-    Place,
     Places,
     Points,
-    Positive,
-    Radians,
     Samples,
     Span,
     Timing,
@@ -36,7 +33,7 @@ from sevenbar.design.task.file.values import (
     Weight,
     Zero,
 )
-from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.errors import DescriptionError, shown
 
 GOALS = ("least squares", "minimax")
 PLACEMENTS = ("fixed", "free", "free with scale")
@@ -44,12 +41,8 @@ PLACEMENTS = ("fixed", "free", "free with scale")
 _OF_INPUT = "degrees, or length"
 
 
-def _names(value: object) -> object:
-    return [value] if isinstance(value, str) else value
-
-
 def _words(value: object) -> tuple[str, ...]:
-    found = _names(value)
+    found = [value] if isinstance(value, str) else value
     if not isinstance(found, list) or not found or not all(isinstance(word, str) and word for word in found):
         raise refuse(f"{shown(value)} are no names; give some in quotes, as in ['A', 'P']")
     return tuple(found)
@@ -122,9 +115,9 @@ class PathForm(TableForm):
 class PoseForm(TableForm):
     """A pose of a link: the place of its frame's origin, and how the frame is turned."""
 
-    at: Annotated[Place, key("the place of the origin of the link's frame", "length")]
+    at: Annotated[Vector, key("the place of the origin of the link's frame", "length")]
     axis: Annotated[Direction, key("about which the frame is turned")] = (0.0, 0.0, 1.0)
-    angle: Annotated[Radians, key("by which it is turned about the axis", "degrees")] = 0.0
+    angle: Annotated[Angle, key("by which it is turned about the axis", "degrees")] = 0.0
     matrix: Annotated[Matrix | None, key("the rotation, row by row; in place of axis and angle")] = None
 
 
@@ -134,7 +127,7 @@ class PosesForm(TableForm):
     kind: Annotated[Literal["poses"], key("this want")]
     link: Annotated[Link, key("the link, counted from 1")]
     arm: Annotated[
-        Positive | None,
+        Length | None,
         key("the length at which a radian counts as much as it; left out, the linkage's size", "length"),
     ] = None
     frame: Annotated[
@@ -183,7 +176,7 @@ class StraightForm(TableForm):
     kind: Annotated[Literal["straight"], key("this want")]
     point: Annotated[Text, key("the name of the linkage's point")]
     range: Annotated[Span, key("of the input", _OF_INPUT)]
-    length: Annotated[Positive | None, key("how far it goes at least", "length")] = None
+    length: Annotated[Length | None, key("how far it goes at least", "length")] = None
     samples: Annotated[Samples, key("inputs of the range that count")] = 41
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
@@ -201,7 +194,7 @@ class ConeMust(TableForm):
 
     kind: Annotated[Literal["cone"], key("this must")]
     joint: Annotated[Text, key("a ball or a U joint")]
-    angle: Annotated[Radians, key("the greatest angle between seat and stud", "degrees")]
+    angle: Annotated[Angle, key("the greatest angle between seat and stud", "degrees")]
     seat: Annotated[
         Direction | None, key("on the link before the joint, as its points are written; left out, its rod")
     ] = None
@@ -214,8 +207,8 @@ class BoxMust(TableForm):
     """Points and joints stay in a box."""
 
     kind: Annotated[Literal["box"], key("this must")]
-    low: Annotated[Place, key("its least x, y, z in the report frame", "length")]
-    high: Annotated[Place, key("its greatest x, y, z", "length")]
+    low: Annotated[Vector, key("its least x, y, z in the report frame", "length")]
+    high: Annotated[Vector, key("its greatest x, y, z", "length")]
     names: Annotated[_Words | None, key("of points and joints; left out, all of them")] = None
 
 
@@ -224,7 +217,7 @@ class ApartMust(TableForm):
 
     kind: Annotated[Literal["apart"], key("this must")]
     links: Annotated[Links, key("their numbers, counted from 1")]
-    least: Annotated[Positive, key("the least distance of the two as rods between their joints", "length")]
+    least: Annotated[Length, key("the least distance of the two as rods between their joints", "length")]
 
 
 class FigureMustForm(TableForm):
@@ -257,7 +250,7 @@ class LimitsForm(TableForm):
     ] = None
     size: Annotated[Span | None, key("shortest link and longest dimension", "length")] = None
     transmission: Annotated[
-        Radians, key("the least transmission angle of an RSSR given by its dimensions, where it is used")
+        Angle, key("the least transmission angle of an RSSR given by its dimensions, where it is used")
     ] = 0.0
 
 
@@ -332,8 +325,4 @@ def check_form(raw: Mapping[str, Any], length_unit: str, source: str) -> TaskFor
         return TaskForm.model_validate(raw, context={"length_unit": length_unit, "angle_unit": "deg"})
     except ValidationError as error:
         problems = [TASK_FORMS.problem(detail) for detail in error.errors(include_url=False)]
-        raise DescriptionError(_once(problems), source) from None
-
-
-def _once(problems: list[Problem]) -> list[Problem]:
-    return list(dict.fromkeys(problems))
+        raise DescriptionError(list(dict.fromkeys(problems)), source) from None

@@ -21,11 +21,6 @@ def reading_span(key: str, ends: tuple[Given, Given], linkage: Linkage, column: 
     return reading(key, ends[0], linkage, column), reading(key, ends[1], linkage, column)
 
 
-def length_span(key: str, ends: tuple[Given, Given], unit: str) -> tuple[float, float]:
-    """Two lengths [unit]."""
-    return amount(key, ends[0], unit), amount(key, ends[1], unit)
-
-
 def figure_value(key: str, value: Given, linkage: Linkage, name: str) -> float:
     """A value of a measure in the unit that it is read in; a number stays as it is."""
     if not isinstance(value, str):

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
-from sevenbar.description.values import FORMULA, POSITIVE, Vector, number_for, refuse, three
+from sevenbar.description.values import POSITIVE, number_for, refuse, three
 from sevenbar.errors import shown
 from sevenbar.kinematics.rigid import flaw_of_rotation
 from sevenbar.text.expression import constant_of
@@ -49,17 +49,6 @@ def _positive(value: object, info: ValidationInfo, what: str) -> float:
     if not number > 0:
         raise refuse(f"{shown(value)} is not {what}; give a number > 0")
     return number
-
-
-def _length(value: object, info: ValidationInfo) -> float:
-    number = number_for(value, info, "length")
-    if not number > 0:
-        raise refuse(f"{shown(value)} is not a length; give a number > 0")
-    return number
-
-
-def _angle(value: object, info: ValidationInfo) -> float:
-    return math.radians(number_for(value, info, "angle"))
 
 
 def _flag(value: object) -> bool:
@@ -145,8 +134,6 @@ Span = Annotated[tuple[Given, Given], BeforeValidator(_span), _ENDS]
 Numbers = Annotated[tuple[float, float], BeforeValidator(_numbers), _ENDS]
 Weight = Annotated[float, BeforeValidator(partial(_positive, what="a weight")), POSITIVE]
 Unit = Annotated[float, BeforeValidator(partial(_positive, what="a unit")), POSITIVE]
-Positive = Annotated[float, BeforeValidator(_length), POSITIVE]
-Radians = Annotated[float, BeforeValidator(_angle), WithJsonSchema(FORMULA)]
 Flag = Annotated[bool, BeforeValidator(_flag), WithJsonSchema({"type": "boolean"})]
 Pairs = Annotated[tuple[tuple[Given, Given], ...], BeforeValidator(_pairs), _ROWS]
 Places = Annotated[tuple[tuple[float, float, float], ...], BeforeValidator(_places), _ROWS]
@@ -161,4 +148,3 @@ Link = Annotated[int, *_counted(1, 1000, "a link")]
 Samples = Annotated[int, *_counted(3, 1000, "a number of samples")]
 Points = Annotated[int, *_counted(3, 100, "a number of points")]
 WantNumber = Annotated[int, *_counted(1, 100, "a want")]
-Place = Vector

@@ -98,5 +98,8 @@ def figure_left(want: FigureWant, value: float, by: Floats) -> tuple[float, Floa
     if want.value == "small":
         return value / want.unit, by / want.unit
     if want.value == "great":
+        if value < want.unit:
+            # a gap may be negative: less is worse there, too
+            return 2 - value / want.unit, -by / want.unit
         return want.unit / value, -want.unit / value**2 * by
     return (value - want.value) / want.unit, by / want.unit
