@@ -19,7 +19,7 @@ SOURCES = ("crates", "python", "evidence")
 
 def circumstances(*packages: str) -> dict[str, Any]:
     """Date, commit (with a note where sources differ from it), machine, versions of these packages, too."""
-    from sevenbar.kinematics.batches import simd_level
+    from sevenbar.kinematics.solvers.batches import simd_level
 
     named = ("sevenbar", "numpy", *packages)
     return {

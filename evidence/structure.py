@@ -191,7 +191,9 @@ def folders(root: Path, graph: Graph, parent: Name) -> list[list[str]]:
 def upward(rooms: Graph, root: Path) -> list[tuple[Name, Name]]:
     """The arrows against the order of pyproject.toml, or between two rooms that it lists as independent."""
     linter = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]
-    layers = next(contract["layers"] for contract in linter["contracts"] if contract["type"] == "layers")
+    layers = next(
+        contract["layers"] for contract in linter["contracts"] if contract.get("containers") == ["sevenbar"]
+    )
     depth = {
         word.strip(" ()"): place for place, layer in enumerate(layers) for word in re.split("[|:]", layer)
     }

@@ -4,8 +4,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sevenbar.arrays import short_way
-from sevenbar.kinematics.poses import frames_of
-from sevenbar.kinematics.rigid import inverse, pose
+from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.loop.rigid import inverse, pose
 
 
 def random_turns(count, seed):

@@ -15,7 +15,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.tolerance.linear import linear_estimate
 from sevenbar.design.tolerance.samples import monte_carlo
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.general import AGREE
+from sevenbar.kinematics.solvers.general import AGREE
 
 #: A Bennett linkage whose rods are cut to 0.01 mm: rigid up to 1e-9, a double-crank up to 1e-5.
 ROUNDED = """format = 1

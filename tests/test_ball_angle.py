@@ -7,7 +7,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.ball_angle import ball_angle, line_angles
+from sevenbar.kinematics.ranges.ball_angle import ball_angle, line_angles
 
 LOOPS = ["rssr", "rscr", "rsur", "five_bar", "swash_plate", "rssp"]
 

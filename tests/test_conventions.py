@@ -12,8 +12,8 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.design.tolerance.sensitivities import NEAR
-from sevenbar.kinematics.circuit_values import SPIN_UNDEFINED, STATUSES
-from sevenbar.kinematics.joints import KINDS
+from sevenbar.kinematics.circuits.circuit_values import SPIN_UNDEFINED, STATUSES
+from sevenbar.kinematics.loop.joints import KINDS
 
 PAGE = (Path(__file__).parent.parent / "docs" / "conventions.md").read_text(encoding="utf-8")
 

@@ -11,7 +11,7 @@ import pytest
 
 from sevenbar import errors
 from sevenbar.commands import cli
-from sevenbar.kinematics.circuit_values import SPIN_UNDEFINED, STATUSES
+from sevenbar.kinematics.circuits.circuit_values import SPIN_UNDEFINED, STATUSES
 from sevenbar.reporting.facts import COMPLETE
 
 ROOT = Path(__file__).parent.parent

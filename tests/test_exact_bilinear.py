@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sevenbar.design.exact.bilinear import cubic_of, on_cubic, partner, residual, solutions
-from sevenbar.kinematics.rigid import about
+from sevenbar.kinematics.loop.rigid import about
 
 
 def spherical_forms(seed):

@@ -13,7 +13,7 @@ import sevenbar as sb
 from exact_tasks import coupler_poses, lines_of, random_planar, random_turns, worst_miss
 from sevenbar.design.exact import planar_poses, spherical_orientations
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.rigid import about, inverse, pose, zyx_turns
+from sevenbar.kinematics.loop.rigid import about, inverse, pose, zyx_turns
 
 FIVE = [(0, 0, 0), (10, 0, 0.3), (20, 0, 0.7), (25, 0, 1.2), (40, 0, 1.4)]
 

@@ -12,8 +12,8 @@ from sevenbar.design.exact.bennett import factor, norm_of, times
 from sevenbar.design.exact.given import poses_given
 from sevenbar.design.exact.lines import places
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.poses import frames_of
-from sevenbar.kinematics.rigid import about, inverse, pose, unit
+from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.loop.rigid import about, inverse, pose, unit
 
 
 def screw(axis, at, angle, slide):

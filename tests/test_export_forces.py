@@ -12,7 +12,7 @@ import adams_reader
 import sevenbar as sb
 from commands import sevenbar
 from sevenbar.export import export
-from sevenbar.kinematics.link_bodies import resolved
+from sevenbar.kinematics.dynamics.link_bodies import resolved
 from test_forces import random_body
 
 NAMES = ["rssr", "seven_r", "rscr", "rsur"]

@@ -11,9 +11,9 @@ from sevenbar.curves.least_cone import least_axis
 from sevenbar.curves.lipschitz import lowest
 from sevenbar.errors import RequestError
 from sevenbar.forces.cones import Bounds, least_greatest_size
-from sevenbar.kinematics.allowed import distances
-from sevenbar.kinematics.ball_angle import ball_angle
-from sevenbar.kinematics.rods import nearest_shares, rod_distance
+from sevenbar.kinematics.loop.rods import nearest_shares, rod_distance
+from sevenbar.kinematics.ranges.allowed import distances
+from sevenbar.kinematics.ranges.ball_angle import ball_angle
 from sevenbar.reporting.extents import extent_rows, span_rows
 
 

@@ -17,8 +17,8 @@ from sevenbar.description.gallery import names
 from sevenbar.drawing import output_curves, paths, plot, skeleton
 from sevenbar.drawing.animate import animate
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.poses import frames_of
-from sevenbar.kinematics.rigid import inverse, pose
+from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.loop.rigid import inverse, pose
 
 
 @pytest.fixture(scope="module")

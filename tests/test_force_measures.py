@@ -11,7 +11,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.forms import from_description
 from sevenbar.kinematics.measures import gradient, mass_gradient, measures_named, rows_of
-from sevenbar.kinematics.sensitivity import Numbers
+from sevenbar.kinematics.numbers.sensitivity import Numbers
 from test_forces import loaded_circuit
 
 

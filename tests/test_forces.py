@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 
 LOOPS = ("rssr", "seven_r", "rscr", "rsur", "rccc", "planar_4r", "bennett", "spherical_4r", "sarrus")
 

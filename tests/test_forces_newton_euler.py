@@ -14,7 +14,7 @@ from evidence.accuracy.reference_forces import Forces
 from evidence.fuzz.loaded_loops import SAMPLES, Loaded, loaded_loop
 from evidence.fuzz.loadings import random_loading
 from sevenbar.forces.loading import Loading
-from sevenbar.kinematics.rigid import half_turn
+from sevenbar.kinematics.loop.rigid import half_turn
 
 #: Torque, forces and moments agree to this part of the row's greatest while the condition of the whole system
 #: of equations is below `WELL`; above, the tolerance grows with it.

@@ -139,7 +139,7 @@ def test_an_rssr_with_a_rod_is_balanced_and_the_forces_with_the_counterweights_s
 
 @pytest.mark.parametrize("name", ["rssr", "rscr", "seven_r", "planar_4r", "rccc", "spherical_4r"])
 def test_a_unit_of_first_moment_and_mass_shakes_as_a_body_does(name):
-    from sevenbar.kinematics.balance import unit_shaking
+    from sevenbar.kinematics.dynamics.balance import unit_shaking
 
     linkage = sb.load(name)
     circuit = linkage.motion(24).circuits[0]

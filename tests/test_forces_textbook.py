@@ -11,7 +11,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.curves.cycle_series import filled
-from sevenbar.kinematics.free import course_of
+from sevenbar.kinematics.dynamics.free import course_of
 
 G = 9.81
 ROD = sb.Body(1.0, solid="rod")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.kinematics.four_bar import four_bar_of
+from sevenbar.kinematics.solvers.four_bar import four_bar_of
 from textbook_loops import four_bar_joints, linkage, moved, rotation, slider_crank_joints, spherical_joints
 
 NAMES = ("crank", "coupler_pin", "rocker_pin", "rocker")

@@ -28,7 +28,7 @@ from evidence.fuzz.random_loops import (
     planar_four_bar,
     spherical_four_bar,
 )
-from sevenbar.kinematics.general import GeneralLoop
+from sevenbar.kinematics.solvers.general import GeneralLoop
 from strategies import linkages, wrapped
 
 Joints = list[dict[str, Any]]

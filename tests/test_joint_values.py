@@ -5,7 +5,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.gallery import names
-from sevenbar.kinematics.poses import frames_of
+from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.simulation.joint_values import BodyStates, joint_values
 
 #: Joints of every kind one after another; the loop need not close, for nothing here closes it.

@@ -19,7 +19,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.drawing import fonts
 from sevenbar.drawing.style import styled
 from sevenbar.errors import MissingFontWarning, RequestError
-from sevenbar.kinematics.joints import KINDS
+from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.measures import MEASURES
 from sevenbar.reporting import facts, how_found
 from sevenbar.text import words

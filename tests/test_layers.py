@@ -22,14 +22,14 @@ CORE_IMPORTERS = {
     *(
         f"kinematics/{name}"
         for name in (
-            "batches",
-            "closed_form",
-            "forces",
-            "from_core",
-            "general",
-            "sensitivity",
-            "surveys",
-            "word",
+            "circuits/from_core",
+            "dynamics/forces",
+            "numbers/sensitivity",
+            "numbers/word",
+            "solvers/batches",
+            "solvers/closed_form",
+            "solvers/general",
+            "solvers/surveys",
         )
     ),
 }

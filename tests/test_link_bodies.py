@@ -8,7 +8,7 @@ from sevenbar.errors import RequestError
 from sevenbar.export.layout import arrange
 from sevenbar.export.mass import masses
 from sevenbar.export.pose import take
-from sevenbar.kinematics.link_bodies import joint_places, resolved
+from sevenbar.kinematics.dynamics.link_bodies import joint_places, resolved
 
 LOOPS = ("rssr", "seven_r", "rscr", "rsur", "bennett", "planar_4r")
 

@@ -12,9 +12,9 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.export import export
-from sevenbar.kinematics import general
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.long_circuit import BY_ROW, LONG, LongCircuit
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.long_circuit import BY_ROW, LONG, LongCircuit
+from sevenbar.kinematics.solvers import general
 from sevenbar.reporting import folder, report
 
 #: Loops of each way to a row: round, to and fro, backwards, with balls, on slides, over dead centres.

@@ -16,7 +16,7 @@ from commands import mistake, sevenbar
 from evidence.fuzz.random_linkages import Dimensions
 from sevenbar.description.gallery import text
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.geometry import following_coupler
+from sevenbar.kinematics.loop.geometry import following_coupler
 from sevenbar.measuring.calibrate import calibrate
 from sevenbar.measuring.compare import compare, ends_of
 from sevenbar.measuring.figures import calibration_figure

@@ -15,7 +15,7 @@ from rich.console import Console
 import sevenbar as sb
 from commands import sevenbar
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.general import AGREE
+from sevenbar.kinematics.solvers.general import AGREE
 from sevenbar.reporting.report import as_dict, text
 
 ALPHA, BETA = math.radians(30), math.radians(100)

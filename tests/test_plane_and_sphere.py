@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.kinematics.plane_and_sphere import SAME
+from sevenbar.kinematics.solvers.plane_and_sphere import SAME
 from textbook_loops import (
     four_bar_joints,
     linkage,

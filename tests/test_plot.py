@@ -22,7 +22,7 @@ from sevenbar.drawing import animate as animation
 from sevenbar.drawing import output_curves, plot, skeleton
 from sevenbar.drawing.animate import animate
 from sevenbar.errors import MissingExtraError, OutputError, RequestError
-from sevenbar.kinematics.poses import walk
+from sevenbar.kinematics.circuits.poses import walk
 
 AXES = Path(__file__).parents[1] / "examples" / "rssr_axes.toml"
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from sevenbar.kinematics import rigid
+from sevenbar.kinematics.loop import rigid
 
 RANDOM = Rotation.random(60, 5)
 #: Turns by nothing, by half a turn, and by very little less, about axes of all kinds.

@@ -11,7 +11,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.batches import loop_motions
+from sevenbar.kinematics.solvers.batches import loop_motions
 from sevenbar.reporting import report
 from sevenbar.reporting.how_found import how_found
 

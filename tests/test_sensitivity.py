@@ -14,7 +14,7 @@ from evidence.accuracy.precise_loops import PreciseLoop
 from evidence.accuracy.reference_loops import Loop
 from evidence.fuzz.random_linkages import Dimensions
 from evidence.fuzz.random_loops import general, prismatic
-from sevenbar.kinematics.sensitivity import Numbers
+from sevenbar.kinematics.numbers.sensitivity import Numbers
 
 #: Change of a number in the differences in many digits; their error is its square.
 STEP = mp.mpf(10) ** -9

@@ -19,7 +19,7 @@ from evidence.accuracy.reference_loops import Loop
 from sevenbar.description.draft import Draft
 from sevenbar.description.gallery import text
 from sevenbar.errors import SevenbarError
-from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.numbers.dimensions import Dimension
 from sevenbar.studio.state.session import Session
 from studio_sessions import distance
 

@@ -15,7 +15,7 @@ import sevenbar as sb
 from sevenbar.description.gallery import names
 from sevenbar.drawing import output_curves
 from sevenbar.drawing.style import CIRCUIT_COLOURS
-from sevenbar.kinematics.poses import walk
+from sevenbar.kinematics.circuits.poses import walk
 from sevenbar.studio.state.view import View, views_of
 from sevenbar.studio.svg.curves import panels
 from sevenbar.studio.svg.quantities import quantities

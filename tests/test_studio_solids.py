@@ -15,7 +15,7 @@ from sevenbar.description import gallery
 from sevenbar.drawing import skeleton
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import INPUT, OUTPUT
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.studio.pictures.poses import stretched, turns
 from sevenbar.studio.pictures.shapes import mesh
 from sevenbar.studio.pictures.solids import SolidPlan, plan, poses, rgb

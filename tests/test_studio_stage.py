@@ -15,7 +15,7 @@ import sevenbar as sb
 from sevenbar.description import gallery
 from sevenbar.drawing import skeleton
 from sevenbar.drawing.skeleton import Skeleton
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.studio.pictures.stage import FIELD, Stage
 
 

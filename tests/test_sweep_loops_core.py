@@ -14,7 +14,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar import _core
-from sevenbar.kinematics.general import expanded
+from sevenbar.kinematics.solvers.general import expanded
 
 Floats = np.ndarray
 

@@ -17,7 +17,7 @@ from sevenbar.design.closure import (
     transmissions,
 )
 from sevenbar.design.limits import Limits, size_room
-from sevenbar.kinematics.sensitivity import Numbers
+from sevenbar.kinematics.numbers.sensitivity import Numbers
 
 DESIGNS = np.array(
     [

@@ -22,7 +22,7 @@ import sevenbar as sb
 from evidence.fuzz.random_linkages import assembled_square
 from evidence.fuzz.random_loops import general
 from sevenbar import _core
-from sevenbar.kinematics.batches import loop_motions
+from sevenbar.kinematics.solvers.batches import loop_motions
 
 TESTS = Path(__file__).parent
 #: Where a process of its own finds what the tests share.

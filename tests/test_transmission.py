@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.kinematics.poses import frames_of
+from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.kinematics.transmission import coupling_of
 from textbook_loops import (
     four_bar_joints,

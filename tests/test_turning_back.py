@@ -14,10 +14,10 @@ from sevenbar.errors import RequestError
 from sevenbar.export import pose
 from sevenbar.export.adams import write_cmd
 from sevenbar.export.layout import arrange
-from sevenbar.kinematics.batches import loop_motions
-from sevenbar.kinematics.law import Law
+from sevenbar.kinematics.circuits.poses import walk
+from sevenbar.kinematics.loop.law import Law
 from sevenbar.kinematics.measures import MEASURES, rows_of
-from sevenbar.kinematics.poses import walk
+from sevenbar.kinematics.solvers.batches import loop_motions
 from sevenbar.reporting import report
 from sevenbar.reporting.summary import summary
 from sevenbar.simulation.course import course

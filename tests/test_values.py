@@ -18,8 +18,8 @@ from sevenbar.description import gallery
 from sevenbar.description.draft import Draft
 from sevenbar.design.wish import wish_of_function
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.law import Law
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.loop.law import Law
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
 from sevenbar.text.expression import function_of
 

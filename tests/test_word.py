@@ -11,9 +11,9 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names
 from sevenbar.errors import DescriptionError
-from sevenbar.kinematics.rigid import inverse, pose, unit
-from sevenbar.kinematics.sensitivity import Numbers
-from sevenbar.kinematics.word import word_of
+from sevenbar.kinematics.loop.rigid import inverse, pose, unit
+from sevenbar.kinematics.numbers.sensitivity import Numbers
+from sevenbar.kinematics.numbers.word import word_of
 
 
 def rssr(rng):

@@ -48,7 +48,9 @@ def _of_core() -> Iterator[str]:
 def _layers() -> list[str]:
     """Folders and modules of the package's root, upper ones first, in the order that import-linter holds."""
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    (contract,) = (c for c in settings["tool"]["importlinter"]["contracts"] if c["type"] == "layers")
+    (contract,) = (
+        c for c in settings["tool"]["importlinter"]["contracts"] if c.get("containers") == ["sevenbar"]
+    )
     return [name.strip() for layer in contract["layers"] for name in layer.split("|")]
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design import exact
 from sevenbar.design.exact.answers import ExactAnswers
-from sevenbar.kinematics.rigid import pose, rotation_of
+from sevenbar.kinematics.loop.rigid import pose, rotation_of
 
 #: What books and papers say of each task: the number over the complex numbers, and the real ones.
 SAID = {

@@ -11,7 +11,7 @@ import numpy as np
 import sevenbar as sb
 from sevenbar.arrays import Floats
 from sevenbar.design.points import least_acceleration_point
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 
 LINK, SIDE = 4, 200.0
 

@@ -14,7 +14,7 @@ from evidence.design.tasks import tasks
 from sevenbar.design.task import DesignTask, FunctionWant, PathWant, PoseWant
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.search import DesignsFound, designed
-from sevenbar.kinematics.law import Law
+from sevenbar.kinematics.loop.law import Law
 
 #: A known answer is found where no error is greater [rad, or relative to size, extent of the path, arm].
 FOUND = 1e-9

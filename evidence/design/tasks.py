@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.description.draft import Draft
 from sevenbar.design.task import DesignTask, FreeNumber, FunctionWant, PathWant, PoseWant
 from sevenbar.errors import SevenbarError
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 
 #: By how much a start is off, of each number.
 SHARES = (0.05, 0.2)

@@ -8,7 +8,15 @@ import sevenbar as sb
 from evidence.fuzz.checks import Broken, hold
 from evidence.fuzz.rssrs import Floats, description
 from sevenbar.description.forms import from_description
-from sevenbar.kinematics.batches import CODES, INVALID, WORDS, Motions, loop_motions, rssr_motions, rssr_types
+from sevenbar.kinematics.solvers.batches import (
+    CODES,
+    INVALID,
+    WORDS,
+    Motions,
+    loop_motions,
+    rssr_motions,
+    rssr_types,
+)
 
 #: One linkage in so many is held against its own motion.
 RSSRS_CROSSED, LOOPS_CROSSED = 200, 25

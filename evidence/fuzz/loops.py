@@ -9,7 +9,7 @@ import numpy as np
 
 from evidence.fuzz import random_loops
 from sevenbar.description.gallery import names, text
-from sevenbar.kinematics.joints import KINDS
+from sevenbar.kinematics.loop.joints import KINDS
 
 Description = dict[str, Any]
 Draw = Callable[[np.random.Generator], Description]

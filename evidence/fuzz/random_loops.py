@@ -16,7 +16,7 @@ import numpy as np
 
 import sevenbar as sb
 from evidence.fuzz.random_linkages import random_rotation
-from sevenbar.kinematics.joints import KINDS
+from sevenbar.kinematics.loop.joints import KINDS
 
 
 @dataclass(frozen=True, eq=False)

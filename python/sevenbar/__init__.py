@@ -17,15 +17,15 @@ from sevenbar import errors
 from sevenbar._core import __version__
 from sevenbar.description.files import load, loads
 from sevenbar.description.forms import from_axes, from_dh, rssr
-from sevenbar.kinematics.circuit_values import DeadCentre, Extremes, Trace
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.geometry import Drive, Joint, Point
-from sevenbar.kinematics.grashof import FourBar
-from sevenbar.kinematics.law import Law
-from sevenbar.kinematics.link_bodies import DRAWN_IN
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Trace
+from sevenbar.kinematics.circuits.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
+from sevenbar.kinematics.dynamics.link_bodies import DRAWN_IN
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
-from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere
+from sevenbar.kinematics.loop.geometry import Drive, Joint, Point
+from sevenbar.kinematics.loop.grashof import FourBar
+from sevenbar.kinematics.loop.law import Law
+from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere
 from sevenbar.text.printing import SAID_IN
 from sevenbar.text.words import language
 
@@ -51,9 +51,9 @@ if TYPE_CHECKING:
     from sevenbar.forces.free_motion.equilibria import Equilibrium
     from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Load, Loading, Spring
-    from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
-    from sevenbar.kinematics.screw_axes import ScrewAxes
-    from sevenbar.kinematics.stops import Cone
+    from sevenbar.kinematics.circuits.instant_centres import InstantCentre, InstantCentres
+    from sevenbar.kinematics.loop.screw_axes import ScrewAxes
+    from sevenbar.kinematics.loop.stops import Cone
 
 __all__ = [
     "Body",
@@ -126,15 +126,15 @@ _ON_DEMAND = {
 #: Names that many programs do without, and the modules that have them.
 _NAMES_ON_DEMAND = {
     "Body": "sevenbar.forces.bodies",
-    "Cone": "sevenbar.kinematics.stops",
+    "Cone": "sevenbar.kinematics.loop.stops",
     "Equilibrium": "sevenbar.forces.free_motion.equilibria",
     "FreeMotion": "sevenbar.forces.free_motion.result",
-    "InstantCentre": "sevenbar.kinematics.instant_centres",
-    "InstantCentres": "sevenbar.kinematics.instant_centres",
+    "InstantCentre": "sevenbar.kinematics.circuits.instant_centres",
+    "InstantCentres": "sevenbar.kinematics.circuits.instant_centres",
     "Load": "sevenbar.forces.loading",
     "Loading": "sevenbar.forces.loading",
     "PartAxis": "sevenbar.description.step_axes",
-    "ScrewAxes": "sevenbar.kinematics.screw_axes",
+    "ScrewAxes": "sevenbar.kinematics.loop.screw_axes",
     "Spring": "sevenbar.forces.loading",
     "axes_of_step": "sevenbar.description.step_axes",
     "from_table": "sevenbar.description.tables",

@@ -13,7 +13,7 @@ from evidence.benches.outcome import Cell, Outcome, Table
 from evidence.benches.peers import AbsentError, reason_of
 from evidence.benches.setting import Setting
 from sevenbar.forces.bodies import Body
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 
 TITLE = "The 7R paper's linkage: forces"
 ABOUT = """\

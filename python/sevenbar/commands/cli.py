@@ -53,8 +53,8 @@ from sevenbar.commands.options import (
 )
 from sevenbar.commands.progress import STOPPED, progress_bar
 from sevenbar.errors import AngleUnitWarning, MissingFontWarning, RequestError, SevenbarError, shown
+from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.kinematics.linkage import sample_count
-from sevenbar.kinematics.motion import chosen_circuit
 from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.ranges import Place

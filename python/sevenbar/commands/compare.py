@@ -25,7 +25,7 @@ from sevenbar.commands.options import (
 )
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.joint_text import joint_value
+from sevenbar.kinematics.loop.joint_text import joint_value
 
 if TYPE_CHECKING:
     from sevenbar.measuring.measured import Ends, Measured, MeasuredExtremes

@@ -27,8 +27,8 @@ from sevenbar.commands.options import (
     words,
 )
 from sevenbar.errors import RequestError, no_joint, shown
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import chosen_circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.text.units import split_quantity
 
 

@@ -21,7 +21,7 @@ from sevenbar.commands.options import (
     figure_formats,
 )
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.motion import chosen_circuit
+from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.amounts import amount_in
 

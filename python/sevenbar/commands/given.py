@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import sevenbar as sb
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.linkage import closure_tolerance
+from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.expression import constant_of
 from sevenbar.text.ranges import Place, split_list, split_range, three_numbers, with_common_unit
@@ -17,7 +17,7 @@ from sevenbar.text.units import amount, examples_of, sizes_of
 if TYPE_CHECKING:
     from sevenbar.description.draft import Draft
     from sevenbar.design.limits import Limits
-    from sevenbar.kinematics.law import Law
+    from sevenbar.kinematics.loop.law import Law
     from sevenbar.reporting.figures import FigureLook
 
 

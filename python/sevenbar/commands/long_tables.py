@@ -8,8 +8,8 @@ from io import StringIO
 import sevenbar as sb
 from sevenbar.commands.consent import Ahead
 from sevenbar.commands.progress import progress_bar
+from sevenbar.kinematics.circuits.long_circuit import LONG
 from sevenbar.kinematics.linkage import sample_count
-from sevenbar.kinematics.long_circuit import LONG
 from sevenbar.reporting.folder import write_csv
 
 #: Samples of the motion whose rows are taken for those of the longer one.

@@ -31,7 +31,7 @@ from sevenbar.text.units import amount
 if TYPE_CHECKING:
     from sevenbar.design.points.least import LeastPoint, Rate
     from sevenbar.design.points.nearest import NearestPath
-    from sevenbar.kinematics.motion import Motion
+    from sevenbar.kinematics.circuits.motion import Motion
 
 ChosenCircuit = Annotated[int, typer.Option(help="The circuit whose cycle counts.")]
 ChosenBranch = Annotated[int, typer.Option(help="The pass of a circuit that rocks; it needs a law.")]

@@ -15,7 +15,7 @@ from sevenbar.description.written import (
     names_ground,
 )
 from sevenbar.errors import Problem, shown
-from sevenbar.kinematics.joints import JOINT_KINDS, KINDS, ROW_KINDS
+from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, ROW_KINDS
 
 FEWEST_JOINTS, MOST_JOINTS = 2, 12
 

@@ -15,8 +15,8 @@ import numpy as np
 from sevenbar.arrays import finite_number
 from sevenbar.description.forms import from_description
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.joint_text import check_own_unit
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.text.amounts import value_of
 from sevenbar.text.expression import cosd, sind
 

@@ -16,13 +16,13 @@ from sevenbar.description.loads import loading_of
 from sevenbar.description.proportions import disproportions
 from sevenbar.description.stop_values import stops_of
 from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
-from sevenbar.kinematics.dimensions import Place
-from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
-from sevenbar.kinematics.joint_text import check_own_unit
-from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.rigid import unit
-from sevenbar.kinematics.word import Slots, word_of
+from sevenbar.kinematics.loop.geometry import Drive, Form, Joint, Point
+from sevenbar.kinematics.loop.joint_text import check_own_unit
+from sevenbar.kinematics.loop.joints import KINDS
+from sevenbar.kinematics.loop.rigid import unit
+from sevenbar.kinematics.numbers.dimensions import Place
+from sevenbar.kinematics.numbers.word import Slots, word_of
 from sevenbar.text.grid import listed
 from sevenbar.text.table import name_and_unit
 from sevenbar.text.units import LENGTHS, measured_unit

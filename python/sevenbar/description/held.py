@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sevenbar.description.draft import Draft
-from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.numbers.dimensions import Dimension
 from sevenbar.text.words import say
 
 #: Dimensions that a line names; the others are counted.

@@ -11,8 +11,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, ends_here
-from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
+from sevenbar.kinematics.loop.law import Law
 from sevenbar.text.table import TextTable, read_table
 
 #: Degree of the spline: its third derivative, the jerk, is still smooth.

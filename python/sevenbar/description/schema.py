@@ -48,8 +48,8 @@ from sevenbar.description.written import (
     meant_kind,
 )
 from sevenbar.errors import DescriptionError, Problem, shown
-from sevenbar.kinematics.geometry import following_coupler
-from sevenbar.kinematics.joints import JOINT_KINDS, KINDS, ROW_KINDS, letters_with
+from sevenbar.kinematics.loop.geometry import following_coupler
+from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, ROW_KINDS, letters_with
 from sevenbar.text.units import ANGLES, LENGTHS, MASSES
 
 

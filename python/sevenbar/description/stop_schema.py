@@ -21,7 +21,7 @@ from sevenbar.description.values import (
 )
 from sevenbar.description.written import Written, entries, named_column
 from sevenbar.errors import Problem, RequestError, shown
-from sevenbar.kinematics.stops import Cone, check_range
+from sevenbar.kinematics.loop.stops import Cone, check_range
 from sevenbar.text.units import ANGLES
 
 

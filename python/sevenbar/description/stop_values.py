@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from sevenbar.kinematics.stops import Cone, Stops
+from sevenbar.kinematics.loop.stops import Cone, Stops
 
 if TYPE_CHECKING:
     from sevenbar.description.stop_schema import RodForm, StopForm

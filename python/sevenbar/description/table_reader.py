@@ -14,8 +14,8 @@ from sevenbar.description.table_columns import DIMENSIONS, PLACES, ROWS
 from sevenbar.description.toml_text import toml_text
 from sevenbar.description.written import meant_kind, names_ground
 from sevenbar.errors import DescriptionError, Problem, RequestError, shown
-from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.text.amounts import Kind
 from sevenbar.text.grid import CellTable, grid_of_frame
 from sevenbar.text.table import number

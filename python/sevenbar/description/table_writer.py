@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sevenbar.description.table_columns import DIMENSIONS
-from sevenbar.kinematics.dimensions import description_of
-from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.numbers.dimensions import description_of
 
 #: A cell: `None` is empty.
 Cell = str | float | int | None

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sevenbar.errors import Problem, no_joint, shown
-from sevenbar.kinematics.joints import KINDS, column_names
+from sevenbar.kinematics.loop.joints import KINDS, column_names
 
 #: Words that people use for the ground where a joint's kind should stand.
 GROUND_WORDS = ("g", "ground", "fixed", "frame", "base")

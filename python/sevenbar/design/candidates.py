@@ -15,9 +15,9 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.closure import row_of, transmission_slopes, transmissions
 from sevenbar.design.limits import Limits
 from sevenbar.errors import DescriptionError, RequestError
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed, brief, lines, text_of
 
 #: Inputs of a turn with which a design is checked: rows stand half a degree apart.

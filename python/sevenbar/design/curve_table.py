@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.table import TextTable, plain_name, read_table
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sevenbar.errors import NotCoveredError
-from sevenbar.kinematics.motion import Solvable
+from sevenbar.kinematics.circuits.motion import Solvable
 
 
 def refuse_idle_link(linkage: Solvable, link: int, what: str) -> None:

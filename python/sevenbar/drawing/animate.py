@@ -30,9 +30,9 @@ from sevenbar.drawing.space import ViewAxes
 from sevenbar.drawing.style import INK, checked_size, letters, page_size, stroke, styled
 from sevenbar.drawing.view import Asked, Projection, view_of
 from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import Motion, chosen_circuit
-from sevenbar.kinematics.poses import Walk, walk
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
+from sevenbar.kinematics.circuits.poses import Walk, walk
 from sevenbar.text.progress import Progress, silent
 from sevenbar.text.words import say
 

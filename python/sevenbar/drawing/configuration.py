@@ -30,10 +30,10 @@ from sevenbar.drawing.space import ViewAxes
 from sevenbar.drawing.style import letters, page_size, styled
 from sevenbar.drawing.view import Asked, view_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import Modes, Motion, chosen_circuit
-from sevenbar.kinematics.poses import frames_of, walk
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Modes, Motion, chosen_circuit
+from sevenbar.kinematics.circuits.poses import frames_of, walk
+from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.words import say
 
 #: Width [inch] of a picture, of one mode in a row of two, and in a row of more.

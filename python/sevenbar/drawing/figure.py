@@ -19,8 +19,8 @@ from sevenbar.drawing.names import quantity_label, short, shown_name
 from sevenbar.drawing.space import measuring
 from sevenbar.drawing.style import STYLE, page_size
 from sevenbar.errors import OutputError, RequestError, shown
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.words import say
 
 #: What a figure can be written as.

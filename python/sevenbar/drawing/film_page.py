@@ -17,9 +17,9 @@ from sevenbar.drawing.scene import SAME, link_colours, paths
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import CIRCUIT_COLOURS, GROUND, PATH
 from sevenbar.drawing.view import Projection
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import Motion
-from sevenbar.kinematics.poses import walk
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.circuits.poses import walk
 from sevenbar.text.words import say, spoken
 
 #: Digits that places [share of the extent] and values keep.

@@ -18,9 +18,9 @@ from sevenbar.drawing.panels import panels_across, panels_of
 from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, stroke, styled
 from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
 from sevenbar.errors import RequestError, no_joint
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import Motion, chosen_circuit
-from sevenbar.kinematics.poses import along, walk
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
+from sevenbar.kinematics.circuits.poses import along, walk
 from sevenbar.text.words import say
 
 #: Circuits whose curves lie on each other: how much wider each is than the one on it.

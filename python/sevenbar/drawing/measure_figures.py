@@ -28,9 +28,9 @@ from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, page_siz
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.drawing.view import Asked, view_of
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import Motion, chosen_circuit
-from sevenbar.kinematics.poses import walk
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
+from sevenbar.kinematics.circuits.poses import walk
 from sevenbar.text.words import say
 
 #: The least transmission angle [deg] that textbooks recommend.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.units import LENGTHS, length_sizes
 from sevenbar.text.words import say
 

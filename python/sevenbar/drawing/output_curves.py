@@ -28,10 +28,10 @@ from sevenbar.drawing.panels import coinciding, panels_of
 from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, stroke, styled
 from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuit_values import Extremes
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import Motion, chosen_circuit
-from sevenbar.kinematics.poses import walk
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Extremes
+from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
+from sevenbar.kinematics.circuits.poses import walk
 from sevenbar.text.words import say
 
 #: Marks in the curves' legend.

@@ -46,10 +46,10 @@ from sevenbar.drawing.style import (
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.drawing.view import Asked, Projection, view_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuit_values import Trace
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import Motion, chosen_circuit
-from sevenbar.kinematics.poses import walk
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Trace
+from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
+from sevenbar.kinematics.circuits.poses import walk
 from sevenbar.text.words import say
 
 #: Arrows along a path, and the length of the longest as a share of the path's extent.

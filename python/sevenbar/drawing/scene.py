@@ -15,9 +15,9 @@ from sevenbar.drawing.skeleton import DrawnSphere, Skeleton
 from sevenbar.drawing.space import Box, ViewAxes, box_round, draw_axes, draw_frame
 from sevenbar.drawing.style import COUPLER, GROUND, INPUT, JOINT, OUTPUT, PATH, POINT_COLOURS, paler, stroke
 from sevenbar.drawing.view import Projection, wide_view
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.joints import KINDS
-from sevenbar.kinematics.rigid import perpendicular, unit
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.joints import KINDS
+from sevenbar.kinematics.loop.rigid import perpendicular, unit
 from sevenbar.text.words import say
 
 #: A path shorter than this share of the linkage's extent is none.

@@ -12,11 +12,11 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.names import joint_label, short
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.geometry import Loop, Point
-from sevenbar.kinematics.motion import Motion
-from sevenbar.kinematics.plane_and_sphere import sphere_of
-from sevenbar.kinematics.poses import at_row, frames_along, frames_of, joint_frames, walk
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.circuits.poses import at_row, frames_along, frames_of, joint_frames, walk
+from sevenbar.kinematics.loop.geometry import Loop, Point
+from sevenbar.kinematics.solvers.plane_and_sphere import sphere_of
 
 #: Half the length of a joint's drawn axis and of its cylinder, and how far a plate and a rail reach past what
 #: slides on them, as shares of the linkage's extent.

@@ -12,9 +12,9 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.asked import asked_view
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.plane_and_sphere import plane_of
-from sevenbar.kinematics.rigid import cross
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.rigid import cross
+from sevenbar.kinematics.solvers.plane_and_sphere import plane_of
 
 #: A view as it is requested: a name, or elevation and azimuth [deg].
 Asked = str | Sequence[float] | None

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.export.pose import take
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Motion
 from sevenbar.reporting.folder import check_targets, fill_folder
 from sevenbar.text.progress import Progress, silent
 

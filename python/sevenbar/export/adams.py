@@ -17,9 +17,9 @@ from sevenbar.export.adams_forces import AdamsForces, file_scale, number
 from sevenbar.export.mass import MASSLESS, BodyMass, has_masses, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
-from sevenbar.kinematics.joints import KINDS, Step
-from sevenbar.kinematics.rigid import about, half_turn, inverse, placed
-from sevenbar.kinematics.rigid import pose as matrix
+from sevenbar.kinematics.loop.joints import KINDS, Step
+from sevenbar.kinematics.loop.rigid import about, half_turn, inverse, placed
+from sevenbar.kinematics.loop.rigid import pose as matrix
 
 #: The names ADAMS has for length units; micrometres are written in millimetres.
 UNITS = {"mm": "mm", "cm": "cm", "m": "meter", "in": "inch", "ft": "foot", "um": "mm"}

@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.export.left_out import left_out
 from sevenbar.export.pose import Pose
 from sevenbar.forces.loading import Load, Spring
-from sevenbar.kinematics.joints import Step
+from sevenbar.kinematics.loop.joints import Step
 from sevenbar.text.units import LENGTHS
 
 

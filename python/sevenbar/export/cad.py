@@ -11,7 +11,7 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, OutputError
 from sevenbar.export.libraries import installed
 from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid
-from sevenbar.kinematics.rigid import perpendicular
+from sevenbar.kinematics.loop.rigid import perpendicular
 from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS
 

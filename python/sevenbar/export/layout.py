@@ -14,7 +14,7 @@ import numpy as np
 from sevenbar.arrays import Floats, Integers
 from sevenbar.export.parts import Assembly, Ball, Bar, Seat, assemble, hub_height
 from sevenbar.export.pose import Pose
-from sevenbar.kinematics.joints import Shape
+from sevenbar.kinematics.loop.joints import Shape
 
 #: Sweeps over all joints; most layouts no longer change after two.
 SWEEPS = 4

@@ -10,8 +10,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.link_bodies import resolved
+from sevenbar.kinematics.dynamics.link_bodies import resolved
+from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.simulation.acting import in_links
 from sevenbar.simulation.prototype import GYRATION
 from sevenbar.text.units import LENGTHS

@@ -9,7 +9,7 @@ import numpy as np
 
 from sevenbar.errors import RequestError
 from sevenbar.export.parts import Assembly
-from sevenbar.kinematics.law import Law
+from sevenbar.kinematics.loop.law import Law
 from sevenbar.simulation.mjcf import mjcf
 from sevenbar.simulation.prototype import prototype
 

@@ -18,9 +18,9 @@ from sevenbar.drawing.scene import link_colours
 from sevenbar.drawing.skeleton import CYLINDER
 from sevenbar.drawing.style import GROUND, JOINT
 from sevenbar.export.pose import Pose, extent_of, shortest_link
-from sevenbar.kinematics.rigid import inverse, perpendicular
-from sevenbar.kinematics.rigid import pose as matrix
-from sevenbar.kinematics.rigid import unit as unit_vector
+from sevenbar.kinematics.loop.rigid import inverse, perpendicular
+from sevenbar.kinematics.loop.rigid import pose as matrix
+from sevenbar.kinematics.loop.rigid import unit as unit_vector
 
 #: Sizes as shares of the height of a hub. A hole is wider than its shaft by what a fit would never be, so
 #: that no two parts touch.

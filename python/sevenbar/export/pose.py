@@ -11,11 +11,11 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import Skeleton, skeleton_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.law import Law
-from sevenbar.kinematics.motion import Motion, Solvable, chosen_circuit
-from sevenbar.kinematics.poses import frames_along, joint_frames
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion, Solvable, chosen_circuit
+from sevenbar.kinematics.circuits.poses import frames_along, joint_frames
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.law import Law
 
 #: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.
 SAMPLED = 12

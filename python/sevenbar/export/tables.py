@@ -13,8 +13,8 @@ from typing import Any, Literal
 import numpy as np
 
 from sevenbar.errors import MissingExtraError
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting.folder import write_parts
 from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS

@@ -13,7 +13,7 @@ from sevenbar.arrays import Floats
 from sevenbar.export.left_out import left_out
 from sevenbar.export.mass import BodyMass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
-from sevenbar.kinematics.rigid import half_turn, zyx_turns
+from sevenbar.kinematics.loop.rigid import half_turn, zyx_turns
 from sevenbar.text.units import LENGTHS
 
 #: The mass of a link that only joins the freedoms of one joint, as a share of the heaviest link's.

@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.description.table_writer import linkage_table, points_table
 from sevenbar.description.tables import SHEET
 from sevenbar.errors import MissingExtraError, RequestError
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.motion import Motion
 
 #: Rows that a sheet of Excel holds, the head not counted.
 MOST_ROWS = 1_048_575

@@ -16,19 +16,19 @@ from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import Forces
-from sevenbar.kinematics.circuit_values import Extremes
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.extents import Allowed, BallCone, Clearance, JointRange
-from sevenbar.kinematics.geometry import Point
-from sevenbar.kinematics.law import Law
-from sevenbar.kinematics.loaded import loading_with
-from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.plane_and_sphere import plane_of
-from sevenbar.kinematics.stops import Cone
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Extremes
+from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
+from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.dynamics.loaded import loading_with
+from sevenbar.kinematics.loop.geometry import Point
+from sevenbar.kinematics.loop.law import Law
+from sevenbar.kinematics.loop.stops import Cone
+from sevenbar.kinematics.solvers.plane_and_sphere import plane_of
 from sevenbar.kinematics.transmission import best_row, transmission_angle, transmission_extremes
 
 if TYPE_CHECKING:
-    from sevenbar.kinematics.forces import ForceSolver
+    from sevenbar.kinematics.dynamics.forces import ForceSolver
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +93,7 @@ class LinkageAnswers:
     def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """The forces on a circuit's rows, with what is given in place of what the linkage has."""
         # the engine by numbers is for those who ask
-        from sevenbar.kinematics.forces import ForceSolver, forces_of
+        from sevenbar.kinematics.dynamics.forces import ForceSolver, forces_of
 
         if given:
             loading = loading_with(self.linkage, **given)
@@ -108,7 +108,7 @@ class LinkageAnswers:
         self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
     ) -> Balance:
         """Counterweights on links for the least shaking, with what is given in place of what is written."""
-        from sevenbar.kinematics.balance import balance_of
+        from sevenbar.kinematics.dynamics.balance import balance_of
 
         return balance_of(self.linkage, circuit, self.forces(circuit, given), links, how)
 
@@ -116,7 +116,7 @@ class LinkageAnswers:
         self, circuit: Circuit, given: Mapping[str, Any], options: Mapping[str, Any]
     ) -> FreeMotion:
         """How a circuit moves by itself, with what is given in place of what the linkage has."""
-        from sevenbar.kinematics.free import free_motion_of
+        from sevenbar.kinematics.dynamics.free import free_motion_of
 
         return free_motion_of(self.linkage, circuit, self._loading(given), **options)
 
@@ -124,7 +124,7 @@ class LinkageAnswers:
         self, circuit: Circuit, given: Mapping[str, Any], torque: float
     ) -> tuple[Equilibrium, ...]:
         """Where a circuit can rest, with what is given in place of what the linkage has."""
-        from sevenbar.kinematics.free import equilibria_of
+        from sevenbar.kinematics.dynamics.free import equilibria_of
 
         return equilibria_of(self.linkage, circuit, self._loading(given), torque)
 
@@ -133,38 +133,38 @@ class LinkageAnswers:
 
     def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
         """The range of every column but a ball's, by its name."""
-        from sevenbar.kinematics.circuit_extents import joint_ranges
+        from sevenbar.kinematics.ranges.circuit_extents import joint_ranges
 
         return joint_ranges(self.linkage, circuit)
 
     def ball_cones(self, circuit: Circuit) -> Mapping[str, BallCone]:
         """How far balls and universal joints are bent, by name."""
-        from sevenbar.kinematics.circuit_extents import ball_cones
+        from sevenbar.kinematics.ranges.circuit_extents import ball_cones
 
         return ball_cones(self.linkage, circuit)
 
     def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> BallCone:
         """How far one is bent between directions that are given."""
-        from sevenbar.kinematics.circuit_extents import cone_of
+        from sevenbar.kinematics.ranges.circuit_extents import cone_of
 
         named = any(value is not None for value in given.values())
         return cone_of(self.linkage, circuit, joint, Cone(**given) if named else None)
 
     def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
         """The bend of each ball and universal joint on the rows, by name."""
-        from sevenbar.kinematics.circuit_extents import bends
+        from sevenbar.kinematics.ranges.circuit_extents import bends
 
         return bends(self.linkage, circuit)
 
     def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
         """The least distances of links that share no joint."""
-        from sevenbar.kinematics.circuit_extents import clearances
+        from sevenbar.kinematics.ranges.circuit_extents import clearances
 
         return clearances(self.linkage, circuit)
 
     def allowed(self, circuit: Circuit) -> Allowed:
         """What part of a circuit is within the stops."""
-        from sevenbar.kinematics.allowed import allowed
+        from sevenbar.kinematics.ranges.allowed import allowed
 
         return allowed(self.linkage, circuit)
 

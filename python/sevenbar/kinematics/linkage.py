@@ -15,18 +15,18 @@ from sevenbar.errors import NotCoveredError, RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.kinematics.answers import LinkageAnswers
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.closed_form import ClosedForm
-from sevenbar.kinematics.four_bar import four_bar_of
-from sevenbar.kinematics.general import AGREE, GeneralLoop
-from sevenbar.kinematics.grashof import FourBar
-from sevenbar.kinematics.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
-from sevenbar.kinematics.law import Law
-from sevenbar.kinematics.loaded import loaded
-from sevenbar.kinematics.mobility import Mobility
-from sevenbar.kinematics.motion import LEAST_AGREE, MOST_AGREE, Modes, Motion, Output, Solvable
-from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
-from sevenbar.kinematics.stopped import Cones, Radii, Ranges, stopped
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import LEAST_AGREE, MOST_AGREE, Modes, Motion, Output, Solvable
+from sevenbar.kinematics.dynamics.loaded import loaded
+from sevenbar.kinematics.loop.grashof import FourBar
+from sevenbar.kinematics.loop.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
+from sevenbar.kinematics.loop.law import Law
+from sevenbar.kinematics.loop.mobility import Mobility
+from sevenbar.kinematics.ranges.stopped import Cones, Radii, Ranges, stopped
+from sevenbar.kinematics.solvers.closed_form import ClosedForm
+from sevenbar.kinematics.solvers.four_bar import four_bar_of
+from sevenbar.kinematics.solvers.general import AGREE, GeneralLoop
+from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
 MOST_SAMPLES = 1_000_000

@@ -9,15 +9,15 @@ from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.sizing import Bearing, Sizing
-from sevenbar.kinematics.circuit_values import Extremes
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.extent_measures import greatest_bend, joint_extent, least_gap, usable_share
-from sevenbar.kinematics.extent_slopes import extent_slopes, stopped_measures
-from sevenbar.kinematics.force_measures import force_slopes, mass_slopes, peak_shaking, sized
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.gradients import MeasureSlopes, measure_slopes
-from sevenbar.kinematics.motion import Motion, chosen_circuit
-from sevenbar.kinematics.sensitivity import Numbers
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Extremes
+from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
+from sevenbar.kinematics.dynamics.force_measures import force_slopes, mass_slopes, peak_shaking, sized
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.numbers.gradients import MeasureSlopes, measure_slopes
+from sevenbar.kinematics.numbers.sensitivity import Numbers
+from sevenbar.kinematics.ranges.extent_measures import greatest_bend, joint_extent, least_gap, usable_share
+from sevenbar.kinematics.ranges.extent_slopes import extent_slopes, stopped_measures
 
 #: What a measure is a number of: of angles and lengths by the output.
 Quantity = Literal[

@@ -27,15 +27,15 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.curves.stationary import curve_through, nodes, real_roots
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.axes import Axes, axes_along
-from sevenbar.kinematics.circuit_values import Extremes
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.general import expanded
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.law import Law
-from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.plane_and_sphere import InPlane, in_plane, sphere_of
-from sevenbar.kinematics.poses import Walk, walk
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Extremes
+from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.circuits.poses import Walk, walk
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.law import Law
+from sevenbar.kinematics.solvers.axes import Axes, axes_along
+from sevenbar.kinematics.solvers.general import expanded
+from sevenbar.kinematics.solvers.plane_and_sphere import InPlane, in_plane, sphere_of
 
 #: Rows in a turn between which extremes are searched, whatever the samples of the motion.
 SAMPLES = 360

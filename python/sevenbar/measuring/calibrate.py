@@ -1,7 +1,7 @@
 """The dimensions of a real linkage from its measured curve: least squares with exact sensitivities.
 
 With r the differences of measured and computed values relative to their noise and J their exact derivatives
-by the dimensions (`sevenbar.kinematics.sensitivity`), `|r|^2` is made least (`least_squares`); then
+by the dimensions (`sevenbar.kinematics.numbers.sensitivity`), `|r|^2` is made least (`least_squares`); then
 
     s^2 = |r|^2 / (n - k),      covariance s^2 (J^T J)^-1,      value +- t(n - k) sqrt(covariance)         (1)
 
@@ -37,7 +37,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.sensitivity import Numbers
+from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.measuring.compare import Comparison, causes, compare, ends_of, inputs_of, name_of, per_cent
 from sevenbar.measuring.doubtful import EXACT, far_off, left_by_most, sentence
 from sevenbar.measuring.fit import CurveFit

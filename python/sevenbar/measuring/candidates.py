@@ -13,9 +13,9 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.law import Law
+from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.law import Law
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
 from sevenbar.measuring.passes import Key, PassFit, stretches_of, ways_through
 

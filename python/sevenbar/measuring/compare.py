@@ -18,7 +18,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.measuring.candidates import SAME_RESIDUAL, Candidates
 from sevenbar.measuring.doubtful import far_off, sentence

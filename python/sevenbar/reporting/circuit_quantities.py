@@ -10,9 +10,9 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.kinematics.circuit_values import DeadCentre, Extremes
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting.facts import turns_text
 from sevenbar.reporting.force_peaks import peaks_of
 from sevenbar.reporting.force_words import number

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
 from sevenbar.curves.curve import Peak
-from sevenbar.kinematics.circuit_path import NotFollowedError
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.extents import Allowed
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.extents import Allowed
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 from sevenbar.reporting.shown import REST, Shown, degrees
 from sevenbar.text.words import say
 

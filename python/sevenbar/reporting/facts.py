@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterable
 
 from sevenbar.description.angle_doubts import angle_doubt
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.mobility import Mobility
-from sevenbar.kinematics.motion import Motion, Solvable
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion, Solvable
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.mobility import Mobility
 from sevenbar.reporting.extents import usable_text
 from sevenbar.reporting.force_words import acting_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text

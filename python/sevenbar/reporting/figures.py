@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sevenbar.kinematics.motion import Motion, chosen_circuit
+from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
 from sevenbar.reporting.files import Files, Report, Write, figure_files
 
 if TYPE_CHECKING:

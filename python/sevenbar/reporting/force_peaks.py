@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from sevenbar.curves.curve import Peak
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.long_circuit import LongCircuit
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.long_circuit import LongCircuit
 
 
 @dataclass(frozen=True)

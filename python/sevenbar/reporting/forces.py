@@ -18,9 +18,9 @@ from sevenbar.forces.counterweights import Balance
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking
 from sevenbar.forces.sizing import Burden, Sizing
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.columns import joint_column
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.reporting.figures import FigureLook
 from sevenbar.reporting.files import Files, Report, columns_file, figure_files, json_file
 from sevenbar.reporting.force_words import (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sevenbar.kinematics.grashof import FourBar
+from sevenbar.kinematics.loop.grashof import FourBar
 from sevenbar.reporting.shown import degrees
 from sevenbar.text.words import retold, say
 

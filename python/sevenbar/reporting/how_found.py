@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.general import AGREE
-from sevenbar.kinematics.motion import Motion, Search
+from sevenbar.kinematics.circuits.motion import Motion, Search
+from sevenbar.kinematics.solvers.general import AGREE
 from sevenbar.text.words import say
 
 #: What the modes at the values looked at are, by the word for their completeness.

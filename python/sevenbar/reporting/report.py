@@ -16,11 +16,11 @@ from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
 from rich.text import Text
 
-from sevenbar.kinematics.circuit_values import Extremes
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.joint_text import joint_value
-from sevenbar.kinematics.motion import Modes, Motion
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Extremes
+from sevenbar.kinematics.circuits.motion import Modes, Motion
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.extents import extents_dict
 from sevenbar.reporting.facts import closure_error, completeness_text, side_lengths
 from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures

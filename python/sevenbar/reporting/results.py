@@ -9,12 +9,12 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.kinematics.circuit_values import Extremes, Sensitivity, Trace
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Extremes, Sensitivity, Trace
+from sevenbar.kinematics.circuits.instant_centres import InstantCentre, InstantCentres
+from sevenbar.kinematics.circuits.motion import Modes, Motion, Output
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Modes, Motion, Output
-from sevenbar.kinematics.screw_axes import ScrewAxes
+from sevenbar.kinematics.loop.screw_axes import ScrewAxes
 from sevenbar.reporting.circuit_quantities import way_round
 from sevenbar.reporting.facts import (
     COMPLETE,

@@ -12,9 +12,9 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.arrays import Floats, counted
-from sevenbar.kinematics.columns import joint_column
-from sevenbar.kinematics.motion import Motion
-from sevenbar.kinematics.screw_axes import ScrewAxes
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.loop.columns import joint_column
+from sevenbar.kinematics.loop.screw_axes import ScrewAxes
 from sevenbar.reporting.files import Report, columns_file, json_file
 from sevenbar.reporting.page import drive_text, number_table
 

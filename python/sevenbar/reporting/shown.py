@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from sevenbar.arrays import Words, counted
-from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.loop.geometry import Loop
 
 #: Values below this share of what the linkage's size and its drive make are rounding.
 REST = 1e-12

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from rich.cells import cell_len
 
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import Modes, Motion
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Modes, Motion
+from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.reporting.circuit_quantities import Reported, Texts, cells_of, nothing
 from sevenbar.reporting.extents import extent_rows, span_rows
 from sevenbar.reporting.facts import facts_of

@@ -10,10 +10,10 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Spring, Three
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.link_bodies import as_moved, resolved
-from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.rigid import placed
+from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.dynamics.link_bodies import as_moved, resolved
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.rigid import placed
 from sevenbar.text.units import LENGTHS
 
 #: Added to the inertia of a body about every axis, as a part of that of its mass at a tenth of the linkage's

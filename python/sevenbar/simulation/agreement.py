@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Booleans, Floats
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.rigid import placed
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.rigid import placed
 from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
 from sevenbar.simulation.force_agreement import ComparedForce, compared_forces

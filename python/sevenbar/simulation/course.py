@@ -10,8 +10,8 @@ import numpy as np
 
 from sevenbar.arrays import Booleans, Floats, Integers
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.motion import Motion, chosen_circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
 
 #: An engine starts so many rows ahead of the first that is compared. Its accelerations start with an error
 #: that is damped by some 0.6 (Exudyn) to 0.75 (MuJoCo) a step, so that rounding remains.

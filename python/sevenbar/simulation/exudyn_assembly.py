@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.rigid import perpendicular, pose
+from sevenbar.kinematics.loop.rigid import perpendicular, pose
 from sevenbar.simulation.engine import imported
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
 from sevenbar.simulation.prototype import GROUND, GYRATION, Connection, MovingBody, Prototype, SpinRule

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.rigid import pose
+from sevenbar.kinematics.loop.rigid import pose
 from sevenbar.simulation.acting import JointSpring, PlacedLoad
 from sevenbar.simulation.exudyn_assembly import ExudynAssembly
 from sevenbar.simulation.prototype import GROUND, Connection

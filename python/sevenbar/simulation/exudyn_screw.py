@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.rigid import pose
+from sevenbar.kinematics.loop.rigid import pose
 from sevenbar.simulation.prototype import GROUND, Connection
 
 

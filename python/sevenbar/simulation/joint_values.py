@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.geometry import Joint, Loop
-from sevenbar.kinematics.joints import Z
-from sevenbar.kinematics.rigid import axial, zyx_turns
+from sevenbar.kinematics.loop.geometry import Joint, Loop
+from sevenbar.kinematics.loop.joints import Z
+from sevenbar.kinematics.loop.rigid import axial, zyx_turns
 
 
 @dataclass(frozen=True, eq=False)

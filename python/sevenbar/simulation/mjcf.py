@@ -17,7 +17,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.rigid import inverse, quaternion
+from sevenbar.kinematics.loop.rigid import inverse, quaternion
 from sevenbar.simulation.mjcf_acting import add_springs, gyration, heaviest, inertial, joint_spring, mark
 from sevenbar.simulation.mjcf_elements import add, numbers, placed
 from sevenbar.simulation.prototype import GROUND, Connection, Prototype, SpinRule

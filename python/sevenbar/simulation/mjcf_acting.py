@@ -11,7 +11,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.rigid import pose
+from sevenbar.kinematics.loop.rigid import pose
 from sevenbar.simulation.mjcf_elements import add, numbers, placed
 from sevenbar.simulation.prototype import GROUND, GYRATION, Prototype
 from sevenbar.text.units import LENGTHS

@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.rigid import quaternion
+from sevenbar.kinematics.loop.rigid import quaternion
 
 
 def add(parent: Element, tag: str, **attributes: str) -> Element:

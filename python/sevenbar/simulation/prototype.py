@@ -13,11 +13,11 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError, RequestError
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.joints import JointKind, kind_row
-from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.poses import frames_along
-from sevenbar.kinematics.rigid import about, inverse, pose
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.circuits.poses import frames_along
+from sevenbar.kinematics.loop.joints import JointKind, kind_row
+from sevenbar.kinematics.loop.rigid import about, inverse, pose
 from sevenbar.simulation.acting import PlacedLoading, acting
 
 #: The number of the ground among the bodies.

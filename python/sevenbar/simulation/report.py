@@ -15,7 +15,7 @@ from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
 from sevenbar.drawing.names import short
-from sevenbar.kinematics.columns import joint_column, point_column
+from sevenbar.kinematics.loop.columns import joint_column, point_column
 from sevenbar.reporting.files import (
     Report,
     columns_file,

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.dimensions import Dimension, read_at
+from sevenbar.kinematics.numbers.dimensions import Dimension, read_at
 from sevenbar.text.ranges import split_grid, split_list, split_name, split_range
 
 #: Most values of one axis that are listed: the sweep's description holds each of them.

@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import SevenbarError
-from sevenbar.kinematics.batches import (
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.solvers.batches import (
     INVALID,
     RSSR_ROWS,
     WORDS,
@@ -21,7 +22,6 @@ from sevenbar.kinematics.batches import (
     rssr_rows,
     rssr_types,
 )
-from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.transmission import coupling_of
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
 from sevenbar.sweep.plan import OF_TYPES, SweepPlan

@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError, SevenbarError, shown
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.measures import Measure, rows_of
-from sevenbar.kinematics.motion import Motion
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
 from sevenbar.sweep.plan import SweepPlan
 

@@ -17,10 +17,10 @@ from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.batches import simd_level
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.solvers.batches import simd_level
 from sevenbar.sweep.axes import Given, whole_number
 from sevenbar.sweep.space import Space
 

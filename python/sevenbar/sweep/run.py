@@ -23,9 +23,9 @@ from pathlib import Path
 
 from sevenbar.description.draft import Draft
 from sevenbar.errors import EngineError, RequestError
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import Measure
-from sevenbar.kinematics.motion import Motion
 from sevenbar.sweep.axes import Given, whole_number
 from sevenbar.sweep.parts import PartsFolder, other_maker
 from sevenbar.sweep.plan import SweepPlan, maker

@@ -37,7 +37,7 @@ from sevenbar.design.exact.lines import line_dyad
 from sevenbar.design.exact.loops import all_loops, drawn
 from sevenbar.design.exact.spherical import refuse_one_axis
 from sevenbar.errors import RequestError, ends_here
-from sevenbar.kinematics.rigid import quaternion
+from sevenbar.kinematics.loop.rigid import quaternion
 
 #: Dyads RR of three poses over the complex numbers: factors of degree two of a norm of degree four.
 DYADS = 6
@@ -56,7 +56,7 @@ def bennett_poses(poses: npt.ArrayLike, *, length_unit: str = "mm") -> ExactAnsw
     Raises `RequestError` where poses are equal, or two of them turns or shifts of each other, or their
     rotations have one axis: the linkage is then a limit that is none.
 
-        >>> from sevenbar.kinematics.rigid import about, pose
+        >>> from sevenbar.kinematics.loop.rigid import about, pose
         >>> turns = [about(2, 0.5 * i) @ about(0, 0.2 * i * i) for i in range(3)]
         >>> found = bennett_poses(pose(turns, [(0, 0, 0), (10, 4, 2), (15, 9, 8)]))
         >>> found.real, [answer.linkage.motion().motion_type for answer in found.answers]

@@ -26,7 +26,7 @@ from sevenbar.design.exact.lines import line_dyad, places
 from sevenbar.design.exact.loops import all_loops, drawn, loop
 from sevenbar.design.exact.spherical import NOTHING, refuse_one_axis
 from sevenbar.errors import RequestError, ends_here
-from sevenbar.kinematics.rigid import unit
+from sevenbar.kinematics.loop.rigid import unit
 
 #: Dyads CC of five poses over the complex numbers.
 DYADS = POINTS
@@ -40,7 +40,7 @@ def cc_dyads(poses: npt.ArrayLike, *, length_unit: str = "mm") -> ExactAnswers:
     next, so they have no verdict. Raises `RequestError` where poses are equal, their rotations have one axis
     or infinitely many dyads.
 
-        >>> from sevenbar.kinematics.rigid import about, pose
+        >>> from sevenbar.kinematics.loop.rigid import about, pose
         >>> places = [(0, 0, 0), (10, 4, 2), (15, 9, 8), (22, 8, 9), (30, 5, 20)]
         >>> turns = [about(2, 0.3 * i) @ about(0, 0.2 * i * i) @ about(1, 0.1 * i) for i in range(5)]
         >>> found = cc_dyads(pose(turns, places))

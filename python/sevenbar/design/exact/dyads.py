@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.rigid import axial, turns_about
+from sevenbar.kinematics.loop.rigid import axial, turns_about
 
 #: Two lines are one where directions [-] and places, relative to their distance from the others, agree so.
 SAME_LINE = 1e-9

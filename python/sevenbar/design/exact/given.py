@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.rigid import about, pose
+from sevenbar.kinematics.loop.rigid import about, pose
 
 #: How far the columns of a rotation may be from square and of length 1 [-]: numbers typed to six digits.
 RIGID = 1e-5

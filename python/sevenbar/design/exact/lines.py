@@ -20,7 +20,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.exact.dyads import Dyad, Line
 from sevenbar.design.exact.given import Displacements
-from sevenbar.kinematics.rigid import cross, pose, turns_about
+from sevenbar.kinematics.loop.rigid import cross, pose, turns_about
 
 #: Singular value, relative to the greatest, below which equations for the places depend on each other.
 RANK = 1e-11

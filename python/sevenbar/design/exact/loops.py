@@ -16,7 +16,7 @@ from sevenbar.design.candidates import Claim
 from sevenbar.design.exact.answers import ExactAnswer, judged
 from sevenbar.design.exact.dyads import Dyad, plain, share_a_line
 from sevenbar.design.exact.given import Displacements
-from sevenbar.kinematics.rigid import inverse
+from sevenbar.kinematics.loop.rigid import inverse
 
 #: The joints of a loop, in its order.
 JOINT_NAMES = ("input", "input_link", "output_link", "output")

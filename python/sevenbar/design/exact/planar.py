@@ -27,7 +27,7 @@ from sevenbar.design.exact.dyads import Dyad, Line
 from sevenbar.design.exact.given import Displacements, numbers_given, place_text, planar_given
 from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
-from sevenbar.kinematics.rigid import axial, pose, turns_about
+from sevenbar.kinematics.loop.rigid import axial, pose, turns_about
 
 #: Dyads of five poses over the complex numbers.
 DYADS = 4

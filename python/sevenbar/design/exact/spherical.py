@@ -24,7 +24,7 @@ from sevenbar.design.exact.given import Displacements, numbers_given, orientatio
 from sevenbar.design.exact.lines import link_motions
 from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
-from sevenbar.kinematics.rigid import pose, unit
+from sevenbar.kinematics.loop.rigid import pose, unit
 
 #: Dyads of five orientations over the complex numbers.
 DYADS = POINTS
@@ -51,7 +51,7 @@ def spherical_orientations(
     drawn on a sphere of this `radius`. Raises `RequestError` where orientations are equal, or have
     infinitely many dyads.
 
-        >>> from sevenbar.kinematics.rigid import about
+        >>> from sevenbar.kinematics.loop.rigid import about
         >>> turns = [about(2, 0.3 * i) @ about(0, 0.2 * i * i) @ about(1, 0.1 * i) for i in range(5)]
         >>> found = spherical_orientations(turns)
         >>> found.complete, found.real

@@ -18,8 +18,8 @@ from sevenbar.design.maps.plane import Kind, LoopPlane, Plane
 from sevenbar.design.maps.rssr_plane import RssrPlane
 from sevenbar.design.maps.window import MapAxis, Range, axes_of
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress
 from sevenbar.text.words import say

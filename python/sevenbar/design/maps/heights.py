@@ -14,8 +14,8 @@ from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.outline import Region, joined
 from sevenbar.design.maps.plane import Take
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
-from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
 
 #: About how many contour lines are drawn where none are asked for.

@@ -14,8 +14,8 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import MapAxis
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.measures import Measure, rows_of
-from sevenbar.kinematics.motion import Motion
 from sevenbar.text.progress import Progress, silent
 from sevenbar.text.words import say
 

@@ -11,8 +11,8 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.maps.critical import NEARLY_REAL, ROUNDING, critical_gaps
 from sevenbar.design.maps.plane import Kind, Plane, Take
 from sevenbar.design.maps.window import MapAxis
-from sevenbar.kinematics.batches import CODES, RSSR_ROWS, rssr_motions, rssr_rows, rssr_types
 from sevenbar.kinematics.measures import Measure
+from sevenbar.kinematics.solvers.batches import CODES, RSSR_ROWS, rssr_motions, rssr_rows, rssr_types
 from sevenbar.text.progress import Progress
 
 #: Threads of the core: a map's batches are small, and its squares are sorted by one thread between them.

@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.dimensions import Dimension, read_at
+from sevenbar.kinematics.numbers.dimensions import Dimension, read_at
 from sevenbar.text.ranges import split_named, split_range
 
 #: The form of a range, for messages.

@@ -13,10 +13,10 @@ from sevenbar.arrays import Booleans, Floats, finite_array
 from sevenbar.curves.stationary import highest_between
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.driven import driven as driven_circuit
-from sevenbar.kinematics.link_motion import rates_of_frame
-from sevenbar.kinematics.motion import Motion, chosen_circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.driven import driven as driven_circuit
+from sevenbar.kinematics.circuits.link_motion import rates_of_frame
+from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
 
 #: Derivatives by time of a point's place, in the order of `LinkRates`.
 ORDERS = ("position", "velocity", "acceleration", "jerk")

@@ -1,7 +1,7 @@
 """Masses at points of links: the inertia forces over the cycle, and the torque that the input needs for them.
 
-These are the forces of bodies that are points, and nothing else acts (`kinematics.forces`). Over a closed
-cycle the mean by time of power is zero.
+These are the forces of bodies that are points, and nothing else acts (`kinematics.dynamics.forces`). Over a
+closed cycle the mean by time of power is zero.
 
 Source: docs/theory_design.md, (22).
 """
@@ -19,7 +19,7 @@ from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.points.cycle import Cycle, cycle_of, driven
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.bodies import Body
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.printing import Printed
 from sevenbar.text.units import LENGTHS
 

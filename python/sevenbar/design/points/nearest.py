@@ -23,7 +23,7 @@ from sevenbar.design.points.cone import least_greatest
 from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, input_text
 from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
 

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, Words, finite_array
 from sevenbar.design.points.cycle import Cycle, cycle_of
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.printing import Printed
 
 #: The least singular value of G, relative to its greatest, of a single pole. G is known to some 1e-12; a pole

@@ -18,7 +18,7 @@ from sevenbar.design.points.least import LeastPoint
 from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import poles_of
 from sevenbar.drawing.figure import slides
-from sevenbar.kinematics.columns import joint_column
+from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
 from sevenbar.reporting.page import Facts, drive_text, number_table, opening
 from sevenbar.text.printing import text_of

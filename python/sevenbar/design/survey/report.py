@@ -15,7 +15,7 @@ from sevenbar.design.files import design_files
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.task import SurveyTask
 from sevenbar.design.task.report import TaskDesigns
-from sevenbar.kinematics.surveys import NUMBERS
+from sevenbar.kinematics.solvers.surveys import NUMBERS
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table
 

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.kinematics.batches import CODES
-from sevenbar.kinematics.surveys import VERDICTS, RawTally
+from sevenbar.kinematics.solvers.batches import CODES
+from sevenbar.kinematics.solvers.surveys import VERDICTS, RawTally
 
 #: How many of the best are kept.
 BEST = 100

@@ -15,8 +15,8 @@ from sevenbar.design.survey.drawn import Drawn
 from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.wish import Wish
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.kinematics.batches import CODES
-from sevenbar.kinematics.surveys import NUMBERS, VERDICTS, CoreSurvey, core_survey
+from sevenbar.kinematics.solvers.batches import CODES
+from sevenbar.kinematics.solvers.surveys import NUMBERS, VERDICTS, CoreSurvey, core_survey
 
 #: The format of a survey's description.
 FORMAT = 1

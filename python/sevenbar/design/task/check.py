@@ -31,10 +31,10 @@ from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted
 from sevenbar.design.task.words import must_words
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.law import Law
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.loop.law import Law
 
 #: By how much errors may be greater in the analysis than was solved for, relative to them and to their unit:
 #: more, and the solution lies on several passes.

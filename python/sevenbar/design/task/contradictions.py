@@ -30,12 +30,12 @@ from sevenbar.design.task.task import (
 )
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.errors import NotCoveredError, Problem, RequestError, shown, suggestion
-from sevenbar.kinematics.ball_angle import ball_angle
-from sevenbar.kinematics.circuit_path import NotFollowedError
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.rigid import flaw_of_rotation
 from sevenbar.kinematics.measures import FORCE_MEASURES, JOINT_MEASURES
-from sevenbar.kinematics.rigid import flaw_of_rotation
+from sevenbar.kinematics.paths.circuit_path import NotFollowedError
+from sevenbar.kinematics.ranges.ball_angle import ball_angle
 
 #: The most that residuals are where points are to be met exactly.
 EXACT = 1e-6

@@ -10,10 +10,10 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
-from sevenbar.kinematics.following import Following
-from sevenbar.kinematics.motion import Motion
-from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
-from sevenbar.kinematics.word import Carried
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.numbers.following import Following
+from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
+from sevenbar.kinematics.numbers.word import Carried
 
 #: Inputs of a turn at which circuits are measured and wants begun: what lies between rows is found there.
 SAMPLES = 72

@@ -21,8 +21,8 @@ from sevenbar.design.task.task import (
     PathWant,
 )
 from sevenbar.errors import RequestError, no_joint, shown, suggestion
-from sevenbar.kinematics.circuit_extents import chosen
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.stops import Cone
 from sevenbar.kinematics.measures import (
     EXTENT_MEASURES,
     FORCE_MEASURES,
@@ -32,7 +32,7 @@ from sevenbar.kinematics.measures import (
     OF_JOINTS,
     measures_named,
 )
-from sevenbar.kinematics.stops import Cone
+from sevenbar.kinematics.ranges.circuit_extents import chosen
 
 #: Messages, each with the key that it is of; "" for a whole table.
 Flaws = Iterator[tuple[str, str]]

@@ -12,10 +12,10 @@ from sevenbar.arrays import Floats
 from sevenbar.design.candidates import Fault
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.task import Apart, InBox, InCone, InRange, Must, PoseMust
-from sevenbar.kinematics.ball_angle import has_length, line_angles, rod
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.rods import distance_slopes
-from sevenbar.kinematics.stops import Three
+from sevenbar.kinematics.loop.rods import distance_slopes
+from sevenbar.kinematics.loop.stops import Three
+from sevenbar.kinematics.ranges.ball_angle import has_length, line_angles, rod
 
 #: Rooms (n, r) at n poses, and their slopes (n, r, unknowns).
 Rooms = tuple[Floats, Floats]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 
 #: Starts of an input law that are tried in a turn, or over the range of a pass.
 PHASES = 36

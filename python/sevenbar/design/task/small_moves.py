@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.rigid import cross_matrix
+from sevenbar.kinematics.loop.rigid import cross_matrix
 
 #: A turn [rad] below which the first terms of its series stand for the rest.
 SMALL = 1e-4

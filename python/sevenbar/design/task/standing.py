@@ -9,8 +9,8 @@ import numpy as np
 from sevenbar.description.draft import Draft
 from sevenbar.description.load_moving import moved_loads
 from sevenbar.design.task.match import Placing
-from sevenbar.kinematics.dimensions import description_of
-from sevenbar.kinematics.rigid import rotation_vector
+from sevenbar.kinematics.loop.rigid import rotation_vector
+from sevenbar.kinematics.numbers.dimensions import description_of
 
 
 def standing(placing: Placing, unit: str) -> Mapping[str, float]:

@@ -13,7 +13,7 @@ from sevenbar.design.task.passes import InputPass, passes
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.wants.figures import figure_left
 from sevenbar.design.task.wants.wanted import Begun
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.sweep.sampling import sobol_points
 
 #: Of the starts one in so many lies near the description's own numbers, within this part of the bounds.

@@ -24,7 +24,7 @@ from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.limits import Limits
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.sensitivity import Numbers
+from sevenbar.kinematics.numbers.sensitivity import Numbers
 
 #: What is made least of the residuals.
 Goal = Literal["least squares", "minimax", "transmission"]

@@ -22,8 +22,8 @@ from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.numbers.dimensions import Dimension
 
 #: What tolerances may be given as.
 Given = Tolerances | Mapping[str, float | str]

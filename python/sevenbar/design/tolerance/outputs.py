@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.gradients import PER_TIME, QUANTITIES
-from sevenbar.kinematics.sensitivity import Numbers, Slopes
+from sevenbar.kinematics.numbers.gradients import PER_TIME, QUANTITIES
+from sevenbar.kinematics.numbers.sensitivity import Numbers, Slopes
 
 
 @dataclass(frozen=True)

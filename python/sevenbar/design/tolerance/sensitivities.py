@@ -11,15 +11,15 @@ from sevenbar.arrays import Booleans, Floats, Integers, Words, short_way
 from sevenbar.description.draft import Draft
 from sevenbar.design.tolerance.outputs import Output, outputs_of, slopes_of, values_of
 from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.dimensions import Dimension
-from sevenbar.kinematics.extent_slopes import extent_slopes
-from sevenbar.kinematics.following import Following
-from sevenbar.kinematics.force_measures import force_slopes
-from sevenbar.kinematics.gradients import QUANTITIES, MeasureSlopes, measure_slopes
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Solvable, chosen_circuit
+from sevenbar.kinematics.dynamics.force_measures import force_slopes
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Solvable, chosen_circuit
-from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
+from sevenbar.kinematics.numbers.dimensions import Dimension
+from sevenbar.kinematics.numbers.following import Following
+from sevenbar.kinematics.numbers.gradients import QUANTITIES, MeasureSlopes, measure_slopes
+from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
+from sevenbar.kinematics.ranges.extent_slopes import extent_slopes
 from sevenbar.text.printing import Printed, lines, text_of
 
 #: A change that counts as small where no tolerance is given [share of the linkage's size, rad].

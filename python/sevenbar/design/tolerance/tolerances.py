@@ -12,7 +12,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.numbers.dimensions import Dimension
 from sevenbar.text.ranges import split_name
 from sevenbar.text.units import LENGTHS
 

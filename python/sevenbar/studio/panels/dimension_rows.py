@@ -9,7 +9,7 @@ from typing import Any
 import viser
 
 from sevenbar.errors import SevenbarError
-from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.numbers.dimensions import Dimension
 from sevenbar.studio.panels.controls import PAUSE, Alert, Asked, by_person, put
 from sevenbar.text.units import ANGLES
 

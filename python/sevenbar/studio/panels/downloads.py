@@ -14,7 +14,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.drawing.figure import FORMATS as FIGURES
 from sevenbar.errors import RequestError
 from sevenbar.export import FORMATS, Bodies, export
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting import report
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View

@@ -10,7 +10,7 @@ import viser
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import places_of, skeleton_of
 from sevenbar.drawing.style import ACCELERATION, CIRCUIT_COLOURS, VELOCITY
-from sevenbar.kinematics.poses import frames_of
+from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.studio.panels.controls import Asked
 from sevenbar.studio.pictures.stage import FIELD, Stage
 from sevenbar.studio.state.session import Session

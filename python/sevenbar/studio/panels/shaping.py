@@ -7,7 +7,7 @@ from typing import Any
 
 import viser
 
-from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.numbers.dimensions import Dimension
 from sevenbar.studio.panels.controls import Alert, Asked, by_person, put
 from sevenbar.studio.panels.dimension_rows import DimensionRow, largest_length
 from sevenbar.studio.state.session import Session

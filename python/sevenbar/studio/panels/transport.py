@@ -9,8 +9,8 @@ from typing import Any
 
 import viser
 
-from sevenbar.kinematics.joint_text import joint_value
-from sevenbar.kinematics.poses import at_row
+from sevenbar.kinematics.circuits.poses import at_row
+from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.shown import value_text
 from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, put
 from sevenbar.studio.state.session import Session

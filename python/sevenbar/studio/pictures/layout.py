@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from sevenbar.drawing.skeleton import Skeleton
-from sevenbar.kinematics.joints import JointKind
+from sevenbar.kinematics.loop.joints import JointKind
 
 #: Two places, from and to.
 Pair = tuple[int, int]

@@ -14,7 +14,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.scene import link_colours, paths
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import GROUND, JOINT
-from sevenbar.kinematics.rigid import rotation_of
+from sevenbar.kinematics.loop.rigid import rotation_of
 from sevenbar.studio.pictures.layout import NOWHERE, JointPlaces, Layout, Pair, layout
 from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, slices, turns
 from sevenbar.studio.pictures.shapes import TURNS

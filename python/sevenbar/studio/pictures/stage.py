@@ -13,7 +13,7 @@ from sevenbar.drawing.scene import paths, view
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import PATH
 from sevenbar.drawing.view import directions
-from sevenbar.kinematics.rigid import rotation_of
+from sevenbar.kinematics.loop.rigid import rotation_of
 from sevenbar.studio.pictures.batches import Batches, Labels
 from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, stretched
 from sevenbar.studio.pictures.solids import plan, rgb

@@ -15,7 +15,7 @@ from sevenbar.forces.loading import Load, Spring
 from sevenbar.forces.result import Forces, Reaction
 from sevenbar.forces.sizing import Sizing
 from sevenbar.kinematics.answers import LinkageAnswers
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.reporting.force_words import load_text, spring_text, triple_text
 from sevenbar.reporting.shown import Shown

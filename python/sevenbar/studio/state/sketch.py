@@ -10,7 +10,7 @@ from typing import Any
 from sevenbar.description.draft import Draft, plain_number
 from sevenbar.description.gallery import text
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.joints import JOINT_KINDS, KINDS
+from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS
 
 Vector = tuple[float, float, float]
 

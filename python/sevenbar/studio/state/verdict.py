@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from html import escape
 
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting.facts import facts_of
 from sevenbar.reporting.summary import circuit_facts
 from sevenbar.studio.state.session import Session

@@ -12,11 +12,11 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.drawing.figure import shown_value
 from sevenbar.drawing.skeleton import Skeleton, skeleton
-from sevenbar.kinematics.circuit_values import Trace
-from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import Motion
-from sevenbar.kinematics.poses import Walk, along, at_row, frames_of, joint_frames, walk
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Trace
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.circuits.poses import Walk, along, at_row, frames_of, joint_frames, walk
+from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.reporting.shown import value_text
 
 #: Inputs [rad, or parts of the linkage's size] nearer to a limit are at it.

@@ -15,10 +15,10 @@ from sevenbar.drawing.figure import input_label, range_drawn, shown_value, slide
 from sevenbar.drawing.output_curves import inputs_between, place_of
 from sevenbar.drawing.style import CIRCUIT_COLOURS
 from sevenbar.drawing.ticks import FLAT
-from sevenbar.kinematics.circuit_path import NotFollowedError
-from sevenbar.kinematics.circuit_values import Extremes
-from sevenbar.kinematics.extents import Flags
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.circuits.circuit_values import Extremes
+from sevenbar.kinematics.circuits.extents import Flags
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.panel import Panel
 from sevenbar.studio.svg.picture import (

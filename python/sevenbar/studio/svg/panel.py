@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.poses import at_row
+from sevenbar.kinematics.circuits.poses import at_row
 from sevenbar.studio.svg.picture import FONT, GROUND, HALO, INK, Frame, breadth, words
 from sevenbar.studio.svg.scale import Scale
 

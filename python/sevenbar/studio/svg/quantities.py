@@ -9,8 +9,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import shown_value, slides
-from sevenbar.kinematics.motion import Motion
-from sevenbar.kinematics.poses import along
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.circuits.poses import along
 from sevenbar.studio.state.view import View
 
 #: What a column has, by the order of its derivative, as the figures call them.

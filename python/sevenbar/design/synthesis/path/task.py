@@ -21,9 +21,9 @@ from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.task import DesignTask, FreeNumber, PathWant, Placement
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.kinematics.dimensions import Dimension
-from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.geometry import Point
+from sevenbar.kinematics.numbers.dimensions import Dimension
 
 #: Bounds where none are given, relative to the greater of the linkage's longest dimension and the path's
 #: extent: of lengths that must be positive, and how far others may go from zero.

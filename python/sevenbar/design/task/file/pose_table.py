@@ -9,7 +9,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.curve_table import read_curve
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.rigid import pose
+from sevenbar.kinematics.loop.rigid import pose
 from sevenbar.text.table import plain_name, read_table
 
 #: The columns of a rotation: its axis times its angle.

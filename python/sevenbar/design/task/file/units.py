@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sevenbar.design.task.file.values import Given
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.kinematics.measures import measures_named
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.units import examples_of

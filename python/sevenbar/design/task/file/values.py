@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from sevenbar.description.values import POSITIVE, number_for, refuse, three
 from sevenbar.errors import shown
-from sevenbar.kinematics.rigid import flaw_of_rotation
+from sevenbar.kinematics.loop.rigid import flaw_of_rotation
 from sevenbar.text.expression import constant_of
 from sevenbar.text.ranges import split_range
 

@@ -38,7 +38,7 @@ from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.design.wish import chebyshev, read_pairs, wish_of_function
 from sevenbar.errors import RequestError, TableError
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.rigid import inverse, pose, turns_about, unit
+from sevenbar.kinematics.loop.rigid import inverse, pose, turns_about, unit
 from sevenbar.text.expression import function_of
 
 T = TypeVar("T")

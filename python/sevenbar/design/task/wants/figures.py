@@ -9,9 +9,9 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.task import FigureWant
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.measures import gradient, mass_gradient, measures_named
-from sevenbar.kinematics.motion import Motion
 
 #: Step of the differences that stand in for slopes where a measure has none of its own [of a unit].
 STEP = 1e-5

@@ -10,7 +10,7 @@ from sevenbar.design.task.match import Placing
 from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.task import StraightWant
 from sevenbar.design.task.wants.wanted import Begun, Stations
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 
 
 class LineWanted:

@@ -11,7 +11,7 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.design.task.loop import Here
 from sevenbar.design.task.match import Placing
 from sevenbar.design.task.passes import InputPass
-from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.circuits.circuit import Circuit
 
 
 @dataclass(frozen=True, eq=False)

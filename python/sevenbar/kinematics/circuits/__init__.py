@@ -1,0 +1,1 @@
+"""Circuits and motions as values: rows, rates, extremes, dead centres, points along them."""

@@ -1,0 +1,524 @@
+"""One circuit: its rows, rates, extremes and dead centres, points and links along it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from typing import Any, Literal, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats, Integers, Words, counted, finite_array
+from sevenbar.errors import RequestError, ends_here, shown
+from sevenbar.forces.bodies import Body
+from sevenbar.forces.counterweights import Balance
+from sevenbar.forces.free_motion.equilibria import Equilibrium
+from sevenbar.forces.free_motion.result import FreeMotion
+from sevenbar.forces.loading import Load, Spring
+from sevenbar.forces.result import Forces
+from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
+from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange, WithExtents
+from sevenbar.kinematics.circuits.instant_centres import InstantCentres, instant_centres
+from sevenbar.kinematics.circuits.link_motion import LinkMotion, link_motion
+from sevenbar.kinematics.loop.geometry import Point
+from sevenbar.kinematics.loop.rigid import placed, pose
+from sevenbar.kinematics.loop.screw_axes import ScrewAxes, Twists, screw_axes
+from sevenbar.text.printing import Printed
+
+#: An output that moves less than this compared with the input [rad, or relative to the size] rests.
+AT_REST = 1e-12
+
+
+class Answers(Protocol):
+    """What a circuit asks its linkage when it is asked itself."""
+
+    def point(self, name: str) -> Point:
+        """A named point."""
+        ...
+
+    def transmission_angle(self, circuit: Circuit) -> Floats | None:
+        """The transmission angle [rad] on each row (n,)."""
+        ...
+
+    def transmission(self, circuit: Circuit) -> Extremes | None:
+        """The lowest and the highest transmission angle [rad]."""
+        ...
+
+    def advantage(self, circuit: Circuit) -> Extremes | None:
+        """The lowest and the highest mechanical advantage."""
+        ...
+
+    def counterweights(
+        self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
+    ) -> Balance:
+        """The counterweights on links for the least shaking, with what acts given, or the linkage's own."""
+        ...
+
+    def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
+        """The range of every column but a ball's."""
+        ...
+
+    def ball_cones(self, circuit: Circuit) -> Mapping[str, BallCone]:
+        """How far balls and universal joints are bent."""
+        ...
+
+    def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> BallCone:
+        """How far one is bent between directions that are given."""
+        ...
+
+    def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
+        """The bend of each on its rows."""
+        ...
+
+    def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
+        """The least distances of links that share no joint."""
+        ...
+
+    def allowed(self, circuit: Circuit) -> Allowed:
+        """What part of it is within the stops."""
+        ...
+
+    def plane_coordinates(self, places: Floats) -> Floats | None:
+        """Places (..., 3) in the plane of a planar loop (..., 2)."""
+        ...
+
+    def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
+        """The forces on its rows, with what is given in place of what the linkage has."""
+        ...
+
+    def free_motion(
+        self, circuit: Circuit, given: Mapping[str, Any], options: Mapping[str, Any]
+    ) -> FreeMotion:
+        """How it moves by itself, with what is given in place of what the linkage has."""
+        ...
+
+    def equilibria(
+        self, circuit: Circuit, given: Mapping[str, Any], torque: float
+    ) -> tuple[Equilibrium, ...]:
+        """Where it can rest, with what is given in place of what the linkage has."""
+        ...
+
+
+def _given(**acting: object) -> dict[str, object]:
+    """What is given of what acts, in the place of what the linkage has."""
+    return {key: value for key, value in acting.items() if value is not None}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Circuit(Printed, WithExtents):
+    """One connected motion, row by row along it.
+
+    `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n,
+    columns), unwrapped [rad and derivatives by s]. `time` [s]; `status`, `branch` (the pass between input
+    dead centres), `mode` (the branch of the closed form), `residual` (closure error in the length unit),
+    `condition` (how much a relative error of the squared lengths is magnified in the velocity), each (n,).
+    """
+
+    index: int
+    motion_type: str
+    closed: bool
+    turns: int
+    columns: tuple[str, ...]
+    q: Floats
+    dq: Floats
+    ddq: Floats
+    dddq: Floats
+    time: Floats
+    status: Words
+    branch: Integers
+    mode: Integers
+    residual: Floats
+    condition: Floats
+    dead_centres: tuple[DeadCentre, ...]
+    #: Ranges [rad, or length] of input and output; `None` for one that turns fully, though it may turn back
+    #: on the way.
+    input_range: tuple[float, float] | None
+    output_range: tuple[float, float] | None
+    #: Of the output's velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3]; `None` where they grow
+    #: without bound, or a change point lies within.
+    velocity: Extremes | None
+    acceleration: Extremes | None
+    jerk: Extremes | None
+    #: Of the output itself [rad, or length]: its lowest and highest dead centre; `None` where it turns fully.
+    angle: Extremes | None
+    #: How far the output rocks [rad, or length]; `None` for one that turns fully.
+    swing: float | None
+    #: Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output. `None`
+    #: also for a crank that turns back on the way, and at a change point where both ends of the output are at
+    #: one input: a stroke without time.
+    time_ratio: float | None
+    input_column: int
+    output_column: int
+    #: Whether input and output are angles, not slides.
+    input_turns: bool
+    output_turns: bool
+    #: The size of the linkage [length].
+    size: float
+    #: d(input)/dt [rad/s, or length/s]; NaN where a law drives.
+    speed: float
+    _point: Callable[[int, Floats], Trace] = field(repr=False)
+    _frames: Floats = field(repr=False)
+    _sensitivity: Callable[[Circuit], Sensitivity] = field(repr=False)
+    _answers: Answers = field(repr=False)
+    #: The extremes of the transmission angle where the closed form has them.
+    _transmission: Extremes | None = field(repr=False)
+
+    @cached_property
+    def transmission(self) -> Extremes | None:
+        """The lowest and the highest transmission angle [rad]; `None` where it is not defined.
+
+        >>> import math
+        >>> import sevenbar as sb
+        >>> lowest = sb.load("planar_4r").motion().circuits[0].transmission.lowest
+        >>> round(math.degrees(lowest), 6)  # cos mu = (100^2 + 80^2 - 130^2) / (2 * 100 * 80), supplement
+        29.686295
+
+        Source: docs/theory_measures.md, (4) to (7).
+        """
+        return self._answers.transmission(self) if self._transmission is None else self._transmission
+
+    @cached_property
+    def transmission_angle(self) -> Floats | None:
+        """The transmission angle [rad] on each row (n,), from 0 to a right angle; `None` where not defined.
+
+        0 at dead centres of the input, NaN on rows without a pose. The pressure angle is a right angle less
+        it.
+
+        Source: docs/theory_measures.md, (4) to (6).
+        """
+        return self._answers.transmission_angle(self)
+
+    @property
+    def mechanical_advantage(self) -> Floats:
+        """Torque or force of the output over that of the input, without losses, (n,): d(input)/d(output).
+
+        Torque over torque has no unit; a force at a slide over a torque is in 1/length, a torque over a
+        force in length. Negative where they go opposite ways; without bound (inf) at dead centres of the
+        output, 0 at those of the input, NaN where a row has no rates.
+
+        Source: docs/theory_measures.md, (11).
+        """
+        rates = self.dq[:, [self.input_column, self.output_column]]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = rates[:, 0] / rates[:, 1]
+        driving, driven = np.abs(
+            rates / [1.0 if turns else self.size for turns in (self.input_turns, self.output_turns)]
+        ).T
+        ratio[driven <= AT_REST * driving] = np.inf
+        ratio[self.status == "dead-centre"] = 0.0
+        return np.asarray(ratio)
+
+    @cached_property
+    def advantage(self) -> Extremes | None:
+        """The lowest and the highest mechanical advantage; `None` where the output stands still on the way.
+
+        >>> import sevenbar as sb
+        >>> joint = sb.load("universal_joint").motion().circuits[0]  # a bend of acos(0.8)
+        >>> sorted(abs(round(x, 12)) for x in (joint.advantage.lowest, joint.advantage.highest))
+        [0.8, 1.25]
+        """
+        return self._answers.advantage(self)
+
+    @cached_property
+    def tally(self) -> Tally:
+        """What there is to say of the rows as a whole."""
+        known = self.residual[np.isfinite(self.residual)]
+        return Tally(
+            len(self.time),
+            counted(self.status),
+            float(known.max()) if known.size else math.nan,
+        )
+
+    def fleeting(self) -> Circuit:
+        """The circuit for one look at its rows: those of a long one are not kept with it."""
+        return self
+
+    @property
+    def input(self) -> Floats:
+        """The input [rad, or length], (n,)."""
+        return self.q[:, self.input_column]
+
+    @property
+    def output(self) -> Floats:
+        """The output [rad, or length], (n,)."""
+        return self.q[:, self.output_column]
+
+    @property
+    def turns_back(self) -> bool:
+        """Whether the input has dead centres: there rates against it grow without bound."""
+        return any(d.kind == "input" for d in self.dead_centres)
+
+    @property
+    def goes_round(self) -> bool:
+        """Whether the input, driven one way, leads all along the circuit: it turns fully and never back."""
+        return self.closed and self.input_range is None and not self.turns_back
+
+    def pass_range(self, branch: int) -> tuple[float, float] | None:
+        """The range of the input [rad, or length] on one of its passes; `None` where it goes round."""
+        if self.goes_round:
+            return None
+        ends = [d.input for d in self.dead_centres if d.kind == "input"]
+        if not self.closed or branch >= len(ends):
+            return self.input_range
+        ends.append(ends[0] + math.tau * self.turns)
+        return min(ends[branch : branch + 2]), max(ends[branch : branch + 2])
+
+    @ends_here
+    def point(self, link: int | str, at: tuple[float, float, float] | None = None) -> Trace:
+        """A point of link 1, 2, .. along the circuit, or a point of the linkage by its name.
+
+        `at` is written as for the points of the file: (u, v, w) in Denavit-Hartenberg rows, in the
+        link's frame for `[rssr]`, in ground coordinates of the drawn pose for drawn joints. Raises
+        `RequestError` for a link or a name that does not exist.
+
+        Source: docs/theory.md, (16).
+
+            >>> import numpy as np
+            >>> import sevenbar as sb
+            >>> circuit = sb.load("rssr").motion().circuits[0]
+            >>> trace = circuit.point(link=1, at=(250, 0, 0))  # the crank's ball: 250 mm at 10 rad/s
+            >>> bool(np.allclose(np.linalg.norm(trace.acceleration, axis=1), 25000))
+            True
+            >>> bool(np.array_equal(circuit.point("A").position, trace.position))
+            True
+        """
+        if isinstance(link, str):
+            if at is not None:
+                raise RequestError(f"at: point {shown(link)} has its place; leave `at` out, or give a link")
+            named = self._answers.point(link)
+            return self.point(named.link, named.at)
+        frame = self._frame(link)
+        if at is None:
+            raise RequestError("at: a link needs a place on it; give three numbers, or a point by its name")
+        place = finite_array("at", at)
+        if place.size != 3:
+            raise RequestError(f"at: {place.size} numbers; give three")
+        return self._point(int(link), placed(frame, place))
+
+    @ends_here
+    def sensitivity(self) -> Sensitivity:
+        """Exact derivatives of all joints and named points by every number of the linkage's description.
+
+        The input stays as it is. Raises `RequestError` for a linkage made without a description.
+
+        Source: docs/theory_design.md, (1) to (5).
+
+            >>> import sevenbar as sb
+            >>> found = sb.load("rssr").motion(12).circuits[0].sensitivity()
+            >>> found.names, found.position.shape
+            (('M', 'N', 'L1', 'L2', 'L3', 'D'), (12, 8, 6))
+        """
+        return self._sensitivity(self)
+
+    @ends_here
+    def forces(
+        self,
+        *,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+        gravity: tuple[float, float, float] | None = None,
+        loads: Sequence[Load] | None = None,
+        springs: Sequence[Spring] | None = None,
+        at_rest: bool = False,
+    ) -> Forces:
+        """What the input has to give, and what every joint bears, on each row.
+
+        Bodies (by their link), gravity [m/s^2], loads and springs are those of the linkage's file, or the
+        given ones. Rates are those of the circuit, or with `at_rest` zero: statics on every row, where
+        nothing has inertia and dampers do nothing. Raises `RequestError` where nothing has a mass and nothing
+        acts.
+
+            >>> import sevenbar as sb
+            >>> crank = sb.Body(mass=2.0, centre=(125, 0, 0))
+            >>> found = sb.load("rssr").motion().circuits[0].forces(bodies={1: crank}, gravity=(0, 0, -9.81))
+            >>> round(float(found.reactions["crank"].force[0, 2]), 6)  # the ground lifts 2 kg
+            19.62
+
+        Source: docs/theory_forces.md, (1) to (7).
+        """
+        given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
+        return self._answers.forces(self, given, at_rest=at_rest)
+
+    @ends_here
+    def counterweights(
+        self,
+        links: Sequence[int],
+        *,
+        radius: float | Mapping[int, float] | None = None,
+        most_mass: float | Mapping[int, float] | None = None,
+        measure: Literal["rms", "greatest"] = "rms",
+        force: float = 1.0,
+        moment: float = 0.0,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+    ) -> Balance:
+        """Counterweights on some links for the least shaking of all bodies, the linkage's or those given.
+
+        Least squares over the cycle give mass times radius for each link, and the mass at a `radius` [length]
+        from its joint at the ground, or from the joint before it. With `most_mass` [kg] no mass is above and
+        none farther than `radius`, each a number or one by link; then the `measure` "rms" over the cycle or
+        the "greatest" of the rows is the least there is, with its proof. What counts is the size of `force`
+        times the force and `moment` [1/m] times the moment about the report's origin, without that of the
+        counterweights' own inertia.
+
+        Raises `RequestError` for arguments that do not fit, and where the shaking has no bound.
+
+            >>> import sevenbar as sb
+            >>> rod = {2: sb.Body(mass=1.3, solid="rod")}
+            >>> found = sb.load("rssr").motion().circuits[0].counterweights([1, 3], bodies=rod)
+            >>> found.rank, found.unknowns, bool(found.after < 1e-12 * found.before)
+            (4, 6, True)
+            >>> [round(one.product, 6) for one in found.counterweights]  # half of 1.3 kg at 250 and 550 mm
+            [162.5, 357.5]
+
+        Source: docs/theory_forces.md, (17) to (23).
+        """
+        how = {"radius": radius, "most_mass": most_mass, "measure": measure, "force": force, "moment": moment}
+        return self._answers.counterweights(self, links, {} if bodies is None else {"bodies": bodies}, how)
+
+    @ends_here
+    def free_motion(
+        self,
+        duration: float | str,
+        *,
+        speed: float | str | None = None,
+        energy: float | None = None,
+        start: float | str | None = None,
+        branch: int | None = None,
+        torque: Any = None,
+        torque_by_time: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+        samples: int = 361,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+        gravity: tuple[float, float, float] | None = None,
+        loads: Sequence[Load] | None = None,
+        springs: Sequence[Spring] | None = None,
+    ) -> FreeMotion:
+        """How the linkage moves by itself along this circuit for a `duration` [s, or "10s"].
+
+        It starts at the input `start` [rad, length, or text], the circuit's first row by default, with the
+        input's `speed` [rad/s, length/s, or text] or the kinetic `energy` [J], at rest by default; `branch`
+        counts the poses that have this input. `torque` acts on the input [N m, of a slide N]: a number, a
+        curve (speeds, torques), or a function of the speed; `torque_by_time` is a curve (times, torques).
+        Without dampers and with a torque that is a number at most, time is an integral along the circuit and
+        nothing is stepped. Change points are passed along the circuit's smooth continuation. Rows are
+        `samples` even times; the rest is as for `forces`.
+
+        Raises `RequestError` where nothing has a mass, and for a start that the circuit does not have.
+
+            >>> import sevenbar as sb
+            >>> linkage = sb.four_bar(crank=40, coupler=100, rocker=80, ground=90)
+            >>> crank = sb.Body(mass=2.0, centre=(0, 20, 0))
+            >>> circuit = linkage.motion().circuits[0]
+            >>> fall = circuit.free_motion("10s", start="30deg", bodies={1: crank}, gravity=(0, -9.81, 0))
+            >>> fall.kind
+            'oscillation'
+
+        Source: docs/theory_free.md, (1) to (13).
+        """
+        given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
+        options = {
+            "duration": duration,
+            "speed": speed,
+            "energy": energy,
+            "start": start,
+            "branch": branch,
+            "torque": torque,
+            "torque_by_time": torque_by_time,
+            "samples": samples,
+        }
+        return self._answers.free_motion(self, given, options)
+
+    @ends_here
+    def equilibria(
+        self,
+        *,
+        torque: float = 0.0,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+        gravity: tuple[float, float, float] | None = None,
+        loads: Sequence[Load] | None = None,
+        springs: Sequence[Spring] | None = None,
+    ) -> tuple[Equilibrium, ...]:
+        """All poses of this circuit in which the linkage can rest, along the circuit.
+
+        Under a constant `torque` [N m, of a slide N] at the input; the rest is as for `forces`. None where
+        the potential is constant, as without gravity and springs: then it rests anywhere.
+
+            >>> import sevenbar as sb
+            >>> crank = sb.Body(mass=2.0, centre=(125, 0, 0))
+            >>> circuit = sb.load("rssr").motion().circuits[0]
+            >>> found = circuit.equilibria(bodies={1: crank}, gravity=(0, -9.81, 0))
+            >>> [(place.kind, round(place.input % 6.283185307, 9)) for place in found]
+            [('unstable', 1.570796327), ('stable', 4.71238898)]
+
+        Source: docs/theory_free.md, (11).
+        """
+        given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
+        return self._answers.equilibria(self, given, torque)
+
+    @ends_here
+    def link_motion(self, link: int) -> LinkMotion:
+        """How link 1, 2, .. turns along the circuit: angular velocity and acceleration, report frame.
+
+        >>> import numpy as np
+        >>> import sevenbar as sb
+        >>> crank = sb.load("rssr").motion().circuits[0].link_motion(1)
+        >>> bool(np.allclose(crank.velocity, (0, 0, 10)))
+        True
+        """
+        self._frame(link)
+        return link_motion(partial(self._point, int(link)), self.size)
+
+    @ends_here
+    def screw_axes(self, link: int, relative_to: int | None = None) -> ScrewAxes:
+        """The instantaneous screw axis of a link on each row, against the ground or another link.
+
+        Source: docs/theory_measures.md, (8) and (9).
+
+            >>> import sevenbar as sb
+            >>> circuit = sb.load("rssr").motion().circuits[0]
+            >>> axes = circuit.screw_axes(2)  # of the coupler
+            >>> axes.point.shape, axes.pitch.shape
+            ((360, 3), (360,))
+            >>> circuit.screw_axes(1).direction[0].tolist()  # the crank turns about its axis
+            [0.0, 0.0, 1.0]
+        """
+        self._frame(link)
+        other = len(self._frames) if relative_to is None else relative_to
+        if relative_to is not None:
+            self._frame(relative_to)
+        if link == other:
+            raise RequestError(f"relative_to: link {link} is the link itself; give another")
+        (own, words), (base, others) = self._twists(int(link)), self._twists(int(other))
+        status = np.where(words == "ok", others, words)
+        return screw_axes(int(link), int(other), own, base, self.size, status)
+
+    @ends_here
+    def instant_centres(self) -> InstantCentres:
+        """The instant centres of all pairs of links of a planar loop, on each row.
+
+        Raises `RequestError` for other loops, whose links have screw axes.
+
+            >>> import sevenbar as sb
+            >>> centres = sb.load("planar_4r").motion().circuits[0].instant_centres()
+            >>> len(centres), centres[4, 1].in_plane[0].tolist()  # the crank's axis
+            (6, [90.0, 0.0])
+
+        Source: docs/theory_measures.md, (10).
+        """
+        return instant_centres(self.screw_axes, len(self._frames), self._answers.plane_coordinates)
+
+    def _twists(self, link: int) -> tuple[Twists, Words]:
+        """How a link moves, by the frame in which its points are written; and the status of each row."""
+        origin, turning = self.point(link, (0.0, 0.0, 0.0)), self.link_motion(link)
+        frame = pose(turning.rotation @ self._frame(link)[:3, :3], origin.position)
+        return Twists(frame, turning.velocity, origin.velocity), origin.status
+
+    def _frame(self, link: object) -> Floats:
+        count = len(self._frames)
+        if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
+            raise RequestError(
+                f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground"
+            )
+        frame: Floats = self._frames[int(link) - 1]
+        return frame

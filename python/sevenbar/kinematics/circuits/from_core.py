@@ -1,0 +1,178 @@
+"""Values of a motion from what the core hands over: columns by name, times of rows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+
+import sevenbar._core as _core
+from sevenbar.arrays import Booleans, Floats, Integers, Words
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import (
+    STATUSES,
+    DeadCentre,
+    Extremes,
+    Sensitivity,
+    Tally,
+    Trace,
+)
+from sevenbar.kinematics.circuits.motion import ChangePoint, Count, OpenRange, Search, Solvable
+from sevenbar.kinematics.loop.law import Law
+
+_STATUS_WORDS = np.array(STATUSES)
+
+#: Joint values with three derivatives (4, n, columns), and status, pass, residual, condition (n,).
+CoreRows = tuple[Floats, Integers, Integers, Floats, Floats]
+
+
+def change_points_from(raw: _core.RawMotion, column: int) -> tuple[ChangePoint, ...]:
+    """The change points of a motion, by their input; `column`: the input."""
+    points = (
+        ChangePoint(values[column], np.array(values), tuple(circuits), ways, freedoms)
+        for values, circuits, ways, freedoms in raw.change_points
+    )
+    return tuple(sorted(points, key=lambda point: point.input % math.tau))
+
+
+def search_from(raw: _core.RawSearch, columns: Sequence[str]) -> Search:
+    """What a search found, with the names of the columns."""
+    found, count = raw.found, raw.count
+    return Search(
+        completeness=raw.completeness,
+        columns=tuple(columns[c] for c in raw.columns),
+        values=raw.values,
+        unfollowed=raw.unfollowed,
+        rank=None if found is None else found.rank,
+        freedoms=None if found is None else found.finite,
+        open_by=raw.open_by,
+        count=None
+        if count is None
+        else Count(
+            columns[count.column],
+            count.dead_centres,
+            count.complex_branch_points,
+            count.poles,
+            tuple(OpenRange(*each) for each in count.open),
+        ),
+        uncounted=raw.uncounted,
+    )
+
+
+def tally_from(course: _core.Course, size: float) -> Tally:
+    """What there is to say of the rows of a course; `size` is that of which residuals are parts."""
+    counts = {word: count for word, count in zip(STATUSES, course.statuses, strict=True) if count}
+    worst = math.nan if course.residual is None else course.residual * size
+    return Tally(sum(course.statuses), dict(sorted(counts.items())), worst)
+
+
+def circuit_from(
+    raw: _core.RawCircuit,
+    *,
+    linkage: Solvable,
+    index: int,
+    columns: tuple[int, int],
+    speed: float,
+    law: Law | None,
+    size: float,
+    point: Callable[[Integers, Words, int, Floats], Trace],
+    sensitivity: Callable[[Circuit], Sensitivity],
+    rows: CoreRows | None = None,
+) -> Circuit:
+    """A circuit as the core has it.
+
+    `columns` are input and output, `size` that of which residuals are parts; `point` traces a point along
+    rows in an order and of a status. `rows` are those of a course, where the circuit has one.
+    """
+    input_column, output_column = columns
+    joints, statuses, branch, residual, condition = rows or (
+        raw.joints, raw.status, raw.branch, raw.residual, raw.condition,
+    )  # fmt: skip
+    (q, dq, ddq, dddq), order = joints, np.arange(len(statuses))
+    turns_back = any(kind == "input" for kind, *_ in raw.dead_centres)
+    if len(order) and raw.mode is None and speed < 0 and law is None and raw.turns and not turns_back:
+        order = np.append(order[:1], order[:0:-1])
+        q, dq, ddq, dddq = _backwards(q, linkage.turning)[order], dq[order], ddq[order], dddq[order]
+    status = _STATUS_WORDS[statuses[order]]
+    # the pose of a row may be known where a ball's turns are not
+    status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
+    inputs = q[:, input_column]
+    if law is None:
+        velocity, acceleration, jerk = map(_extremes, (raw.velocity, raw.acceleration, raw.jerk))
+    else:
+        velocity, acceleration, jerk = (
+            sampled_extremes(rate[:, output_column], inputs) for rate in (dq, ddq, dddq)
+        )
+    return Circuit(
+        index=index,
+        motion_type=raw.motion_type,
+        closed=raw.closed,
+        turns=raw.turns,
+        columns=linkage.columns,
+        q=q,
+        dq=dq,
+        ddq=ddq,
+        dddq=dddq,
+        time=driven_time(inputs, speed, law),
+        status=status,
+        branch=branch[order],
+        mode=np.full(len(order), index) if raw.mode is None else raw.mode,
+        residual=residual[order] * size,
+        condition=condition[order],
+        dead_centres=tuple(DeadCentre(*d) for d in raw.dead_centres),
+        input_range=raw.input_range,
+        output_range=raw.output_range,
+        velocity=velocity,
+        acceleration=acceleration,
+        jerk=jerk,
+        angle=_extremes(raw.angle),
+        swing=raw.swing,
+        time_ratio=raw.time_ratio,
+        input_column=input_column,
+        output_column=output_column,
+        input_turns=linkage.turns(input_column),
+        output_turns=linkage.turns(output_column),
+        size=size,
+        speed=speed if law is None else math.nan,
+        _point=partial(point, order, status),
+        _sensitivity=sensitivity,
+        _frames=linkage.point_frames,
+        _answers=linkage.answers,
+        _transmission=_extremes(raw.transmission),
+    )
+
+
+def _backwards(q: Floats, turns: Booleans) -> Floats:
+    """The joint values of a circuit that goes round, walked with rising input, as a falling one has them."""
+    # what the joints have turned when the circuit closes, which falls when it is run the other way
+    ahead = 2 * q[-1] - q[-2] - q[0]
+    back = q - np.where(turns, np.round(ahead / math.tau) * math.tau, 0.0)
+    back[0] = q[0]
+    return back
+
+
+def _extremes(ends: tuple[float, float, float, float] | None) -> Extremes | None:
+    return None if ends is None else Extremes(*ends)
+
+
+def driven_time(inputs: Floats, speed: float, law: Law | None) -> Floats:
+    """The time [s] of each row: along the input's travel, or the law's once for each pass."""
+    if law is not None:
+        return np.tile(law.t, len(inputs) // law.t.size)
+    if inputs.size == 0:
+        return np.array([])
+    steps = np.abs(inputs[1:] - inputs[:-1])
+    steps[np.isnan(steps)] = 0.0
+    time = np.zeros(len(inputs))
+    np.cumsum(steps, out=time[1:])
+    return time / abs(speed)
+
+
+def sampled_extremes(values: Floats, inputs: Floats) -> Extremes | None:
+    """Extremes as sampled: all that a law given by samples can tell."""
+    if np.isnan(values).all():
+        return None
+    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
+    return Extremes(float(values[low]), float(inputs[low]), float(values[high]), float(inputs[high]))

@@ -1,0 +1,482 @@
+"""What a linkage does: assembly modes, change points, every circuit and how they were found."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats, Words
+from sevenbar.errors import MissingExtraError, RequestError, shown
+from sevenbar.kinematics.circuits.circuit import Answers, Circuit
+from sevenbar.kinematics.circuits.extents import JointRange
+from sevenbar.kinematics.loop.columns import joint_columns, point_column
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.grashof import FourBar
+from sevenbar.kinematics.loop.law import Law
+from sevenbar.text.printing import Drawable, Printed
+from sevenbar.text.units import LENGTHS
+
+#: The least and the greatest closure error [rad, or relative to the size] up to which redundant constraints
+#: may be taken to agree: rounding is near the one, and another linkage near the other.
+LEAST_AGREE, MOST_AGREE = 1e-12, 1e-3
+
+#: What is proposed is greater than the closure error on the rows by this: there may be more between them.
+NEAR_ENOUGH = 2.0
+
+#: Inputs in a turn at which that error is computed.
+NEAR_SAMPLES = 72
+
+#: A loop of so many freedoms moves without redundant constraints.
+SPARE_FREEDOMS = 7
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from sevenbar.kinematics.loop.mobility import Mobility
+
+
+@dataclass(frozen=True, eq=False)
+class ChangePoint:
+    """A pose from which the loop can go on in more than one way, or that stands alone.
+
+    `q` (columns,) are its joint values [rad in (-pi, pi], or length], `input` that of the input; `circuits`
+    the numbers of those that meet there; `ways` how many curves lead out of it, two for each branch that
+    passes. An isolated pose has none. `freedoms` is the most that a motion out of it has: 1 where all are
+    circuits, more where one begins that the input does not determine, which is not followed.
+
+    Source: docs/theory.md, (19) to (22).
+    """
+
+    input: float
+    q: Floats
+    circuits: tuple[int, ...]
+    ways: int
+    freedoms: int
+
+    @property
+    def isolated(self) -> bool:
+        """Whether no motion leads out of it."""
+        return self.ways == 0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Output(Printed):
+    """Both branches of the closed form on n inputs; arrays (2, n), `None` above the order asked for.
+
+    `position` [rad], `velocity` [rad/s], `acceleration` [rad/s^2], `jerk` [rad/s^3]. An input without
+    solution keeps its place as NaN; so do the rates at an input dead centre. `status` says which.
+    """
+
+    position: Floats
+    velocity: Floats | None = None
+    acceleration: Floats | None = None
+    jerk: Floats | None = None
+
+    @property
+    def status(self) -> Words:
+        """The status of each value, (2, n): "ok", "dead-centre" (from order 1 on), "no-solution"."""
+        status = np.full(self.position.shape, "ok", dtype="<U15")
+        if self.velocity is not None:
+            status[np.isnan(self.velocity)] = "dead-centre"
+        status[np.isnan(self.position)] = "no-solution"
+        return status
+
+
+def _none() -> Floats:
+    return np.array([])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Modes(Printed):
+    """All assembly modes at one input: joint values (m, columns), angles in (-pi, pi].
+
+    Turns of a ball that have no direction are NaN; `status` says which.
+    """
+
+    q: Floats
+    residual: Floats
+    completeness: Literal["closed-form", "algebraic", "searched"]
+    columns: tuple[str, ...]
+    input: float
+    #: Other poses that redundant constraints alone keep open: how much [rad, relative to the size], rising.
+    open_by: Floats = field(default_factory=_none)
+    #: The closure error [rad, relative to the size] up to which they agree; NaN where nothing is redundant.
+    agree: float = math.nan
+
+    @property
+    def status(self) -> Words:
+        """The status of each mode, (m,): "ok", or "turns-undefined" where those of a ball are."""
+        return np.where(np.isnan(self.q).any(axis=1), "turns-undefined", "ok")
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+
+@dataclass(frozen=True)
+class OpenRange:
+    """A range of a joint [rad] in which its branch points are not all accounted for."""
+
+    start: float
+    end: float
+    #: Dead centres counted there and not known; `None` where solutions run to infinity, or were lost.
+    missing: int | None
+
+
+@dataclass(frozen=True)
+class Count:
+    """The account of a joint's branch points: all of them, and the modes at one value, mean all circuits.
+
+    The joint is the input, or the first that turns where the input slides.
+    """
+
+    joint: str
+    #: Real branch points, where this joint turns back on a circuit, or farther out than these are followed.
+    dead_centres: int
+    #: Complex ones near the real values, located and counted off.
+    complex_branch_points: int
+    #: Joints, of those watched, that become infinite near the real values; kept out of the count.
+    poles: int
+    #: Ranges that do not balance; none where circuits are `counted`.
+    open: tuple[OpenRange, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What a search for the circuits found; of the closed form no more than that.
+
+    All modes were found at so many `values` of each of the `columns`; from `unfollowed` of them no motion
+    could be followed. `rank` is that of the joints' screws in these poses and `freedoms` those of the
+    motions out of them, `None` where there are none.
+    """
+
+    completeness: Literal["closed-form", "counted", "algebraic", "searched"]
+    columns: tuple[str, ...] = ()
+    values: int = 0
+    unfollowed: int = 0
+    rank: int | None = None
+    freedoms: int | None = None
+    #: Poses that redundant constraints alone keep open: by how much [rad, or relative to the size], rising.
+    open_by: Floats = field(default_factory=_none)
+    #: How the circuits were counted; `None` where they were not.
+    count: Count | None = None
+    #: Why they were not: modes were "searched", a solution was "lost", or with the input "still" others move.
+    uncounted: Literal["searched", "lost", "still"] | None = None
+
+
+@dataclass(frozen=True)
+class NearMotion:
+    """How a linkage without a circuit moves if its redundant constraints are taken to agree.
+
+    `miss` [length] is the greatest closure error on the way, `share` the same relative to the linkage size
+    (or in rad); with the closure error `agree` the motion is the one of `motion_type`.
+    """
+
+    motion_type: str
+    miss: float
+    share: float
+    agree: float
+
+
+class Solvable(Loop, ABC):
+    """A loop that answers: what results know of the `Linkage` of which they are."""
+
+    @property
+    @abstractmethod
+    def lengths(self) -> tuple[float, float, float]:
+        """Crank, coupler and rocker of an RSSR [length]."""
+
+    @property
+    @abstractmethod
+    def idle(self) -> tuple[str, ...]:
+        """Freedoms that move no other link."""
+
+    @property
+    @abstractmethod
+    def idle_links(self) -> frozenset[int]:
+        """The links that take part in them, counted from 1."""
+
+    @cached_property
+    @abstractmethod
+    def held(self) -> tuple[frozenset[int], list[int], int]:
+        """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise."""
+
+    @property
+    @abstractmethod
+    def spin_axes(self) -> dict[str, Floats]:
+        """The axis that holds the idle spin beyond a ball, by the ball's name."""
+
+    @cached_property
+    @abstractmethod
+    def answers(self) -> Answers:
+        """What its circuits take from it."""
+
+    @property
+    @abstractmethod
+    def is_planar(self) -> bool:
+        """Whether it can only move in a plane."""
+
+    @abstractmethod
+    def as_four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
+        """The links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank."""
+
+    @abstractmethod
+    def mobility(self, *, agree: float | None = None) -> Mobility:
+        """How freely the loop moves."""
+
+    @abstractmethod
+    def assembly_modes(
+        self,
+        theta: float | str,
+        *,
+        input: str | None = None,
+        method: Literal["auto", "general"] = "auto",
+        agree: float | None = None,
+    ) -> Modes:
+        """Every assembly mode at one value of the input."""
+
+    @abstractmethod
+    def motion(
+        self,
+        samples: int = 360,
+        *,
+        input: str | None = None,
+        output: str | None = None,
+        speed: float | str | None = None,
+        law: Law | None = None,
+        method: Literal["auto", "general"] = "auto",
+        agree: float | None = None,
+    ) -> Motion:
+        """Every circuit over the whole input range."""
+
+    @abstractmethod
+    def circuit(
+        self,
+        pose: npt.ArrayLike,
+        samples: int = 360,
+        *,
+        input: str | None = None,
+        output: str | None = None,
+        speed: float | str | None = None,
+        law: Law | None = None,
+        agree: float | None = None,
+    ) -> Circuit:
+        """The one circuit through a pose."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(Drawable):
+    """The circuits of a linkage over the whole input range."""
+
+    linkage: Solvable
+    input: str
+    output: str
+    #: d(input)/dt [rad/s]; NaN where a law drives.
+    speed: float
+    samples: int
+    motion_type: str
+    #: Input dead centres [rad in [0, 2 pi), or length], rising.
+    limits: Floats
+    #: Poses at which branches meet, or would by a change of some 1e-12 of a dimension; isolated poses too.
+    change_points: tuple[ChangePoint, ...]
+    circuits: tuple[Circuit, ...]
+    #: How the circuits were looked for, and what was found out.
+    search: Search
+    #: Constraints that the others imply, in words.
+    redundant: tuple[str, ...]
+    #: The closure error [rad, relative to the size] up to which redundant constraints agree.
+    agree: float
+    law: Law | None = None
+    #: The speed as it was written, "3000 rpm", where it was a text.
+    speed_written: str = ""
+
+    @property
+    def completeness(self) -> Literal["closed-form", "counted", "algebraic", "searched"]:
+        """How it is known that no circuit is missing."""
+        return self.search.completeness
+
+    @property
+    def change_point_inputs(self) -> Floats:
+        """The input at the change points [rad in [0, 2 pi), or length], rising; isolated poses aside."""
+        values = np.array([point.input for point in self.change_points if not point.isolated])
+        turns = self.linkage.turns(self.input)
+        return np.sort(np.mod(values, math.tau) if turns else values)
+
+    @property
+    def idle(self) -> tuple[str, ...]:
+        """Freedoms that move one link only."""
+        return self.linkage.idle
+
+    @property
+    def mobility(self) -> Mobility:
+        """How freely the linkage moves."""
+        return self.linkage.mobility(agree=self.agree)
+
+    @property
+    def joint_ranges(self) -> tuple[Mapping[str, JointRange], ...]:
+        """The joint ranges of each circuit; see `Circuit.joint_ranges`.
+
+        >>> import sevenbar as sb
+        >>> [ranges["crank"].endless for ranges in sb.load("rssr").motion().joint_ranges]
+        [True, True]
+        """
+        return tuple(circuit.joint_ranges for circuit in self.circuits)
+
+    @cached_property
+    def near_motion(self) -> NearMotion | None:
+        """By how little a linkage without a circuit misses a motion; `None` where it has one, or misses more.
+
+        It is worked out on demand, up to a closure error of 1e-3 of the size.
+
+        >>> import sevenbar as sb
+        >>> rows = {"length": [50, 98.48] * 2, "twist": ["30 deg", "100 deg"] * 2, "offset": [0] * 4}
+        >>> sb.from_dh("RRRR", **rows).motion().near_motion.agree
+        1e-05
+        """
+        if self.circuits or len(self.linkage.columns) >= SPARE_FREEDOMS:
+            return None
+
+        def eased(agree: float) -> Motion:
+            return self.linkage.motion(NEAR_SAMPLES, input=self.input, output=self.output, agree=agree)
+
+        widest = eased(MOST_AGREE)
+        if not widest.circuits:
+            return None
+        miss = max(float(np.nanmax(circuit.residual)) for circuit in widest.circuits)
+        share = miss / widest.circuits[0].size
+        agree = min(MOST_AGREE, float(f"1e{math.ceil(math.log10(NEAR_ENOUGH * share))}"))
+        if eased(agree).motion_type != widest.motion_type:
+            agree = MOST_AGREE
+        return NearMotion(widest.motion_type, miss, share, agree)
+
+    @property
+    def four_bar(self) -> FourBar | None:
+        """Its links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank.
+
+        >>> import sevenbar as sb
+        >>> sb.load("planar_4r").motion().four_bar.grashof
+        'crank-rocker'
+        """
+        return self.linkage.as_four_bar(self.input, self.output)
+
+    def __iter__(self) -> Iterator[Circuit]:
+        return iter(self.circuits)
+
+    def __len__(self) -> int:
+        return len(self.circuits)
+
+    @overload
+    def __getitem__(self, index: SupportsIndex) -> Circuit: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Circuit, ...]: ...
+
+    def __getitem__(self, index: SupportsIndex | slice) -> Circuit | tuple[Circuit, ...]:
+        """A circuit by its number, or some by a slice: `motion[0]`, `motion[-1]`."""
+        try:
+            return self.circuits[index]
+        except IndexError:
+            count = len(self.circuits)
+            raise IndexError(f"motion: no circuit {index}; it has {count}, counted from 0") from None
+
+    def __bool__(self) -> bool:
+        """A motion without circuits is a result as well."""
+        return True
+
+    def columns(self, *, si: bool = False) -> dict[str, npt.NDArray[Any]]:
+        """Every row of every circuit, column by column; each name ends in its unit.
+
+        Angles are in degrees and lengths in the linkage's unit; with `si` in radians and metres.
+
+        >>> import sevenbar as sb
+        >>> list(sb.load("planar_4r").motion().columns())[:6]
+        ['circuit', 'branch', 'sample', 'status', 'time_s', 'theta_1_deg']
+        """
+        parts = list(self.column_parts(si=si))
+        if not parts:
+            return {}
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    def column_parts(self, *, si: bool = False) -> Iterator[dict[str, npt.NDArray[Any]]]:
+        """`columns` circuit by circuit: the rows of a long one are dropped with its part.
+
+        >>> import sevenbar as sb
+        >>> [len(part["status"]) for part in sb.load("rssr").motion(36).column_parts()]
+        [36, 36]
+        """
+        for circuit in self.circuits:
+            yield _circuit_columns(circuit.fleeting(), self.linkage, si)
+
+    def to_frame(self) -> pd.DataFrame:
+        """`columns` as a pandas table (extra `[frame]`)."""
+        try:
+            import pandas as pd
+        except ImportError:
+            raise MissingExtraError(
+                "to_frame needs pandas; install it with: pip install 'sevenbar[frame]'"
+            ) from None
+        return pd.DataFrame(self.columns())
+
+
+def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt.NDArray[Any]]:
+    count = len(circuit.time)
+    length, angle = ("m", "rad") if si else (linkage.length_unit, "deg")
+    scale = LENGTHS[linkage.length_unit] if si else 1.0
+    columns: dict[str, npt.NDArray[Any]] = {
+        "circuit": np.full(count, circuit.index),
+        "branch": circuit.branch,
+        "sample": np.arange(count),
+        "status": circuit.status,
+        "time_s": circuit.time,
+    }
+    rates = (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)
+    columns |= joint_columns(linkage, rates, length=length, angle=angle, scale=scale)
+    for point in linkage.points:
+        trace = circuit.point(point.link, point.at)
+        for order, values in enumerate((trace.position, trace.velocity, trace.acceleration)):
+            for axis, letter in enumerate("xyz"):
+                head = point_column(point.name, letter, order=order, length=length)
+                columns[head] = values[:, axis] * scale
+    if circuit.transmission_angle is not None:
+        transmission = circuit.transmission_angle
+        columns[f"transmission_{angle}"] = transmission if si else np.degrees(transmission)
+    if not linkage.stops.is_empty:
+        for name, bend in circuit.bends.items():
+            columns[f"{name}_bend_{angle}"] = bend if si else np.degrees(bend)
+    if linkage.stops.stops:
+        columns["within_stops"] = circuit.allowed.within.astype(np.int64)
+    head, factor = _advantage_column(circuit, length, scale)
+    columns[head] = circuit.mechanical_advantage * factor
+    columns[f"residual_{length}"] = circuit.residual * scale
+    return columns
+
+
+def _advantage_column(circuit: Circuit, length: str, scale: float) -> tuple[str, float]:
+    """The column of the mechanical advantage, and a factor: torque over force is a length, and backwards."""
+    match circuit.input_turns, circuit.output_turns:
+        case True, False:
+            return f"mechanical_advantage_1_{length}", 1.0 / scale
+        case False, True:
+            return f"mechanical_advantage_{length}", scale
+        case _:
+            return "mechanical_advantage", 1.0
+
+
+def chosen_circuit(motion: Motion, index: int) -> Circuit:
+    """The circuit of this index, or `RequestError` saying why there is none."""
+    count = len(motion.circuits)
+    if count == 0:
+        closing = "at no input" if motion.motion_type == "cannot-assemble" else "along no circuit"
+        raise RequestError(
+            f"motion: {motion.motion_type}, the loop closes {closing}; 'sevenbar analyze' says why"
+        )
+    if isinstance(index, bool) or not isinstance(index, (int, np.integer)) or not 0 <= index < count:
+        allowed = "0" if count == 1 else f"0 to {count - 1}"
+        raise RequestError(f"circuit: {shown(index)} is not a circuit of this motion; give {allowed}")
+    return motion.circuits[index]

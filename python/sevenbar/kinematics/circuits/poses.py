@@ -1,0 +1,142 @@
+"""A circuit in the order of its motion, and the frames of its links on the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from sevenbar.arrays import Floats, Integers
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.rigid import inverse, pose
+
+
+@dataclass(frozen=True, eq=False)
+class Walk:
+    """A circuit as it is walked; closed by its first row, a turn on, unless a law drives.
+
+    `rows` index the circuit; `input`, `output` [rad] and `time` [s] run on over the closure, each (n,).
+    `passes` are the stretches between input dead centres, both ends included; `ways` has a factor for the
+    velocities of each: -1 where the input goes back, against its speed, else 1.
+    """
+
+    rows: Integers
+    input: Floats
+    output: Floats
+    time: Floats
+    passes: tuple[slice, ...]
+    ways: tuple[float, ...]
+
+    @cached_property
+    def sign(self) -> Floats:
+        """The factor of the velocities on each row, (n,)."""
+        sign = np.ones(len(self.rows))
+        for way, part in zip(self.ways, self.passes, strict=True):
+            sign[part] = way
+        return sign
+
+    def velocities(self, rates: Floats) -> Floats:
+        """Rates by time (rows of the circuit, ..) along the walk as they are seen: turned on the way back."""
+        turned: Floats = (rates[self.rows].T * self.sign).T
+        return turned
+
+
+#: A walk is made once and lives as long as its circuit.
+_WALKS: WeakKeyDictionary[Circuit, Walk] = WeakKeyDictionary()
+
+
+def walk(circuit: Circuit) -> Walk:
+    """The rows of a circuit in the order of its motion."""
+    found = _WALKS.get(circuit)
+    if found is None:
+        found = _WALKS[circuit] = _walked(circuit)
+    return found
+
+
+def _walked(circuit: Circuit) -> Walk:
+    count = len(circuit.time)
+    starts = [0, *(np.flatnonzero(np.diff(circuit.branch)) + 1), count]
+    rows, inputs, outputs, times = np.arange(count), circuit.input, circuit.output, circuit.time
+    closes = circuit.closed and count > 1 and not math.isnan(circuit.speed)
+    if closes:
+        # one that turns back on the way is walked as it rises
+        way = circuit.turns * math.copysign(math.tau, circuit.speed if circuit.goes_round else 1.0)
+        gained = 0.0 if circuit.output_range is not None else _turns_gained(outputs)
+        last = inputs[0] + way
+        times = np.append(times, times[-1] + abs(last - inputs[-1]) / abs(circuit.speed))
+        rows, inputs = np.append(rows, 0), np.append(inputs, last)
+        outputs = np.append(outputs, outputs[0] + gained)
+    passes = tuple(slice(a, b + closes) for a, b in pairwise(starts))
+    return Walk(rows, inputs, outputs, times, passes, _ways(circuit.speed, inputs, passes))
+
+
+def _ways(speed: float, inputs: Floats, passes: Sequence[slice]) -> tuple[float, ...]:
+    if math.isnan(speed) or len(passes) < 2:
+        return (1.0,) * len(passes)
+    rises = (float(inputs[part][-1] - inputs[part][0]) for part in passes)
+    return tuple(math.copysign(1.0, rise * speed) for rise in rises)
+
+
+def _turns_gained(angles: Floats) -> float:
+    """The whole turns [rad] between the first row of a closed circuit and the first again; 0 if unknown."""
+    ahead = float(2 * angles[-1] - angles[-2] - angles[0])
+    return round(ahead / math.tau) * math.tau if math.isfinite(ahead) else 0.0
+
+
+def along(linkage: Loop, circuit: Circuit, column: int) -> Floats:
+    """A column [rad, or length] of a circuit along its walk; a turn runs on over the closure, (n,)."""
+    path = walk(circuit)
+    if column == circuit.output_column:
+        return path.output
+    values: Floats = circuit.q[path.rows, column]
+    if len(path.rows) > len(circuit.time) and linkage.turns(column):
+        values[-1] += _turns_gained(circuit.q[:, column])
+    return values
+
+
+def at_row(values: Floats, row: float) -> Floats:
+    """Values (n, ..) of rows at a row from 0 to n - 1, on the straight line between two, (..)."""
+    low = min(int(row), len(values) - 1)
+    high, share = min(low + 1, len(values) - 1), row - low
+    between: Floats = values[low] + share * (values[high] - values[low]) if share else values[low]
+    return between
+
+
+def frames_of(linkage: Loop, q: Floats) -> Floats:
+    """The frames (n, moving links, 4, 4) of the links in the report frame, from joint values (n, columns)."""
+    now = np.broadcast_to(linkage.base, (len(q), 4, 4))
+    found = []
+    for joint, own, link in zip(linkage.joints[:-1], linkage.places[:-1], linkage.links, strict=True):
+        found.append(now @ joint.motion(q[:, own]))
+        now = found[-1] @ link
+    return np.stack(found, axis=1)
+
+
+def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
+    """The frames (n, joints, 4, 4) of each joint on the link before it and on the link after it.
+
+    `frames` (n, moving links, 4, 4) are those of the links, as `frames_of` gives them.
+    """
+    still = (len(frames), 1, 4, 4)
+    before = np.concatenate([np.broadcast_to(linkage.base, still), frames @ linkage.links], axis=1)
+    return before, np.concatenate([frames, np.broadcast_to(linkage.ground, still)], axis=1)
+
+
+def frames_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:
+    """The frames (n, moving links, 4, 4) of the links along rows of a circuit; NaN where it has no pose."""
+    frames = frames_of(linkage, circuit.q[rows])
+    # where a ball's turns have no value, the links still have a place
+    lost = np.flatnonzero(np.isnan(frames).any(axis=(1, 2, 3)))
+    for i in range(len(linkage.links) if lost.size else 0):
+        x, y, z = (float(value) for value in inverse(linkage.point_frames[i])[:3, 3])
+        frames[lost, i] = pose(
+            circuit.link_motion(i + 1).rotation[rows[lost]],
+            circuit.point(i + 1, (x, y, z)).position[rows[lost]],
+        )
+    return frames

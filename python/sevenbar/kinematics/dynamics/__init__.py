@@ -1,0 +1,1 @@
+"""Forces along a circuit, bodies and loads, free motion."""

@@ -1,0 +1,88 @@
+"""Counterweights for a circuit: what a unit of mass on each link shakes, and where its pivot is.
+
+With p the place of the link's origin, R its axes, a and A their second derivatives by time, a unit mass at
+the origin and unit first moments along the axes shake with (moment about the report origin, force)
+
+    (-p x a, -a)   and   (-p x A_j - R_j x a, -A_j)                                                     (18)
+
+Source: docs/theory_forces.md, (18).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.curves.timed_rows import shares_of
+from sevenbar.errors import RequestError
+from sevenbar.forces.counterweights import Balance, counterweights
+from sevenbar.forces.mounts import Mount
+from sevenbar.forces.result import Forces
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.link_motion import rates_of_frame
+from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.dynamics.link_bodies import joint_places, refuse_no_link
+from sevenbar.text.units import LENGTHS
+
+
+def balance_of(
+    linkage: Solvable, circuit: Circuit, forces: Forces, links: Sequence[int], options: Mapping[str, object]
+) -> Balance:
+    """Counterweights on links of a circuit for the shaking of its forces; see `Circuit.counterweights`.
+
+    Raises `RequestError` for a link that does not exist, and where a row has no shaking.
+    """
+    mounts = [mount_of(linkage, circuit, link) for link in links]
+    rows = np.concatenate(
+        [forces.shaking, *(mount.unit.reshape(len(forces.time), -1) for mount in mounts)], axis=1
+    )
+    if not np.isfinite(rows).all():
+        raise RequestError(
+            "counterweights: the shaking grows without bound at dead centres of the input; drive the circuit "
+            "by a law that stays off them, or take one whose input goes round"
+        )
+    shares = None if forces.periodic else shares_of(forces.time)
+    sizes = {"size": circuit.size, "shares": shares, "length_unit": linkage.length_unit}
+    return counterweights(forces.shaking, mounts, **sizes, **options)  # type: ignore[arg-type]
+
+
+def mount_of(linkage: Solvable, circuit: Circuit, link: int) -> Mount:
+    """A link of a circuit as one that may carry a counterweight; radii count from its joint at the ground.
+
+    From the joint before it, if it has none.
+    """
+    refuse_no_link("links", link, linkage)
+    ends = joint_places(linkage, link)
+    last = len(linkage.links)
+    grounded = link in (1, last)
+    pivot = ends[1] if link == last and link != 1 else ends[0]
+    axis = None
+    name = ""
+    if grounded:
+        name = linkage.joints[last if link == last and link != 1 else 0].name
+        directions = circuit.screw_axes(link).moving_direction
+        found = directions[np.isfinite(directions).all(axis=1)]
+        if len(found) and np.ptp(found * np.sign(found @ found[0])[:, None], axis=0).max() < 1e-9:
+            axis = (float(found[0, 0]), float(found[0, 1]), float(found[0, 2]))
+    x, y, z = (float(v) for v in pivot)
+    return Mount(int(link), unit_shaking(linkage, circuit, link), (x, y, z), axis, name)
+
+
+def unit_shaking(linkage: Solvable, circuit: Circuit, link: int) -> Floats:
+    """What a link shakes with (n, 4, 6) for unit first moments [by kg length] and 1 kg at its origin.
+
+    Source: docs/theory_forces.md, (18).
+    """
+    metre = LENGTHS[linkage.length_unit]
+    frame = rates_of_frame(partial(circuit.point, link), circuit.size)
+    (place, axes), (acceleration, axes_rate) = frame("position"), frame("acceleration")
+    unit = np.empty((len(place), 4, 6))
+    unit[:, 3, :3], unit[:, 3, 3:] = -(metre**2) * np.cross(place, acceleration), -metre * acceleration
+    for j in range(3):
+        along, second = axes[:, :, j], axes_rate[:, :, j]
+        unit[:, j, :3] = -(metre**2) * (np.cross(place, second) + np.cross(along, acceleration))
+        unit[:, j, 3:] = -metre * second
+    return unit

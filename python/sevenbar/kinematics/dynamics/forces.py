@@ -1,0 +1,302 @@
+"""The forces of a circuit by the transpose of its rates: what acts goes to the core, reactions come back.
+
+    A^T W = Q - c                                                                                         (4)
+
+The core (`crates/sevenbar-core/src/loops/forces`) counts lengths relative to the size, so forces in
+kg size/s^2; here they become newtons.
+
+Source: docs/theory_forces.md, (1) to (6).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+
+import numpy as np
+
+import sevenbar._core as _core
+from sevenbar.arrays import Booleans, Floats
+from sevenbar.errors import RequestError
+from sevenbar.forces.bodies import Body
+from sevenbar.forces.loading import Load, Loading, Spring, Three
+from sevenbar.forces.result import OPEN, Forces, Reaction
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.driven import driven
+from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.dynamics.link_bodies import as_moved, resolved
+from sevenbar.kinematics.loop.rigid import half_turn, inverse, placed
+from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
+from sevenbar.text.units import LENGTHS
+
+
+@dataclass(frozen=True, eq=False)
+class ForceSolver:
+    """A loop with what acts on it, ready for rows of any circuit of it that this column drives."""
+
+    linkage: Solvable
+    loading: Loading
+    input: int
+    #: Whether derivatives by the description's numbers are wanted.
+    by_numbers: bool = False
+    _frames: dict[int, Floats] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def numbers(self) -> Numbers:
+        """The loop by its numbers."""
+        return Numbers(self.linkage)
+
+    @cached_property
+    def loop(self) -> NumberedLoop:
+        """The loop that this input drives."""
+        return self.numbers.loop(self.input, only=None if self.by_numbers else ())
+
+    @cached_property
+    def size(self) -> float:
+        """The length in which the core counts [m]."""
+        return self.numbers.size * LENGTHS[self.linkage.length_unit]
+
+    @cached_property
+    def bodies(self) -> dict[int, Body]:
+        """The bodies of the links, one each; where a link spins idly, as balls without friction move them."""
+        return as_moved(self.linkage, resolved(self.loading, self.linkage))
+
+    def _carrier(self, link: int) -> tuple[int, _core.Product]:
+        """The steps before a link, and the frame there in which its points are written."""
+        return self.numbers.word.carrier(int(link))
+
+    def _frame(self, link: int) -> Floats:
+        """The frame (4, 4) in which points of a link are written, against the steps before it."""
+        if link not in self._frames:
+            self._frames[link] = self._carrier(link)[1].pose(self.numbers.values(self.loop.p))
+        return self._frames[link]
+
+    def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, Floats]]]:
+        steps, product = self._carrier(link)
+        place = placed(self._frame(link), at) / self.numbers.size
+        return steps, place, self.loop.core.twists(product) if self.by_numbers else []
+
+    def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, list[tuple[int, Floats]]]:
+        assert body.centre is not None
+        steps, centre, ways = self._place(link, body.centre)
+        axes = self._frame(link)[:3, :3]
+        return steps, body.mass, centre, axes @ body.tensor @ axes.T / self.size**2, ways
+
+    def _load(self, load: Load) -> tuple[tuple[int, Floats, list[tuple[int, Floats]]], Floats, Floats, bool]:
+        assert load.at is not None
+        force, torque = np.array(load.force) / self.size, np.array(load.torque) / self.size**2
+        turns = load.axes == "link"
+        if turns:
+            axes = self._frame(load.link)[:3, :3]
+            force, torque = axes @ force, axes @ torque
+        return self._place(load.link, load.at), force, torque, turns
+
+    def _joint_spring(self, spring: Spring) -> tuple[int, Floats]:
+        assert spring.joint is not None
+        linkage = self.linkage
+        column = linkage.column(spring.joint, "joint")
+        # stiffness and damping, and the slack value
+        unit, value = 1 / self.size**2, 1.0
+        if not linkage.turns(column):
+            unit, value = 1 / LENGTHS[linkage.length_unit], 1 / self.numbers.size
+        return column, np.array([unit * spring.stiffness, value * spring.length, unit * spring.damping])
+
+    @cached_property
+    def acting(self) -> _core.Acting:
+        """What acts, as the core takes it."""
+        metre = LENGTHS[self.linkage.length_unit]
+        springs = []
+        for spring in self.loading.springs:
+            if spring.links is None:
+                continue
+            assert spring.at is not None
+            ends = [self._place(link, at) for link, at in zip(spring.links, spring.at, strict=True)]
+            numbers = [spring.stiffness / metre, spring.length / self.numbers.size, spring.damping / metre]
+            springs.append((ends[0], ends[1], np.array(numbers)))
+        return _core.Acting(
+            np.array(self.loading.gravity) / self.size,
+            [self._body(link, body) for link, body in self.bodies.items()],
+            [self._load(load) for load in self.loading.loads],
+            springs,
+            [self._joint_spring(spring) for spring in self.loading.springs if spring.links is None],
+        )
+
+    @cached_property
+    def seats(self) -> tuple[list[int], Floats]:
+        """Where each joint's reaction is counted: before which step of the word, and its frame there."""
+        word, values = self.numbers.word, self.numbers.values(self.loop.p)
+        linkage = self.linkage
+        steps, frames = [], []
+        step = 0
+        for i, (joint, inside) in enumerate(zip(linkage.joints, word.inner, strict=True)):
+            frame = inverse(inside[0].pose(values)) if inside else np.eye(4)
+            if linkage.form == "drawn" and i + 1 == len(linkage.joints):
+                # its axes are those that are written
+                frame = frame @ half_turn(joint.row.half_turn)
+            frame[:3, 3] /= self.numbers.size
+            frames.append(frame)
+            steps.append(step)
+            step += len(word.freedoms[i])
+        return steps, np.array(frames)
+
+    def solved(self, inputs: Floats, poses: Floats, speeds: Floats, *, by: int | None = None) -> list[Floats]:
+        """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2).
+
+        Loads go by the values `inputs` (n,) of the column `by`, the input if it is not given.
+        """
+        scales = self.numbers.scales
+        turns = self.linkage.turns(self.input if by is None else by)
+        factors = [load.factors(inputs, turns=turns) for load in self.loading.loads]
+        steps, frames = self.seats
+        return _core.reactions(
+            self.loop.core,
+            self.acting,
+            np.ascontiguousarray(poses / scales),
+            np.ascontiguousarray(speeds / scales[self.input]),
+            np.ascontiguousarray(np.reshape(factors, (-1, len(inputs))).T),
+            steps,
+            frames,
+            self.by_numbers,
+        )
+
+
+def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -> Forces:
+    """The forces on the rows of a circuit; see `Circuit.forces`."""
+    linkage, loading = solver.linkage, solver.loading
+    if loading.is_empty:
+        raise RequestError(
+            "forces: nothing has a mass and nothing acts; give bodies, loads or springs, or write [[body]]"
+        )
+    poses = _poses(solver, circuit)
+    poses[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
+    speeds = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
+    if at_rest:
+        # rows without rates stay without
+        speeds = np.where(np.isfinite(speeds), 0.0, np.nan)
+    torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, poses, speeds)
+    size, metre = solver.size, LENGTHS[linkage.length_unit]
+    slides = not linkage.turns(circuit.input_column)
+    torque = torque * (size if slides else size**2)
+    speed = speeds[:, 0]
+    energies = energies * size**2
+    reactions = _reactions(solver, wrenches, seats, free)
+    return Forces(
+        input=circuit.input,
+        time=circuit.time,
+        speed=speed,
+        status=circuit.status,
+        branch=circuit.branch,
+        torque=torque,
+        power=torque * speed * (metre if slides else 1.0),
+        kinetic=energies[:, 0],
+        potential=energies[:, 1],
+        supplied=energies[:, 2],
+        shaking=shaking * np.repeat([size**2, size], 3),
+        reactions=reactions,
+        spin=_spins(solver, spin * size**2, reactions),
+        indeterminate=linkage.mobility().redundant if free.shape[1] else (),
+        slides=slides,
+        length_unit=linkage.length_unit,
+        periodic=circuit.goes_round and not np.isnan(circuit.speed) and not _winds_up(circuit, loading),
+        loading=loading,
+        bodies=solver.bodies,
+        driver=linkage.columns[circuit.input_column],
+        heading=linkage.heading,
+        at_rest=at_rest,
+        through_change_points=circuit.motion_type == "change-point",
+        between=partial(_between, solver, circuit, at_rest),
+    )
+
+
+def _poses(solver: ForceSolver, circuit: Circuit) -> Floats:
+    """The rows (n, columns) of a circuit as poses of the word.
+
+    Where a ball's turns are undefined the pose is found anew, from the nearest row that has them all.
+    """
+    poses = solver.numbers.poses(circuit.q)
+    undefined = np.flatnonzero(circuit.status == "turns-undefined")
+    known = np.flatnonzero(np.isfinite(poses).all(axis=1))
+    if len(undefined) and len(known):
+        near = known[np.abs(undefined[:, None] - known).argmin(axis=1)]
+        poses[undefined] = solver.loop.closed(circuit.input[undefined], poses[near])
+    return poses
+
+
+def _between(solver: ForceSolver, circuit: Circuit, at_rest: bool, inputs: Floats) -> Forces:
+    """The forces of a circuit that goes round, at any inputs (n,)."""
+    return forces_of(solver, driven(solver.linkage, circuit, inputs, speed=circuit.speed), at_rest=at_rest)
+
+
+def _winds_up(circuit: Circuit, loading: Loading) -> bool:
+    """Whether a spring in a joint has more to give with every turn of the joint."""
+    columns = [circuit.columns.index(s.joint) for s in loading.springs if s.joint and s.stiffness]
+    # rows end one step before the first comes again
+    gained = len(circuit.q) / max(len(circuit.q) - 1, 1) * (circuit.q[-1] - circuit.q[0])
+    return bool(np.any(np.abs(gained[columns]) > np.pi))
+
+
+def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Floats) -> dict[str, Reaction]:
+    """Each joint's reaction; components that the free wrenches (n, redundant, 6) leave open are NaN."""
+    size, found = solver.size, {}
+    for i, joint in enumerate(solver.linkage.joints):
+        axes, place = seats[:, i, :9].reshape(-1, 3, 3), seats[:, i, 9:]
+        wrench = wrenches[:, i] * size
+        known, determinate = _known(_in_seat(axes, place, free))
+        found[joint.name] = Reaction(
+            joint=joint.name,
+            kind=joint.kind,
+            force=np.where(determinate[3:], wrench[:, 3:], np.nan),
+            moment=np.where(determinate[:3], wrench[:, :3] * size, np.nan),
+            at=place * solver.numbers.size,
+            axes=axes,
+            determinate=determinate,
+            known=known,
+            known_values=np.einsum("nkj,nj->nk", known, wrench) if free.shape[1] else wrench,
+        )
+    return found
+
+
+def _in_seat(axes: Floats, place: Floats, wrenches: Floats) -> Floats:
+    """Wrenches (n, k, 6) about the origin, about a place (n, 3) and along axes (n, 3, 3) there."""
+    if not wrenches.shape[1]:
+        return wrenches
+    force = wrenches[:, :, 3:]
+    moment = wrenches[:, :, :3] - np.cross(place[:, None], force)
+    return np.concatenate([moment @ axes, force @ axes], axis=2)
+
+
+def _known(open_ways: Floats) -> tuple[Floats, Booleans]:
+    """What open wrenches (n, k, 6) leave: combinations (n, 6 - k, 6), orthonormal; which components (6,)."""
+    rows, count, _ = open_ways.shape
+    if not count:
+        return np.broadcast_to(np.eye(6), (rows, 6, 6)), np.ones(6, dtype=bool)
+    full = np.isfinite(open_ways).all(axis=(1, 2))
+    known = np.full((rows, 6 - count, 6), np.nan)
+    determinate = np.ones(6, dtype=bool)
+    if full.any():
+        _, _, right = np.linalg.svd(open_ways[full], full_matrices=True)
+        known[full] = right[:, count:]
+        determinate = np.linalg.norm(right[:, :count], axis=1).max(axis=0) < OPEN
+    return known, determinate
+
+
+def _spins(solver: ForceSolver, spin: Floats, reactions: Mapping[str, Reaction]) -> dict[str, Floats]:
+    """The size of the moment (n,) [N m] in each ball that the rule of an idle spin needs, by its link.
+
+    The ball is held to two axes, so its moment is square to both; what the core has is its part about the
+    third axis of the word.
+    """
+    linkage = solver.linkage
+    spun, *_ = linkage.held
+    found = {}
+    for ball in sorted(spun):
+        column = linkage.places[ball].stop - 1
+        reaction = reactions[linkage.joints[ball].name]
+        if column not in solver.numbers.held:
+            continue
+        own = np.abs(spin[:, solver.numbers.held.index(column)])
+        name = "coupler" if linkage.kind == "RSSR" else f"link {ball + 1}"
+        known = bool(reaction.determinate[:3].all())
+        found[name] = np.linalg.norm(reaction.moment, axis=1) if known else own
+    return found

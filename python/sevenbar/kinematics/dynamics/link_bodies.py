@@ -1,0 +1,135 @@
+"""The bodies of each link as one, written as its points are; rods and drawn solids worked out."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.errors import RequestError, shown
+from sevenbar.forces.bodies import Body, as_one, triple
+from sevenbar.forces.loading import Loading
+from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.rigid import inverse
+from sevenbar.text.units import LENGTHS
+
+#: A centre within this part of a line's length, and an inertia within this part of itself, are symmetric
+#: about the line.
+SYMMETRIC = 1e-9
+
+#: The module whose `drawn_bodies(linkage, circuit)` gives what exports draw; filled by the package.
+DRAWN_IN: dict[str, str] = {}
+
+
+def resolved(loading: Loading, linkage: Loop, *, circuit: int = 0) -> dict[int, Body]:
+    """The body of each link that has one, by the link's number; centres and axes as points are written.
+
+    A rod lies between the places of its link's two joints. What is drawn are the solids of an export of that
+    circuit, of steel or scaled to the mass that is given; crosses of universal joints are left out. Raises
+    `RequestError` for a link that does not exist, or is the ground.
+
+        >>> import sevenbar as sb
+        >>> linkage = sb.load("rssr")
+        >>> crank = resolved(sb.Loading(bodies={1: sb.Body(mass=1.2, solid="rod")}), linkage)[1]
+        >>> crank.centre, crank.tensor.diagonal().round(12).tolist()
+        ((125.0, 0.0, 0.0), [0.0, 0.00625, 0.00625])
+    """
+    metre = LENGTHS[linkage.length_unit]
+    drawn: list[Mapping[int, Body]] = []
+
+    def solids() -> Mapping[int, Body]:
+        if not drawn:
+            drawn.append(_drawn(linkage, circuit))
+        return drawn[0]
+
+    found = {}
+    for link, bodies in loading.bodies.items():
+        refuse_no_link("bodies", link, linkage)
+        if bodies:
+            found[link] = as_one([_worked_out(body, link, linkage, solids) for body in bodies], metre)
+    return found
+
+
+def as_moved(linkage: Solvable, bodies: Mapping[int, Body]) -> dict[int, Body]:
+    """The bodies as balls without friction move them, where a link spins idly.
+
+    Such balls never begin to turn a body that is symmetric about their line about it, so it moves as if it
+    had no inertia about the line.
+
+    Source: docs/theory_forces.md, (6).
+    """
+    return {link: _without_spin(linkage, link, body) for link, body in bodies.items()}
+
+
+def _without_spin(linkage: Solvable, link: int, body: Body) -> Body:
+    balls = [joint.row.is_ball for joint in linkage.joints]
+    if link not in linkage.idle_links or not (balls[link - 1] and balls[link]):
+        return body
+    start, end = joint_places(linkage, link)
+    length = float(np.linalg.norm(end - start))
+    if not length:
+        return body
+    z = (end - start) / length
+    arm = np.asarray(body.centre) - start
+    axial = float(z @ body.tensor @ z)
+    across = (float(np.trace(body.tensor)) - axial) / 2
+    thin = across * (np.eye(3) - np.outer(z, z))
+    apart = float(np.abs(body.tensor - thin - axial * np.outer(z, z)).max())
+    off = float(np.linalg.norm(arm - (arm @ z) * z))
+    if off > SYMMETRIC * length or apart > SYMMETRIC * max(axial, across):
+        return body
+    return Body(body.mass, body.centre, thin)
+
+
+def refuse_no_link(key: str, link: object, linkage: Loop, *, or_ground: bool = False) -> None:
+    """`RequestError` for a link that does not exist, or is the ground where that is none."""
+    moving = len(linkage.links)
+    last = moving + or_ground
+    whole = isinstance(link, (int, np.integer)) and not isinstance(link, bool)
+    if not whole or not 1 <= link <= last:  # type: ignore[operator]
+        what = "is the ground, which does not move" if link == moving + 1 else "is not a link"
+        more = ", the last is the ground" if or_ground else ""
+        raise RequestError(f"{key}: link {shown(link)} {what}; give 1 to {last}{more}")
+
+
+def _worked_out(body: Body, link: int, linkage: Loop, solids: Callable[[], Mapping[int, Body]]) -> Body:
+    """A body by its centre and inertia, whatever it was given by."""
+    if body.solid == "rod":
+        return _rod(body.mass, link, linkage)
+    if body.solid == "drawn":
+        steel = solids()[link]
+        share = body.mass / steel.mass if body.mass else 1.0
+        return Body(share * steel.mass, steel.centre, share * steel.tensor)
+    return replace(body, solid=None)
+
+
+def _rod(mass: float, link: int, linkage: Loop) -> Body:
+    """A uniform thin rod between the places of the joints of a link: `m l^2 / 12` across it."""
+    start, end = joint_places(linkage, link)
+    rod = LENGTHS[linkage.length_unit] * (end - start)
+    tensor = mass / 12 * (rod @ rod * np.eye(3) - np.outer(rod, rod))
+    return Body(mass, triple("centre", (start + end) / 2), tensor)
+
+
+def joint_places(linkage: Loop, link: int) -> tuple[Floats, Floats]:
+    """The places (3,) of the joints before and after a moving link, written as its points are."""
+    back = inverse(linkage.point_frames[link - 1])
+    return back[:3, 3], (back @ linkage.links[link - 1])[:3, 3]
+
+
+def _drawn(linkage: Loop, circuit: int) -> dict[int, Body]:
+    """The solids of each moving link as exports draw them, of steel."""
+    export: Any = importlib.import_module(DRAWN_IN["bodies"])
+    metre, found = LENGTHS[linkage.length_unit], {}
+    for link, (mass, centre, inertia) in enumerate(export.drawn_bodies(linkage, circuit), 1):
+        back = inverse(linkage.point_frames[link - 1])
+        turn = back[:3, :3]
+        place = turn @ centre + back[:3, 3]
+        tensor = metre**2 * turn @ inertia @ turn.T
+        found[link] = Body(mass, triple("centre", place), (tensor + tensor.T) / 2)
+    return found

@@ -1,0 +1,133 @@
+"""A linkage with other bodies, loads and springs, which its description keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, TypeVar
+
+import numpy.typing as npt
+
+from sevenbar.forces.bodies import Body, entries_of, triple
+from sevenbar.forces.loading import Load, Loading, Spring
+from sevenbar.kinematics.dynamics.link_bodies import refuse_no_link
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.text.units import ANGLES, LENGTHS, MASSES
+
+L = TypeVar("L", bound=Loop)
+
+
+def loaded(
+    linkage: L,
+    *,
+    bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+    gravity: npt.ArrayLike | None = None,
+    loads: Sequence[Load] | None = None,
+    springs: Sequence[Spring] | None = None,
+) -> L:
+    """The linkage with what is given in the place of its own; raises `RequestError`."""
+    given = loading_with(linkage, bodies=bodies, gravity=gravity, loads=loads, springs=springs)
+    tables: dict[str, Any] = {}
+    if linkage.description:
+        forces = dict(linkage.description.get("forces", {}))
+        unit = str(forces.get("mass_unit", "kg"))
+        if gravity is not None:
+            tables["forces"] = forces | {"gravity": list(given.gravity)}
+        if bodies is not None:
+            tables["body"] = [
+                _body(link, body, unit, linkage) for link, own in given.bodies.items() for body in own
+            ]
+        if loads is not None:
+            tables["load"] = [_load(load, linkage) for load in given.loads]
+        if springs is not None:
+            tables["spring"] = [_spring(spring, linkage) for spring in given.springs]
+    kept = {key: value for key, value in (dict(linkage.description) | tables).items() if value != []}
+    return replace(linkage, loading=given, description=kept)
+
+
+def loading_with(
+    linkage: Loop,
+    *,
+    bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+    gravity: npt.ArrayLike | None = None,
+    loads: Sequence[Load] | None = None,
+    springs: Sequence[Spring] | None = None,
+) -> Loading:
+    """What acts on a linkage, its own where nothing else is given.
+
+    Raises `RequestError` for a link or a joint that does not exist.
+    """
+    own = linkage.loading
+    given = Loading(
+        own.gravity if gravity is None else triple("gravity", gravity),
+        own.bodies if bodies is None else bodies,  # type: ignore[arg-type]
+        own.loads if loads is None else tuple(loads),
+        own.springs if springs is None else tuple(springs),
+    )
+    for link in given.bodies:
+        refuse_no_link("bodies", link, linkage)
+    for i, load in enumerate(given.loads):
+        refuse_no_link(f"loads[{i}]", load.link, linkage)
+    found = []
+    for i, spring in enumerate(given.springs):
+        for link in spring.links or ():
+            refuse_no_link(f"springs[{i}]", link, linkage, or_ground=True)
+        if spring.joint is not None:
+            column = linkage.column(spring.joint, f"springs[{i}].joint")
+            spring = replace(spring, joint=linkage.columns[column])
+        found.append(spring)
+    return replace(given, springs=tuple(found))
+
+
+def _body(link: int, body: Body, mass_unit: str, linkage: Loop) -> dict[str, Any]:
+    """A body as a table of a file has it."""
+    kilogram, metre = MASSES[mass_unit], LENGTHS[linkage.length_unit]
+    table: dict[str, Any] = {"link": int(link)}
+    if body.mass:
+        table["mass"] = body.mass / kilogram
+    if body.solid is not None:
+        table["solid"] = body.solid
+    if body.centre is not None:
+        table["centre"] = list(body.centre)
+    if body.tensor.any():
+        table["inertia"] = entries_of(body.tensor / (kilogram * metre**2))
+    return table
+
+
+def _load(load: Load, linkage: Loop) -> dict[str, Any]:
+    size = _size_of_input(linkage)
+    table: dict[str, Any] = {"link": int(load.link)}
+    if any(load.force):
+        table |= {"at": list(load.at or ()), "force": list(load.force)}
+    if any(load.torque):
+        table["torque"] = list(load.torque)
+    if load.axes != "ground":
+        table["axes"] = load.axes
+    if load.between is not None:
+        table["between"] = [value / size for value in load.between]
+    if load.table is not None:
+        table["table"] = [[at / size, factor] for at, factor in zip(*load.table, strict=True)]
+    return table | ({"name": load.name} if load.name else {})
+
+
+def _spring(spring: Spring, linkage: Loop) -> dict[str, Any]:
+    table: dict[str, Any] = {}
+    if spring.joint is not None:
+        column = linkage.columns.index(spring.joint)
+        size = _angle(linkage) if linkage.turns(column) else 1.0
+        table |= {"joint": spring.joint, "free": spring.length / size}
+    elif spring.links is not None and spring.at is not None:
+        ends = [list(end) for end in spring.at]
+        table |= {"links": [int(link) for link in spring.links], "at": ends, "length": spring.length}
+    table |= {key: value for key in ("stiffness", "damping") if (value := getattr(spring, key))}
+    return table | ({"name": spring.name} if spring.name else {})
+
+
+def _angle(linkage: Loop) -> float:
+    """The size [rad] of the unit of angles in the description."""
+    return ANGLES[str(linkage.description.get("angle_unit", "deg"))]
+
+
+def _size_of_input(linkage: Loop) -> float:
+    column = linkage.columns.index(linkage.drive.joint)
+    return _angle(linkage) if linkage.turns(column) else 1.0

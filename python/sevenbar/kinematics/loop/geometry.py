@@ -1,0 +1,290 @@
+"""The loop as a value: joints, fixed transforms, points, drive, and the names of its columns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from functools import cached_property, reduce
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Booleans, Floats
+from sevenbar.errors import RequestError, no_joint
+from sevenbar.forces.loading import UNLOADED, Loading
+from sevenbar.kinematics.loop.joints import Freedom, JointKind, Step, X, Z, kind_row
+from sevenbar.kinematics.loop.rigid import about, inverse, pose
+from sevenbar.kinematics.loop.stops import NO_STOPS, Stops
+from sevenbar.text.printing import Drawable
+
+#: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, the same in the
+#: layout of planar textbooks, joints as drawn.
+Form = Literal["rssr", "rows", "planar", "drawn"]
+
+
+#: What a linkage is called that was made without a name.
+UNNAMED = "linkage"
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint: the letter of its kind, and its name.
+
+    `pitch` [length per turn, right-handed] of H; `angle` [rad] between the two axes of U. `backwards`: its
+    values are those of the link before it against the link after it, as of the last joint of a drawing.
+    """
+
+    kind: str
+    name: str
+    pitch: float = 0.0
+    angle: float = 0.0
+    backwards: bool = False
+
+    @cached_property
+    def row(self) -> JointKind:
+        """Its kind's row of the table."""
+        return kind_row(self.kind, backwards=self.backwards)
+
+    @cached_property
+    def columns(self) -> tuple[str, ...]:
+        """One name for each of its freedoms, in loop order."""
+        return self.row.columns(self.name)
+
+    @property
+    def first(self) -> str:
+        """The column that its plain name means: its first freedom by number."""
+        return self.columns[-1 if self.row.numbered_back else 0]
+
+    @property
+    def advance(self) -> float:
+        """The slide of a screw [length] for a radian."""
+        return self.pitch / math.tau
+
+    def steps(self, q: Floats) -> list[tuple[Step, Floats]]:
+        """Each step, and its values (n,) [rad, or length] from those of the joint's columns (n, columns)."""
+        found: list[tuple[Step, Floats]] = []
+        column = 0
+        for step in self.row.steps:
+            if step.driven:
+                found.append((step, self.advance * found[-1][1]))
+            else:
+                found.append((step, q[:, column]))
+                column += 1
+        return found
+
+    def before(self, step: Step) -> Floats:
+        """The fixed transform (4, 4) before a step."""
+        return pose(about(X, self.angle)) if step.tilted else np.eye(4)
+
+    def motion(self, q: Floats) -> Floats:
+        """The motion Z (n, 4, 4) of the link after the joint for the values of its columns (n, columns)."""
+        parts = []
+        for step, values in self.steps(q):
+            parts += [self.before(step)] if step.tilted else []
+            if step.freedom == "turn":
+                parts.append(pose(about(step.axis, values)))
+            else:
+                parts.append(pose(np.eye(3), values[:, None] * np.eye(3)[step.axis]))
+        return reduce(np.matmul, parts)
+
+    def slid(self, q: Floats) -> Floats:
+        """How far it has slid along its axis (n,) [length] for the values of its columns (n, columns)."""
+        along = [v for step, v in self.steps(q) if step.freedom == "slide" and step.axis == Z]
+        return sum(along, np.zeros(len(q)))
+
+
+@dataclass(frozen=True)
+class Point:
+    """A named point: the link that carries it, counted from 1, and where on it [length]."""
+
+    name: str
+    link: int
+    at: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """The columns of the input and the output, and the input's speed [rad/s, or length/s]."""
+
+    joint: str
+    output: str
+    speed: float = 1.0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Loop(Drawable):
+    """A closed loop `base Z(q1) G1 Z(q2) G2 .. Z(qn) = ground`.
+
+    `base` (4, 4) is the frame of joint 1 and `ground` (4, 4) that of the ground's side of the last joint,
+    both in the report frame. `links` (n - 1, 4, 4) are the G's of the moving links, from each joint's frame
+    to the next one's. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame.
+    `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
+    tables and keys of a file, from which a linkage with other numbers is made. Redundant constraints `agree`
+    up to a closure error [rad, or relative to the size], the usual one where it is `None`;
+    `loading` is what acts on it, `stops` what keeps it from moving on: they change no motion.
+
+    Source: docs/theory.md, (1).
+    """
+
+    name: str
+    joints: tuple[Joint, ...]
+    base: Floats
+    ground: Floats
+    links: Floats
+    point_frames: Floats
+    drive: Drive
+    length_unit: str = "mm"
+    points: tuple[Point, ...] = ()
+    dimensions: Mapping[str, float] = field(default_factory=dict)
+    form: Form = "drawn"
+    description: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    loading: Loading = field(default=UNLOADED, repr=False)
+    agree: float | None = None
+    stops: Stops = field(default=NO_STOPS, repr=False)
+
+    def __post_init__(self) -> None:
+        for array in (self.base, self.ground, self.links, self.point_frames):
+            array.setflags(write=False)
+
+    def __reduce__(self) -> tuple[type[Loop], tuple[Any, ...]]:
+        """Copied and pickled by its fields; what was worked out of them is worked out anew when asked for."""
+        return type(self), tuple(getattr(self, field.name) for field in fields(self))
+
+    @property
+    def transforms(self) -> Floats:
+        """The G's of all links (n, 4, 4), the ground's last: `Z(q1) G1 .. Z(qn) Gn = 1`."""
+        return np.concatenate([self.links, [inverse(self.ground) @ self.base]])
+
+    @cached_property
+    def kind(self) -> str:
+        """The joints' letters in loop order."""
+        return "".join(joint.kind for joint in self.joints)
+
+    @property
+    def in_rows(self) -> bool:
+        """Whether it is written as rows, a row a link."""
+        return self.form in ("rows", "planar")
+
+    @property
+    def heading(self) -> str:
+        """What reports and figures call it: its name, or what it is where it was given none."""
+        if self.name != UNNAMED:
+            return self.name
+        letters = self.kind if len(set(self.kind)) > 1 else f"{len(self.kind)}{self.kind[0]}"
+        return f"{letters} linkage"
+
+    @cached_property
+    def places(self) -> tuple[slice, ...]:
+        """Where the columns of each joint stand among all."""
+        ends = np.cumsum([len(joint.columns) for joint in self.joints]).tolist()
+        return tuple(slice(start, end) for start, end in pairwise([0, *ends]))
+
+    @cached_property
+    def columns(self) -> tuple[str, ...]:
+        """The names of the one-freedom joints, in loop order."""
+        return tuple(column for joint in self.joints for column in joint.columns)
+
+    @cached_property
+    def column_kinds(self) -> tuple[Freedom, ...]:
+        """What each column is: an angle [rad] or a length."""
+        return tuple(freedom for joint in self.joints for freedom in joint.row.freedoms)
+
+    @cached_property
+    def turning(self) -> Booleans:
+        """Whether each column is an angle, not a length, (columns,)."""
+        turning = np.array([kind == "turn" for kind in self.column_kinds])
+        turning.setflags(write=False)
+        return turning
+
+    def turns(self, column: int | str) -> bool:
+        """Whether a column, by its number or name, is an angle, not a length."""
+        place = self.columns.index(column) if isinstance(column, str) else column
+        return bool(self.turning[place])
+
+    def unit_of(self, column: int | str) -> str:
+        """The unit of a column's values, by its number or name: "rad", or the length unit."""
+        return "rad" if self.turns(column) else self.length_unit
+
+    @property
+    def added_points(self) -> tuple[Point, ...]:
+        """The points that a person has added: all but A and B of an RSSR, which come first."""
+        return self.points[2:] if self.kind == "RSSR" else self.points
+
+    def drivable(self, without: int | None = None) -> list[str]:
+        """The columns that may drive or be driven: all but those of balls, and but one."""
+        owners = [joint for joint in self.joints for _ in joint.columns]
+        return [
+            name
+            for index, (name, owner) in enumerate(zip(self.columns, owners, strict=True))
+            if not owner.row.is_ball and index != without
+        ]
+
+    def column(self, name: str, key: str) -> int:
+        """The place of a column named by the caller; a joint's name stands for its first one."""
+        known = [joint.name for joint in self.joints]
+        for joint in self.joints:
+            if joint.row.is_ball and name in (joint.name, *joint.columns):
+                raise RequestError(
+                    f"{key}: joint '{name}' is a ball; "
+                    f"give a joint with one freedom: {', '.join(self.drivable())}"
+                )
+            if name == joint.name:
+                return self.columns.index(joint.first)
+        if name not in self.columns:
+            raise RequestError(f"{key}: {no_joint(name, known)}")
+        return self.columns.index(name)
+
+    def input_column(self, name: str | None = None, key: str = "input") -> int:
+        """The place of the input's column: that named by the caller under a key, or the drive's."""
+        return self.column(self.drive.joint if name is None else name, key)
+
+    def end_columns(self, input: str | None = None, output: str | None = None) -> tuple[int, int]:
+        """The places of the columns of input and output, those named or the drive's; two different ones."""
+        first = self.input_column(input)
+        if output is None:
+            return first, self.other_column(first)
+        second = self.column(output, "output")
+        if second == first:
+            raise RequestError(
+                f"output: joint '{output}' is the input; give another: {', '.join(self.drivable(first))}"
+            )
+        return first, second
+
+    def other_column(self, column: int) -> int:
+        """The output where only the input was named: the drive's, else that of the last other joint."""
+        if self.columns[column] != self.drive.output:
+            return self.columns.index(self.drive.output)
+        last = [
+            joint
+            for joint in self.joints
+            if not joint.row.is_ball and self.columns[column] not in joint.columns
+        ]
+        name = last[-1].first if last else self.drivable(column)[-1]
+        return self.columns.index(name)
+
+    def driven_alike(self, column: int) -> bool:
+        """Whether a column turns or slides as the drive's does, so that the drive's speed can be its own."""
+        return self.turns(self.drive.joint) == self.turns(column)
+
+    def speed_of(self, column: int) -> float:
+        """The speed [rad/s, or length/s] at which a column drives where none is given: the drive's, or 1."""
+        return self.drive.speed if self.driven_alike(column) else 1.0
+
+    def speed_written(self, column: int) -> str:
+        """That speed as the description has it, "3000 rpm"; empty where it is a number, or none."""
+        drive = self.description.get("drive", {})
+        written = drive.get("speed", "") if isinstance(drive, Mapping) else ""
+        return written if isinstance(written, str) and self.driven_alike(column) else ""
+
+
+def following_coupler(
+    m: npt.ArrayLike, n: npt.ArrayLike, crank: npt.ArrayLike, rocker: npt.ArrayLike
+) -> Floats:
+    """L2 [length] of an RSSR that leaves it out, numbers or arrays: `L2^2 = (L1 - M)^2 + L3^2 + N^2`.
+
+    Source: Sun and Zhou, eq. (7).
+    """
+    return np.hypot(np.hypot(np.subtract(crank, m), rocker), n)

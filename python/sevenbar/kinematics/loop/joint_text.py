@@ -1,0 +1,111 @@
+"""The value of a joint as people write it: on the command line, and in calls."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats, finite_array, finite_number, real_array
+from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.text.units import examples_of, sliding_speed, turning_speed
+
+
+def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
+    """The value of a joint [rad, or length] as people write it: "30deg", "0.5rad", "12mm".
+
+    A plain number is in degrees for a turn and in the length unit for a slide. Raises `RequestError`.
+    """
+    slides = not linkage.turns(column)
+    unit, plain = (linkage.length_unit,) * 2 if slides else ("rad", "deg")
+    # `import sevenbar` needs no reader of formulas
+    from sevenbar.text.amounts import amount_in
+
+    value = amount_in(text, unit, plain)
+    if value is None:
+        kind = "slides" if slides else "turns"
+        raise RequestError(
+            f"{key}: {shown(text)} is no value of {linkage.columns[column]}, which {kind}; "
+            f"give {examples_of(unit)}"
+        )
+    return value
+
+
+def given_number(key: str, value: object, unit: str) -> object:
+    """What a caller gives for a number in a unit, "rad" or a length: a text is read, anything else as it is.
+
+    Raises `RequestError` for a text that is no number with a unit that fits.
+    """
+    if not isinstance(value, str):
+        return value
+    # `import sevenbar` needs no reader of formulas
+    from sevenbar.text.amounts import amount_in, lacks_unit
+
+    number = None if lacks_unit(value, "angle" if unit == "rad" else "length") else amount_in(value, unit)
+    if number is None:
+        example = "one as in '30 deg'" if unit == "rad" else f"one as in '12 {unit}'"
+        plain = "radians" if unit == "rad" else unit
+        raise RequestError(
+            f"{key}: {shown(value)} is not a number with a unit that fits; give {example}, "
+            f"or a number in {plain}"
+        )
+    return number
+
+
+def check_own_unit(key: str, angle: str) -> None:
+    """Refuses the text of an angle without a unit, as in Python a number alone is in radians."""
+    # `import sevenbar` needs no reader of formulas
+    from sevenbar.text.amounts import lacks_unit
+
+    if lacks_unit(angle, "angle"):
+        raise RequestError(
+            f"{key}: {shown(angle)} has no unit; give one as in '30 deg', or a number in radians"
+        )
+
+
+def joint_number(key: str, value: npt.ArrayLike, linkage: Loop, column: int) -> float:
+    """The value of a joint [rad, or length] that a caller gives: a number, or a text as in "30 deg"."""
+    return finite_number(key, given_number(key, value, linkage.unit_of(column)))  # type: ignore[arg-type]
+
+
+def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -> Floats:
+    """Values of a joint (n,) [rad, or length] that a caller gives: numbers, or texts; finite or not."""
+    if not isinstance(values, (str, list, tuple)):
+        return real_array(key, values)
+    return real_array(key, _read(key, values, [linkage.unit_of(column)] * len_of(values)))
+
+
+def joint_speed(speed: object, linkage: Loop, column: int) -> float:
+    """The speed of a joint [rad/s, or length/s] that a caller gives: a number, or a text as in "60 rpm"."""
+    # a number needs no reader of formulas
+    from sevenbar.text.amounts import plain_speed
+
+    try:
+        plain = float(speed) if isinstance(speed, np.number) else plain_speed(speed)
+        if not linkage.turns(column):
+            return sliding_speed(plain, linkage.length_unit)
+        return turning_speed(plain)
+    except RequestError as error:
+        raise RequestError(f"speed: {error}") from None
+
+
+def pose_numbers(key: str, values: npt.ArrayLike, linkage: Loop) -> Floats:
+    """The values of all columns (columns,) [rad, or length] that a caller gives: finite numbers, or texts."""
+    units = [linkage.unit_of(column) for column in range(len(linkage.columns))]
+    return finite_array(key, _read(key, values, units))
+
+
+def len_of(values: npt.ArrayLike) -> int:
+    """How many values there are."""
+    return len(values) if isinstance(values, (list, tuple)) else 1
+
+
+def _read(key: str, values: npt.ArrayLike, units: list[str]) -> npt.ArrayLike:
+    """Values with texts read, each in its unit."""
+    if isinstance(values, str) and units:
+        return given_number(key, values, units[0])  # type: ignore[return-value]
+    if not isinstance(values, (list, tuple)) or not any(isinstance(value, str) for value in values):
+        return values
+    return [
+        given_number(f"{key}[{i}]", value, units[min(i, len(units) - 1)]) for i, value in enumerate(values)
+    ]  # type: ignore[return-value]

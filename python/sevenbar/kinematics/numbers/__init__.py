@@ -1,0 +1,1 @@
+"""The loop by the numbers of its description, with exact derivatives by each."""

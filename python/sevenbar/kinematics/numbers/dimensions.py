@@ -1,0 +1,177 @@
+"""The numbers of a description by name: what they belong to, their units, and where they stand in a file."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.loop.geometry import Joint, Loop
+from sevenbar.text.units import ANGLES, MASSES, examples_of
+
+#: A place in a description: keys of tables, and counts from 0 in lists.
+Place = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A number of the description that can be changed.
+
+    `name` is its own among all: "L1"; "length_2"; "crank.axis_x"; "P.u". `value` and `unit` are the file's;
+    `group` is what it belongs to; `follows` where the file leaves it out and it follows from the others.
+    """
+
+    name: str
+    place: Place
+    label: str
+    group: str
+    unit: str
+    value: float
+    positive: bool = False
+    follows: bool = False
+
+    @property
+    def key(self) -> str:
+        """Its place as messages tell it: `rssr.L1`, `link[2].twist`, `joint[1].at[3]`."""
+        parts = [f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in self.place]
+        return "".join(parts).lstrip(".")
+
+    @property
+    def column(self) -> str:
+        """Its name in tables, with the unit: `L1_mm`, `twist_2_deg`."""
+        return f"{self.name}_{self.unit.replace('/', '_')}" if self.unit else self.name
+
+    @property
+    def kind(self) -> Literal["length", "angle", "pitch", "number", "speed", "mass"]:
+        """What its value is."""
+        if self.unit in MASSES:
+            return "mass"
+        if "/" in self.unit or self.unit == "rpm":
+            return "pitch" if self.unit.endswith("turn") else "speed"
+        if self.unit in ANGLES:
+            return "angle"
+        return "length" if self.unit else "number"
+
+    @property
+    def scale(self) -> float:
+        """The size of its unit beside the one that is carried: radian, length unit, kilogram."""
+        return ANGLES.get(self.unit, MASSES.get(self.unit, 1.0))
+
+    def read(self, text: str) -> float:
+        """The value that a person wrote, in the dimension's unit: "250", "25 cm", "30deg".
+
+        Raises `RequestError` for a text that is no finite number with a unit that fits.
+        """
+        # `import sevenbar` needs no reader of formulas
+        from sevenbar.text.amounts import amount_in
+
+        value = amount_in(text, self.unit)
+        if value is None:
+            comma = " (a decimal point, not a comma)" if "," in text else ""
+            given = shown(text.strip())
+            hint = examples_of(self.unit)
+            raise RequestError(f"{self.key}: {given} is not a finite {self.kind}; give {hint}{comma}")
+        return value
+
+
+def read_at(option: str, dimension: Dimension, text: str) -> float:
+    """The value of a text given for a dimension; raises `RequestError` that names the option, not the file.
+
+    >>> import sevenbar as sb
+    >>> linkage = sb.load("rssr")
+    >>> read_at("over", dimensions_of(linkage.description, linkage)[2], "25 cm")
+    250.0
+    """
+    try:
+        return dimension.read(text)
+    except RequestError as error:
+        raise RequestError(f"{option}: {dimension.name}{str(error).removeprefix(dimension.key)}") from None
+
+
+def description_of(linkage: Loop) -> Mapping[str, Any]:
+    """A linkage's own description; `RequestError` for one that was made without."""
+    if not linkage.description:
+        raise RequestError(
+            f"linkage: '{linkage.name}' was made without a description; "
+            "make it by load, rssr, from_dh or from_axes"
+        )
+    return linkage.description
+
+
+def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimension, ...]:
+    """Every number of a linkage's description that can be changed, in the order of the file."""
+    length, angle = linkage.length_unit, str(description.get("angle_unit", "deg"))
+    found: list[Dimension] = []
+    for key in ("M", "N", "L1", "L2", "L3", "D") if linkage.form == "rssr" else ():
+        given = description["rssr"].get(key)
+        value = linkage.dimensions[key] if given is None else float(given)
+        # L2 left out is that of the pose; it follows on request
+        follows = given is None and key == "L2"
+        place = ("rssr", key)
+        positive = key[0] == "L"
+        found.append(Dimension(key, place, key, "dimensions", length, value, positive, follows))
+    units = {"twist": angle, "angle": angle, "pitch": f"{length}/turn"}
+    joints = linkage.joints
+    for i, row in enumerate(description.get("link", ())):
+        group = f"link {i + 1}, after {joints[i].name} ({joints[i].kind})"
+        for key in joints[i].row.row_keys:
+            unit = units.get(key, length)
+            value = float(row.get(key, 0.0))
+            found.append(Dimension(f"{key}_{i + 1}", ("link", i, key), key, group, unit, value))
+    for i, table in enumerate(description.get("joint", ())):
+        found += _of_drawn(i, table, joints[i], length)
+    letters = "uvw" if linkage.in_rows else "xyz"
+    for i, table in enumerate(description.get("point", ())):
+        name = table["name"]
+        found += _vector(("point", i, "at"), table["at"], letters, (name, f"point {name}"), length)
+    speed = f"{linkage.unit_of(linkage.drive.joint)}/s"
+    found.append(Dimension("speed", ("drive", "speed"), "speed", "drive", speed, linkage.drive.speed))
+    # a point may have the name of a joint
+    taken = Counter(dimension.name for dimension in found)
+    return tuple(replace(d, name=d.key) if taken[d.name] > 1 else d for d in found)
+
+
+def masses_of(description: Mapping[str, Any]) -> tuple[Dimension, ...]:
+    """The mass of each body that has one: mass_2 is that of the one body of link 2."""
+    bodies = description.get("body", ())
+    unit = str(description.get("forces", {}).get("mass_unit", "kg"))
+    alone = Counter(body["link"] for body in bodies)
+    found = []
+    for i, body in enumerate(bodies):
+        if "mass" in body:
+            name, group = f"mass_{body['link']}", f"body of link {body['link']}"
+            one = Dimension(
+                name, ("body", i, "mass"), "mass", group, unit, float(body["mass"]), positive=True
+            )
+            found.append(one if alone[body["link"]] == 1 else replace(one, name=one.key))
+    return tuple(found)
+
+
+def _of_drawn(index: int, table: Mapping[str, Any], joint: Joint, length: str) -> list[Dimension]:
+    """The numbers of a joint as drawn."""
+    place = ("joint", index)
+    whose = (joint.name, f"{joint.name} ({joint.kind})")
+    found = _vector((*place, "at"), table["at"], "xyz", whose, length)
+    if "axis" in table:
+        found += _vector((*place, "axis"), table["axis"], ("axis x", "axis y", "axis z"), whose, "")
+    for which, axis in enumerate(table.get("axes", ())):
+        letters = [f"axis {which + 1} {letter}" for letter in "xyz"]
+        found += _vector((*place, "axes", which), axis, letters, whose, "")
+    if "pitch" in table:
+        name, group = whose
+        unit, pitch = f"{length}/turn", float(table["pitch"])
+        found.append(Dimension(f"{name}.pitch", (*place, "pitch"), "pitch", group, unit, pitch))
+    return found
+
+
+def _vector(
+    place: Place, values: Sequence[float], labels: Sequence[str], whose: tuple[str, str], unit: str
+) -> list[Dimension]:
+    """The numbers of a vector; `whose`: the name of its owner, and what the owner is called among others."""
+    name, group = whose
+    return [
+        Dimension(f"{name}.{label.replace(' ', '_')}", (*place, axis), label, group, unit, float(value))
+        for axis, (label, value) in enumerate(zip(labels, values, strict=True))
+    ]

@@ -1,0 +1,212 @@
+"""Derivatives of what is measured of a circuit: extremes, swing, limits, time ratio, transmission angle.
+
+An extreme of y(x, p) over x changes with p as y itself does at that place, dy*/dp = partial y/partial p (the
+envelope theorem); where a symmetric linkage has it at two places, this is true of one of them. The place
+changes by `dx*/dp = -(partial y'/partial p) / y''`. A dead centre of the input is an
+extreme of the input over the output, so the loop driven by its output shows how it moves.
+
+Source: docs/theory_design.md, (6).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.arrays import Floats, short_way
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Extremes
+from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
+
+#: The quantities of a joint, by the order of the derivative, and what time does to their units.
+QUANTITIES = ("position", "velocity", "acceleration", "jerk")
+PER_TIME = ("", "/s", "/s^2", "/s^3")
+
+#: The complex step: its square is nothing beside 1.
+STEP = 1e-30
+
+#: A pose found is the extreme's own where it gives its value to this share of the quantity's greatest one.
+SAME_VALUE = 1e-6
+
+#: So many rows nearest to a value are tried: the passes of two turns go by it, with a row on both sides.
+NEAREST = 8
+
+#: A time ratio nearer to 1 is 1 up to rounding; there either stroke may become the slower: a kink.
+EQUAL_STROKES = 1e-9
+
+#: 1 - sin of a transmission angle of 90 degrees, and sin of one of 0: there it has a kink, or stays.
+RIGHT_ANGLE, DEAD = 1e-12, 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class MeasureSlopes:
+    """A measure of a circuit: value, unit, and derivatives (dimensions,) by the dimensions' units.
+
+    `scale` takes it to rad where it is an angle in degrees. NaN where the measure has no derivative.
+    """
+
+    name: str
+    unit: str
+    value: float
+    slopes: Floats
+    scale: float = 1.0
+
+
+def measure_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> tuple[MeasureSlopes, ...]:
+    """All measures of a circuit that has them, with their derivatives; NaN by numbers that open the loop."""
+    loop = numbers.loop(circuit.input_column)
+    found = [*_extremes(loop, circuit, speed), *_limits(numbers, circuit), *_transmission(numbers, circuit)]
+    opening = loop.opening(circuit)
+    for one in found:
+        one.slopes[opening] = np.nan
+    return tuple(found)
+
+
+def _angle_or_length(numbers: Numbers, column: int) -> tuple[str, float]:
+    """The unit of a column as people read it, and its size as it is counted here."""
+    if numbers.turns[column]:
+        return "deg", math.degrees(1.0)
+    return numbers.linkage.length_unit, 1.0
+
+
+def _apart(values: Floats, turns: bool) -> Floats:
+    return short_way(values) if turns else values
+
+
+def _extremes(loop: NumberedLoop, circuit: Circuit, speed: float) -> Iterator[MeasureSlopes]:
+    """Extremes of the output and its rates, swing and time ratio."""
+    column, numbers = circuit.output_column, loop.numbers
+    unit, scale = _angle_or_length(numbers, column)
+    ends = []
+    if circuit.angle is not None:
+        for end in ("lowest", "highest"):
+            value, at = getattr(circuit.angle, end), getattr(circuit.angle, f"{end}_at")
+            here = _rates_at(loop, circuit, at, 0, value, speed)
+            if here is None:
+                continue
+            ends.append(here)
+            yield MeasureSlopes(f"angle_{end}", unit, value * scale, here.slopes[0] * scale, 1 / scale)
+    if len(ends) == 2 and circuit.swing is not None:
+        low, high = ends
+        yield MeasureSlopes(
+            "swing", unit, circuit.swing * scale, (high.slopes[0] - low.slopes[0]) * scale, 1 / scale
+        )
+        ratio = circuit.time_ratio
+        if ratio is not None and circuit.angle is not None:
+            stroke = (circuit.angle.highest_at - circuit.angle.lowest_at) % math.tau
+            moves = high.place_slopes - low.place_slopes
+            # the ratio is that of the stroke to the rest of the turn, or the other way round
+            slope = math.tau / (math.tau - stroke) ** 2 if stroke > math.pi else -math.tau / stroke**2
+            if ratio - 1 < EQUAL_STROKES:
+                slope = math.nan
+            yield MeasureSlopes("time_ratio", "", ratio, slope * moves)
+    for order, quantity in enumerate(QUANTITIES[1:], 1):
+        extremes: Extremes | None = getattr(circuit, quantity)
+        if extremes is None:
+            continue
+        rate = numbers.linkage.unit_of(column) + PER_TIME[order]
+        for end in ("lowest", "highest"):
+            value, at = getattr(extremes, end), getattr(extremes, f"{end}_at")
+            here = _rates_at(loop, circuit, at, order, value, speed)
+            if here is not None:
+                yield MeasureSlopes(f"{quantity}_{end}", rate, value, here.slopes[order])
+
+
+@dataclass(frozen=True, eq=False)
+class _Here:
+    """The output at one pose: derivatives (4, dimensions) of its rates, and of an extreme's input."""
+
+    slopes: Floats
+    place_slopes: Floats
+
+
+def _rates_at(
+    loop: NumberedLoop, circuit: Circuit, at: float, order: int, value: float, speed: float
+) -> _Here | None:
+    """The output's rates at the pose of the circuit at an input where its rate of an order has a value."""
+    column = circuit.output_column
+    q = poses_at(loop, circuit, at)
+    here = loop.slopes(q, 3)
+    found = np.column_stack([q[:, column], here.rates[:, :, column]]) * speed ** np.arange(4)
+    apart = np.abs(_apart(found[:, order] - value, bool(order == 0 and loop.numbers.turns[column])))
+    if not np.isfinite(apart).any():
+        return None
+    best = int(np.nanargmin(apart))
+    rows = (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)[order][:, column]
+    size = float(np.nanmax(np.abs(rows), initial=0.0))
+    if not apart[best] <= SAME_VALUE * (size or 1.0):
+        return None
+    slopes = here.by_number[best, :, :, column] * speed ** np.arange(4.0)[:, None]
+    if order:
+        return _Here(slopes, np.full(slopes.shape[1], np.nan))
+    return _Here(slopes, -slopes[1] / found[best, 2] * speed)
+
+
+def _limits(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
+    """Dead centres of the input, each once."""
+    back = numbers.loop(circuit.output_column)
+    place = circuit.input_column
+    unit, scale = _angle_or_length(numbers, place)
+    centres = [centre for centre in circuit.dead_centres if centre.kind == "input"]
+    for number, centre in enumerate(sorted(centres, key=lambda c: c.input), 1):
+        slopes = np.full(len(numbers.names), np.nan)
+        q = poses_at(back, circuit, centre.output)
+        apart = np.abs(_apart(q[:, place] - centre.input, bool(numbers.turns[place])))
+        if len(q) and apart.min() < SAME_VALUE * numbers.scales[place]:
+            best = int(np.argmin(apart))
+            slopes = back.slopes(q[best : best + 1], 0).by_number[0, 0, :, place] * scale
+        yield MeasureSlopes(f"limit_{number}", unit, centre.input * scale, slopes, 1 / scale)
+
+
+def poses_at(loop: NumberedLoop, circuit: Circuit, value: float) -> Floats:
+    """Poses (n, columns) of a circuit where the loop's driving column has a value, from each row nearby."""
+    apart = _apart(value - circuit.q[:, loop.input], bool(loop.numbers.turns[loop.input]))
+    size = np.where(np.isfinite(circuit.q).all(axis=1), np.abs(apart), np.nan)
+    nearest = np.sort(np.argsort(size, kind="stable")[: min(NEAREST, np.isfinite(size).sum())])
+    q = loop.numbers.poses(circuit.q[nearest])
+    found = loop.closed(q[:, loop.input] + apart[nearest], q)
+    return np.asarray(found[np.isfinite(found).all(axis=1)])
+
+
+def _transmission(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
+    """The transmission angle's extremes: its sine is the coupler's part along the output ball's way.
+
+    The ball's way is square to the output's axis, on which two marks lie.
+    """
+    # of other loops it is not written by points of the description
+    if numbers.linkage.kind != "RSSR" or circuit.transmission is None:
+        return
+    loop = numbers.loop(circuit.input_column, marks=circuit.output_column)
+    # A and B are the first two points of every RSSR, the marks are the last
+    a, b, foot, end = 0, 1, -2, -1
+    arm = b if circuit.output_column else a
+    for name in ("lowest", "highest"):
+        value, at = getattr(circuit.transmission, name), getattr(circuit.transmission, f"{name}_at")
+        slopes = np.full(len(numbers.names), np.nan)
+        q = poses_at(loop, circuit, at)
+        here = loop.slopes(q, 0)
+        places, by = here.points[:, :, 0], here.points_by_number[:, :, 0]
+        sines = _sine(places, a, b, arm, foot, end)
+        apart = np.abs(np.arcsin(np.minimum(np.abs(sines), 1.0)) - value)
+        best = int(np.argmin(apart)) if len(q) else 0
+        known = len(q) > 0 and np.isfinite(by[best]).all()
+        if known and apart[best] < SAME_VALUE and 1 - abs(sines[best]) > RIGHT_ANGLE:
+            size = float(sines[best])
+            # by a complex step: exact to rounding, since it is analytic
+            stepped = places[best] + 1j * STEP * np.moveaxis(by[best], 1, 0)
+            by_p = _sine(stepped, a, b, arm, foot, end).imag / STEP
+            slopes = np.degrees(math.copysign(1.0, size) * by_p / math.sqrt(1 - size * size))
+        if value < DEAD:
+            # it is 0 at every dead centre of the input
+            slopes = np.zeros(len(slopes))
+        yield MeasureSlopes(f"transmission_{name}", "deg", math.degrees(value), slopes, math.radians(1.0))
+
+
+def _sine(places: Floats, a: int, b: int, arm: int, foot: int, end: int) -> Floats:
+    """The coupler's part along the way of the output's ball, of points (n, points, 3), real or complex."""
+    along = places[:, a] - places[:, b]
+    way = np.cross(places[:, end] - places[:, foot], places[:, arm] - places[:, foot])
+    return np.asarray((along * way).sum(axis=1) / np.sqrt((along**2).sum(axis=1) * (way**2).sum(axis=1)))

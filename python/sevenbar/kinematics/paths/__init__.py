@@ -1,0 +1,1 @@
+"""A circuit by its own arc length."""

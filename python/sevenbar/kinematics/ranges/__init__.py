@@ -1,0 +1,1 @@
+"""How far a circuit takes its joints, balls and links, and what part of it the stops allow."""

@@ -1,0 +1,216 @@
+"""What part of a circuit lies within the stops of its linkage, and which stop ends each part."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sevenbar.arrays import Floats, Integers
+from sevenbar.curves.least_cone import angles, dotted, least_cone
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.extents import Allowed, AllowedSpan, Flags
+from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.circuits.poses import frames_along, joint_frames
+from sevenbar.kinematics.loop.rods import rod_distance
+from sevenbar.kinematics.loop.stops import Cone
+from sevenbar.kinematics.paths.circuit_path import CircuitPath
+from sevenbar.kinematics.ranges.circuit_extents import chosen, rod_pairs
+from sevenbar.kinematics.ranges.joint_course import JointCourse, joint_course
+
+#: A pose beyond a stop by less [rad, or relative to the size] touches it.
+TOUCH = 1e-11
+
+#: Places nearer to each other than this part of the circuit are one.
+SAME = 1e-12
+
+#: The same of zeros that are found from two pieces of a path, each up to its end and a little beyond.
+SEAM = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class _Stop:
+    """A stop along a circuit: where it is passed, and whether places on the path, or rows, are within it."""
+
+    name: str
+    crossings: Floats
+    within: Callable[[Floats], Flags]
+    rows: Callable[[Floats], Flags]
+
+
+def allowed(linkage: Solvable, circuit: Circuit) -> Allowed:
+    """The parts of a circuit within its linkage's stops; see `Circuit.allowed`."""
+    known: Flags = np.asarray(np.isfinite(circuit.q).any(axis=1))
+    if not linkage.stops.stops:
+        start, end = _ends(circuit)
+        whole = (AllowedSpan(start, end, "", "", 1.0, _back(circuit)),)
+        return Allowed(whole, known, np.full(len(known), "", dtype="<U1"))
+    course = joint_course(linkage, circuit)
+    stops = [*_ranges(linkage, course), *_cones(linkage, course), *_rods(linkage, circuit, course)]
+    inside = np.array([stop.rows(circuit.q) | ~known for stop in stops]).reshape(len(stops), len(known))
+    stopped = np.array([_passed(stops, row) for row in inside.T], dtype=np.str_)
+    return Allowed(_spans(course, circuit, stops), known & inside.all(axis=0), stopped)
+
+
+def _passed(stops: list[_Stop], inside: Flags) -> str:
+    """The names of the stops that a place or row is not within."""
+    return ", ".join(stop.name for stop, own in zip(stops, inside, strict=True) if not own)
+
+
+def _ends(circuit: Circuit) -> tuple[float, float]:
+    """The input at the first row, and where the circuit ends."""
+    inputs = circuit.input[np.isfinite(circuit.input)]
+    if not inputs.size:
+        return math.nan, math.nan
+    if circuit.closed:
+        gain = circuit.turns * math.tau if circuit.input_turns else 0.0
+        return float(inputs[0]), float(inputs[0]) + math.copysign(gain, circuit.speed)
+    return float(inputs[0]), float(inputs[-1])
+
+
+def _back(circuit: Circuit) -> int:
+    return sum(centre.kind == "input" for centre in circuit.dead_centres)
+
+
+def _spans(course: JointCourse, circuit: Circuit, stops: list[_Stop]) -> tuple[AllowedSpan, ...]:
+    length, closed = course.path.length, course.path.closed
+    marks = np.unique(np.concatenate([[0.0, length], *(stop.crossings for stop in stops)]))
+    marks = marks[np.append(np.diff(marks) > SAME * length, True)]
+    middles = (marks[:-1] + marks[1:]) / 2
+    inside = np.array([stop.within(middles) for stop in stops]).reshape(len(stops), len(middles))
+    free: Flags = np.asarray(inside.all(axis=0))
+    if free.all():
+        return (AllowedSpan(*_ends(circuit), "", "", 1.0, _back(circuit)),)
+
+    count = len(middles)
+    back = course.path.poses.stationary(course.path.input) if circuit.turns_back else np.empty(0)
+    # of a closed circuit the stretches go on over its end
+    first = int(np.argmin(free)) if closed else 0
+    order = [(first + k) % count for k in range(count)]
+    found, run = list[AllowedSpan](), list[int]()
+    for stretch in [*order, None]:
+        if stretch is not None and free[stretch]:
+            run.append(stretch)
+            continue
+        if run:
+            before, after = run[0] - 1, run[-1] + 1
+            way = float(sum(marks[k + 1] - marks[k] for k in run))
+            found.append(
+                AllowedSpan(
+                    course.input_at(float(marks[run[0]])),
+                    course.input_at(float(marks[run[-1] + 1])),
+                    _passed(stops, inside[:, before % count]) if closed or before >= 0 else "",
+                    _passed(stops, inside[:, after % count]) if closed or after < count else "",
+                    way / length,
+                    _between(back, float(marks[run[0]]), way, course.path),
+                )
+            )
+        run = []
+    return tuple(found)
+
+
+def _between(places: Floats, begin: float, way: float, path: CircuitPath) -> int:
+    """How many of some places lie on the way from one place of a path; one at the seam counts once."""
+    ahead = np.sort((places - begin) % path.length if path.closed else places - begin)
+    one = SEAM * path.length
+    return int(((ahead > one) & (ahead < way - one) & (np.diff(ahead, prepend=-np.inf) > one)).sum())
+
+
+def _ranges(linkage: Solvable, course: JointCourse) -> Iterator[_Stop]:
+    for name, (low, high) in linkage.stops.ranges.items():
+        column = linkage.columns.index(name)
+        turns = linkage.column_kinds[column] == "turn"
+        slack = TOUCH * (1.0 if turns else course.size)
+        if not (turns and high - low >= math.tau - slack):
+            yield _range(course, column, _Between(low, high, turns, slack))
+
+
+def _range(course: JointCourse, column: int, between: _Between) -> _Stop:
+    """The stop of a column that a turn does not pass by."""
+    one = course.path.poses.part(column)
+    marks = np.union1d(one.stationary(0), one.edges)
+    heights = one.at(marks)[:, 0]
+    laps = [0]
+    if between.turns:
+        first, last = (heights.min() - between.high) / math.tau, (heights.max() - between.low) / math.tau
+        laps = list(range(math.floor(first), math.ceil(last) + 1))
+    values = [end + math.tau * k for k in laps for end in (between.low, between.high)]
+    return _Stop(
+        f"range of {course.linkage.columns[column]}",
+        np.concatenate([one.crossings(0, value, marks) for value in values]),
+        lambda s: between(one.at(s)[:, 0]),
+        lambda q: between(q[:, column]),
+    )
+
+
+@dataclass(frozen=True)
+class _Between:
+    """Whether values of a column are between two, a turn by whole turns; beyond by a `slack` they touch."""
+
+    low: float
+    high: float
+    turns: bool
+    slack: float
+
+    def __call__(self, values: Floats) -> Flags:
+        width = self.high - self.low
+        beyond = values - self.low
+        if self.turns:
+            spare = (math.tau - width) / 2
+            beyond = (beyond + spare) % math.tau - spare
+        return np.asarray((beyond >= -self.slack) & (beyond <= width + self.slack))
+
+
+def _cones(linkage: Solvable, course: JointCourse) -> Iterator[_Stop]:
+    for joint, cone in linkage.stops.cones.items():
+        if cone.angle is not None:
+            yield _cone(linkage, course, joint, cone, cone.angle)
+
+
+def _cone(linkage: Solvable, course: JointCourse, joint: str, cone: Cone, limit: float) -> _Stop:
+    """The stop of a ball or universal joint."""
+    bend, free, known = chosen(linkage, joint, cone)
+    curve = course.directions(bend, of_stud=free == "seat")
+    axis = (bend.seat if free == "seat" else bend.stud) if known else least_cone(curve).axis
+    seated = replace(bend, seat=axis) if free == "seat" else replace(bend, stud=axis)
+    height = dotted(curve, axis)
+    marks = np.union1d(height.stationary(0), height.edges)
+    return _Stop(
+        f"cone of {joint}",
+        height.crossings(0, math.cos(limit), marks),
+        lambda s: angles(curve.at(s), axis) <= limit + TOUCH,
+        lambda q: seated.at(q) <= limit + TOUCH,
+    )
+
+
+def _rods(linkage: Solvable, circuit: Circuit, course: JointCourse) -> Iterator[_Stop]:
+    radii = linkage.stops.radii
+    for first, second in rod_pairs(linkage):
+        thick = radii.get(first, 0.0) + radii.get(second, 0.0)
+        if thick > 0:
+            yield _rod_pair(course, circuit, (first, second), thick - TOUCH * course.size)
+
+
+def _rod_pair(course: JointCourse, circuit: Circuit, links: tuple[int, int], least: float) -> _Stop:
+    """The stop of two links that come nearer to each other than their radii."""
+    first, second = links
+    pair = course.rods(first, second)
+    return _Stop(
+        f"links {first} and {second}",
+        pair.reaches(least),
+        lambda s: pair.distance(s) >= least,
+        lambda _: distances(course.linkage, circuit, links) >= least,
+    )
+
+
+def distances(linkage: Solvable, circuit: Circuit, links: tuple[int, int]) -> Floats:
+    """The distances (n,) [length] of two links as rods on the rows of a circuit."""
+    rows: Integers = np.arange(len(circuit.q))
+    before, after = joint_frames(linkage, frames_along(linkage, circuit, rows))
+    count = len(linkage.joints)
+    places = [
+        place for link in links for place in (after[:, link - 1, :3, 3], before[:, link % count, :3, 3])
+    ]
+    return rod_distance(*places)

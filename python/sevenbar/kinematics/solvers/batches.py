@@ -1,0 +1,172 @@
+"""Many linkages at once by the core's batches: motion types, limits and measures of circuits as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import sevenbar._core as _core
+from sevenbar.arrays import Booleans, Floats, Integers
+from sevenbar.kinematics.loop.geometry import Loop, following_coupler
+from sevenbar.kinematics.solvers.general import expanded, merged, size_of
+from sevenbar.text.printing import Printed
+
+#: The core's codes of motion types, and of dimensions that make no linkage.
+CODES = (
+    "crank-rocker",
+    "rocker-crank",
+    "double-crank",
+    "double-rocker",
+    "change-point",
+    "cannot-assemble",
+    "invalid",
+)
+
+CHANGE_POINT, INVALID = CODES.index("change-point"), CODES.index("invalid")
+
+#: The codes' words, as objects of a column.
+WORDS = np.array(CODES, dtype=object)
+
+#: The dimensions of an RSSR in the order of the core's rows.
+RSSR_ROWS = ("M", "N", "L1", "L2", "L3", "D")
+
+#: The core's word for a loop that its input drives.
+DRIVEN = 0
+
+#: Words of the motion types of linkages or circuits.
+MotionTypes = npt.NDArray[np.object_]
+
+
+def rssr_rows(own: Mapping[str, Floats | float], count: int, *, follows: bool) -> Floats:
+    """The dimensions (6, n) of n RSSRs, in the order of `RSSR_ROWS`, from numbers or arrays (n,) by name.
+
+    `follows`: L2 follows from the others, as where a file leaves it out.
+    """
+    rows = dict(own)
+    if follows:
+        rows["L2"] = following_coupler(rows["M"], rows["N"], rows["L1"], rows["L3"])
+    return np.array([np.broadcast_to(rows[name], count) for name in RSSR_ROWS], dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Motions(Printed):
+    """The results of the motions of n linkages.
+
+    `clear` (n,) says which are classified here; of the others, that have a reason to give or must be followed
+    further, nothing else means anything. `types` (n,) are words; `limits` (n, m) [rad, or length] rise, NaN
+    after the last. `linkage` (c,) has the linkage of each circuit, `circuit` (c,) its number there; `columns`
+    (c,) its measures by name as `measures.MEASURES` has them, NaN where there is none.
+    """
+
+    clear: Booleans
+    types: MotionTypes
+    limits: Floats
+    circuits: Integers
+    linkage: Integers
+    circuit: Integers
+    columns: Mapping[str, npt.NDArray[Any]]
+
+
+def simd_level() -> str:
+    """The vector unit that the core uses on this machine: results agree bit by bit within one level."""
+    return _core.simd_level()
+
+
+def rssr_types(dimensions: Floats, side: str, threads: int) -> tuple[npt.NDArray[np.uint8], Floats]:
+    """Codes of motion types (n,) and limits (n, 4) [rad] of RSSRs.
+
+    `dimensions` (6, n) has the rows `RSSR_ROWS` of the paper's layout; `side` "crank" or "rocker" drives.
+
+    Source: docs/theory_many.md, (1) to (6).
+    """
+    return _core.classify_rssr(np.ascontiguousarray(dimensions), side, threads)
+
+
+def rssr_motions(dimensions: Floats, side: str, speed: Floats, threads: int) -> Motions:
+    """Measures of the motions of RSSRs, the input of each moving at its `speed` (n,) [rad/s].
+
+    The output range of a change point is not among it: that takes following. As `rssr_types` for the rest.
+    """
+    raw = _core.measure_rssr(
+        np.ascontiguousarray(dimensions), side, np.ascontiguousarray(speed, np.float64), threads
+    )
+    codes, limits, counts = raw.codes, raw.limits, raw.circuits
+    linkage, circuit = _numbered(counts)
+    # a circuit of an RSSR has the type of all of them
+    columns = _columns(raw.measures, WORDS[codes[linkage]], turns=True)
+    clear = (codes != INVALID) & (codes != CHANGE_POINT)
+    return Motions(clear, WORDS[codes], limits, counts, linkage, circuit, columns)
+
+
+def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int, threads: int) -> Motions:
+    """Measures of the motions of loops of one pattern of joints, each at the speed of its drive.
+
+    `input` and `output` are places of columns, `samples` inputs in a turn. Not clear are loops that the input
+    does not drive, and those without a circuit, whose reason must be looked for.
+    """
+    parts = [expanded(linkage) for linkage in linkages]
+    raw = _core.measure_loops(
+        parts[0].letters,
+        np.array([part.advances for part in parts]),
+        np.stack([part.base for part in parts]),
+        np.stack([part.ground for part in parts]),
+        np.stack([np.array(part.links) for part in parts]),
+        input,
+        output,
+        samples,
+        np.array([linkage.speed_of(input) for linkage in linkages], dtype=np.float64),
+        threads,
+    )
+    linkage, circuit = _numbered(raw.circuits)
+    types = np.array(raw.motion_types, dtype=object)
+    own = np.array(raw.circuit_types, dtype=object)
+    columns = _columns(raw.measures, own, turns=linkages[0].turns(output))
+    clear = (raw.status == DRIVEN) & (raw.circuits > 0)
+    limits = _limits(raw, linkage, linkages, turns=linkages[0].turns(input))
+    return Motions(clear, types, limits, raw.circuits, linkage, circuit, columns)
+
+
+def _numbered(counts: Integers) -> tuple[Integers, Integers]:
+    """The linkage of each circuit and its number there, from the circuits of each linkage."""
+    linkage = np.repeat(np.arange(len(counts)), counts)
+    firsts = np.cumsum(counts) - counts
+    return linkage, np.arange(len(linkage)) - firsts[linkage]
+
+
+def _limits(raw: _core.LoopBatch, linkage: Integers, linkages: Sequence[Loop], *, turns: bool) -> Floats:
+    """The limits (n, m) of loops, from the input dead centres of their circuits."""
+    count = len(linkages)
+    owner = np.repeat(linkage, raw.limit_counts)
+    inputs = raw.limits
+    bounds = np.searchsorted(owner, np.arange(count + 1))
+    found = [
+        merged(inputs[first:last], turns=turns, size=1.0 if turns else size_of(loop))
+        for loop, (first, last) in zip(linkages, pairwise(bounds), strict=True)
+    ]
+    limits = np.full((count, max(map(len, found), default=0)), np.nan)
+    for row, values in zip(limits, found, strict=True):
+        row[: len(values)] = values
+    return limits
+
+
+def _columns(raw: _core.RawMeasures, types: MotionTypes, *, turns: bool) -> dict[str, npt.NDArray[Any]]:
+    """Measures (c,) of circuits of some types, by name; `turns`: the output does."""
+    columns: dict[str, npt.NDArray[Any]] = {
+        "turns": raw.turns.astype(np.float64),
+        "swing": np.degrees(raw.swing) if turns else raw.swing,
+        "time_ratio": raw.time_ratio,
+        "circuit_type": types,
+    }
+    for name, ends in (
+        ("velocity", raw.velocity),
+        ("acceleration", raw.acceleration),
+        ("jerk", raw.jerk),
+        ("transmission", np.degrees(raw.transmission)),
+    ):
+        columns[f"{name}_lowest"], columns[f"{name}_highest"] = ends[:, 0], ends[:, 2]
+    return columns

@@ -1,0 +1,94 @@
+"""Which loops are four-bars or slider-cranks: their links from the fixed transforms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.grashof import FourBar, four_bar_of_links, least, slider_crank_of_links
+from sevenbar.kinematics.loop.rigid import cross, inverse
+from sevenbar.kinematics.solvers.general import expanded
+from sevenbar.kinematics.solvers.plane_and_sphere import in_plane, sphere_of
+
+#: The links of a loop with four joints, where the first and the last are input and output.
+ROLES = ("input link", "coupler", "output link", "ground")
+
+_Z = np.array([0.0, 0.0, 1.0])
+
+
+def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
+    """The four-bar or slider-crank that a loop is, driven by a column and read at another; `None` for others.
+
+    A loop is one where four of its joints move in its plane, all turning or one sliding, or where it has four
+    axes through one point. Links are called by what
+    they do where input and output are at the ground, else by numbers.
+
+        >>> import sevenbar as sb
+        >>> found = four_bar_of(sb.load("planar_4r"), "theta_1", "theta_4")
+        >>> found.links
+        {'input link': 40.0, 'coupler': 100.0, 'output link': 80.0, 'ground': 90.0}
+        >>> found.excess, found.grashof, found.turning
+        (-30.0, 'crank-rocker', ('theta_1', 'theta_2'))
+
+    Source: docs/theory_measures.md, (1) to (3).
+    """
+    parts = expanded(loop)
+    columns = [loop.columns[c] for c in parts.columns]
+    found = in_plane(loop)
+    if found is None:
+        if sphere_of(loop) is None or parts.letters != "RRRR":
+            return None
+        moves: tuple[int, ...] = (0, 1, 2, 3)
+    elif found.held is not None and loop.in_rows:
+        # where it is held is not known before the loop is closed
+        return None
+    else:
+        moves = found.moves
+    letters = "".join(parts.letters[i] for i in moves).replace("S", "R")
+    names = [columns[i] for i in moves]
+    if len(moves) != 4 or letters.count("P") > 1 or set(letters) - {"R", "P"}:
+        return None
+    between = _between(parts.links, inverse(parts.ground) @ parts.base, moves)
+    roles = _roles(names, input, output)
+    if found is None:
+        arcs = [math.atan2(math.hypot(*cross(m[:3, 2], _Z)), float(m[2, 2])) for m in between]
+        return four_bar_of_links("spherical", least(arcs), names, roles)
+    lengths = [math.hypot(m[0, 3], m[1, 3]) for m in between]
+    if "P" not in letters:
+        return four_bar_of_links("planar", lengths, names, roles)
+    slide = letters.index("P")
+    a, b, c = ((slide + k) % 4 for k in (1, 2, 3))
+    # from the pin on the slider to that on the other side of the slide, in the frame of the slide
+    to_slide = inverse(between[c])
+    apart = between[slide][:3, 3] - to_slide[:3, 3]
+    offset = abs(float(apart @ cross(to_slide[:3, 2], _Z)))
+    return slider_crank_of_links(
+        lengths[a], lengths[b], offset, [names[k] for k in (a, b, c)], (roles[a], roles[b])
+    )
+
+
+def _between(links: Sequence[Floats], last: Floats, moves: Sequence[int]) -> list[Floats]:
+    """The transforms (4, 4) from each joint that moves to the next one, all joints at zero."""
+    ahead = [*links, last]
+    found = []
+    for k, start in enumerate(moves):
+        end = moves[(k + 1) % len(moves)]
+        now, i = ahead[start], (start + 1) % len(ahead)
+        while i != end:
+            now, i = now @ ahead[i], (i + 1) % len(ahead)
+        found.append(now)
+    return found
+
+
+def _roles(names: Sequence[str], input: str, output: str) -> list[str]:
+    """The names of the links after each of four joints."""
+    # the ground is where the list of joints closes
+    if (input, output) == (names[0], names[-1]):
+        return list(ROLES)
+    if (output, input) == (names[0], names[-1]):
+        return [*ROLES[2::-1], ROLES[3]]
+    return ["link 1", "link 2", "link 3", "ground"]

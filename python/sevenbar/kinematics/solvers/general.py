@@ -1,0 +1,363 @@
+"""Any single loop by the general path."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+import sevenbar._core as _core
+from sevenbar.arrays import Floats, Integers, Words
+from sevenbar.errors import RequestError
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Trace
+from sevenbar.kinematics.circuits.from_core import change_points_from, circuit_from, search_from, tally_from
+from sevenbar.kinematics.circuits.long_circuit import LONG, LongCircuit
+from sevenbar.kinematics.circuits.motion import Modes, Motion, Solvable
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.joints import Z
+from sevenbar.kinematics.loop.law import Law
+from sevenbar.kinematics.loop.mobility import Mobility, redundant_constraints
+from sevenbar.kinematics.loop.rigid import axis_to_z, inverse
+from sevenbar.kinematics.numbers.sensitivity import sensitivity_of
+
+T = TypeVar("T")
+
+#: The closure error [rad, or relative to the size] up to which redundant constraints agree by default.
+AGREE = _core.AGREE
+
+#: Rank six, and the one that is driven.
+MOST_FREEDOMS = 7
+
+#: The motion that leaves all where it is.
+STILL = np.eye(4)
+
+#: An angle [rad] short of a full turn by less is zero.
+ROUNDING = 1e-12
+
+#: Limits [rad, or relative to the size] nearer than this are one.
+SAME_LIMIT = 1e-6
+
+
+class GeneralLoop:
+    """The solver of one loop. Some joints are several for the core, so links are counted anew there."""
+
+    def __init__(self, linkage: Solvable, agree: float = AGREE) -> None:
+        self._linkage, self._agree = linkage, agree
+        parts = expanded(linkage)
+        self._base, self._link = parts.base, parts.last
+        self._core = _core.Loop(
+            parts.letters, np.array(parts.advances), parts.base, parts.ground, np.array(parts.links), agree
+        )
+        self._found: dict[int, Mobility] = {}
+
+    def __reduce__(self) -> tuple[type[GeneralLoop], tuple[Solvable, float]]:
+        return GeneralLoop, (self._linkage, self._agree)
+
+    @property
+    def size(self) -> float:
+        """The size [length] of which residuals are parts."""
+        return self._core.size
+
+    def idle(self) -> tuple[str, ...]:
+        """Freedoms that move one link only, in words."""
+        names = [joint.name for joint in self._linkage.joints]
+
+        def text(word: str, link: int, held: int, other: int) -> str:
+            first, second = names[held], names[other]
+            match word:
+                case "between-balls" if self._linkage.kind == "RSSR":
+                    return f"spin of the coupler (link {link}) about the line of {first} and {second}"
+                case "between-balls":
+                    return f"spin of link {link} about the line of {first} and {second}"
+                case "chain-between-balls":
+                    links = [str(i) for i in range(held + 1, other + 1)]
+                    listed = f"{', '.join(links[:-1])} and {links[-1]}"
+                    return f"spin of links {listed} together about the line of {first} and {second}"
+                case "ball-on-axis":
+                    return f"spin of link {link} about the axis of {first}, on which {second} lies"
+                case "one-axis":
+                    return f"turn of link {link} about the common axis of {second} and {first}"
+                case _:
+                    return f"slide of link {link} along the common direction of {second} and {first}"
+
+        return tuple(text(*freedom) for freedom in self._idle())
+
+    def held(self) -> tuple[frozenset[int], list[int], int]:
+        """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise.
+
+        Balls are joints counted from 0; their third turns are among the columns.
+        """
+        letters = expanded(self._linkage).letters
+        first = np.concatenate([[0], np.cumsum([3 if letter == "S" else 1 for letter in letters])])
+        spun, columns, spins = set(), [], 0
+        for (word, held, _), (_, _, joint, _) in zip(self._core.idle, self._idle(), strict=True):
+            if word == "between-balls":
+                spun.add(joint)
+                columns.append(int(first[held]) + 2)
+            elif word == "chain-between-balls":
+                spins += 1
+            else:
+                columns.append(int(first[held]))
+        return frozenset(spun), columns, spins
+
+    def idle_links(self) -> frozenset[int]:
+        """The links that have such a freedom, counted from 1."""
+        found: set[int] = set()
+        for word, link, held, other in self._idle():
+            found |= set(range(held + 1, other + 1)) if word == "chain-between-balls" else {link}
+        return frozenset(found)
+
+    def unheld(self) -> str | None:
+        """The idle freedom for which the core has no rule, in words, of a loop that one input moves."""
+        if self._core.can_be_driven or self._core.freedoms > MOST_FREEDOMS:
+            return None
+        return self.idle()[-1]
+
+    def spin_axes(self) -> dict[str, Floats]:
+        """The axis (3,) that holds the idle spin beyond a ball, by the ball's name, in its frame before."""
+        owner = self._owners()
+        return {
+            self._linkage.joints[owner[joint]].name: np.array(axis) for joint, axis in self._core.spin_axes
+        }
+
+    def _owners(self) -> list[int]:
+        """The joint of the description that each of the core's joints belongs to."""
+        owner = [0] * (max(self._link) + 1)
+        for joint, last in enumerate(self._link):
+            owner[last] = joint
+        for inner in range(len(owner)):
+            if inner not in self._link:
+                owner[inner] = owner[inner + 1]
+        return owner
+
+    def _idle(self) -> list[tuple[str, int, int, int]]:
+        """Each such freedom: the core's word, the link, and the joints held and beside it."""
+        owner = self._owners()
+        count = len(self._linkage.joints)
+        found = []
+        for word, held, other in self._core.idle:
+            a, b = owner[held], owner[other]
+            found.append((word, 1 + (a if (a + 1) % count == b else b), a, b))
+        return found
+
+    def modes(self, column: int, value: float) -> Modes:
+        """Every assembly mode at one value of a column."""
+        q, residual, completeness, open_by = self._solve(
+            column, partial(self._core.assembly_modes, column, value)
+        )
+        columns = self._linkage.columns
+        return Modes(q, residual * self.size, completeness, columns, value, np.array(open_by), self._agree)
+
+    def mobility(self, column: int) -> Mobility:
+        """How freely the loop moves; poses are looked for over the values of a column."""
+        if column not in self._found:
+            self._found[column] = self._mobility(self._solve(column, partial(self._core.mobility, column)))
+        return self._found[column]
+
+    def motion(self, column: int, output: int, samples: int, speed: float, law: Law | None) -> Motion:
+        """Every circuit over the whole range of one column."""
+        linkage = self._linkage
+        table = None if law is None else law.table
+        keep = samples < LONG
+        raw = self._solve(column, partial(self._core.motion, column, output, samples, speed, table, keep))
+        assert raw.search is not None
+        mobility = self._mobility(raw.search.found)
+        if law is None:
+            self._found[column] = mobility
+        if raw.moving is not None and not raw.circuits:
+            raise self._rests(column, raw.moving)
+        circuits = tuple(
+            self._circuit(i, c, (column, output), speed, law) for i, c in enumerate(raw.circuits)
+        )
+        limits = [d.input for c in circuits for d in c.dead_centres if d.kind == "input"]
+        return Motion(
+            linkage=linkage,
+            input=linkage.columns[column],
+            output=linkage.columns[output],
+            speed=math.nan if law is not None else speed,
+            samples=samples,
+            motion_type=raw.motion_type,
+            limits=merged(limits, turns=linkage.turns(column), size=self.size),
+            change_points=change_points_from(raw, column),
+            circuits=circuits,
+            search=search_from(raw.search, linkage.columns),
+            redundant=mobility.redundant,
+            law=law,
+            agree=self._agree,
+        )
+
+    def circuit(
+        self, pose: Floats, column: int, output: int, samples: int, speed: float, law: Law | None
+    ) -> Circuit:
+        """The one circuit through a pose (columns,)."""
+        table = None if law is None else law.table
+        raw = self._solve(
+            column, partial(self._core.circuit_through, pose, column, output, samples, speed, table)
+        )
+        match raw:
+            case _core.RawCircuit():
+                return self._circuit(0, raw, (column, output), speed, law)
+            case float():
+                raise RequestError(
+                    f"pose: the loop does not close near it (closure error {raw * self.size:.3g} "
+                    f"{self._linkage.length_unit}); give a row of assembly_modes() or of a circuit"
+                )
+            case None:
+                raise RequestError("pose: no motion through it could be followed; see mobility()")
+            case moving:
+                raise self._rests(column, moving)
+
+    def _rests(self, column: int, moving: list[int]) -> RequestError:
+        linkage = self._linkage
+        moving_names = {linkage.columns[c] for c in moving}
+        others = [name for name in linkage.drivable(column) if name in moving_names]
+        advice = f"; give another: {', '.join(others)}" if others else ""
+        return RequestError(
+            f"input: joint '{linkage.columns[column]}' stands still while others move, so it cannot "
+            f"drive{advice}"
+        )
+
+    def _solve(self, column: int, call: Callable[[], T]) -> T:
+        try:
+            return call()
+        except _core.CoreError:
+            linkage = self._linkage
+            if self._core.freedoms > MOST_FREEDOMS:
+                left = self._core.freedoms
+                raise RequestError(
+                    f"linkage: {left} freedoms remain with idle ones held, {left - 6} of which must be "
+                    "driven; give a loop that one input moves"
+                ) from None
+            idle = "; ".join(self.idle())
+            raise RequestError(
+                f"input: joint '{linkage.columns[column]}' has no freedom that drives the loop"
+                + (f" ({idle})" if idle else "")
+                + f"; give another: {', '.join(linkage.drivable(column))}"
+            ) from None
+
+    def _mobility(self, found: _core.RawFound | None) -> Mobility:
+        linkage = self._linkage
+        freedoms = len(linkage.columns)
+        finite = None if found is None else found.finite
+        if found is None and not self._core.can_be_driven:
+            # rank six at most
+            finite = self._core.freedoms - 6
+        return Mobility(
+            freedoms=freedoms,
+            gruebler=freedoms - 6,
+            rank=None if found is None else found.rank,
+            idle=self.idle(),
+            redundant=() if found is None else redundant_constraints(found.wrenches, self._base),
+            finite=finite,
+        )
+
+    def _circuit(
+        self, index: int, raw: _core.RawCircuit, columns: tuple[int, int], speed: float, law: Law | None
+    ) -> Circuit:
+        known = partial(
+            circuit_from,
+            raw,
+            linkage=self._linkage,
+            index=index,
+            columns=columns,
+            speed=speed,
+            law=law,
+            size=self.size,
+            sensitivity=partial(sensitivity_of, self._linkage),
+        )
+        if raw.course is None:
+            return known(point=partial(self._trace, raw.rows))
+        course = raw.course
+
+        def made() -> Circuit:
+            joints, status, branch, residual, condition, rows = self._core.rows(course)
+            return known(point=partial(self._trace, rows), rows=(joints, status, branch, residual, condition))
+
+        return LongCircuit.of(known(point=partial(self._trace, None)), tally_from(course, self.size), made)
+
+    def _trace(self, rows: _core.Rows | None, order: Integers, status: Words, link: int, at: Floats) -> Trace:
+        """A point, `at` in its link's own frame, along rows in an order and of a status."""
+        count = len(self._linkage.joints)
+        if link == count:
+            position = np.broadcast_to(at, (len(status), 3)).copy()
+            position[status == "no-solution"] = np.nan
+            rest = np.where(np.isnan(position), np.nan, 0.0)
+            rest[status == "dead-centre"] = np.nan
+            velocity, acceleration, jerk = rest, rest.copy(), rest.copy()
+        else:
+            assert rows is not None
+            position, velocity, acceleration, jerk = (
+                np.asarray(part)[order] for part in self._core.point(rows, self._link[link - 1], at)
+            )
+        own = np.array(status)
+        own[own == "turns-undefined"] = "ok"
+        return Trace(position, velocity, acceleration, jerk, own)
+
+
+class Expanded(NamedTuple):
+    """The joints as the core takes them, each about or along z of its frame.
+
+    `letters` R P H S, `advances` [length for a radian], `base` (4, 4) the frame of the first, `links` (4, 4)
+    between them, `ground` (4, 4) the frame behind the last; `last` the number of the last one of each joint
+    of the linkage, `columns` the column of each, a ball's first.
+    """
+
+    letters: str
+    advances: list[float]
+    base: Floats
+    links: list[Floats]
+    ground: Floats
+    last: list[int]
+    columns: list[int]
+
+
+def expanded(linkage: Loop) -> Expanded:
+    """The joints of a loop as the core takes them: screws and balls whole, any other step by step."""
+    letters, advances, fixed = "", [], []
+    last: list[int] = []
+    columns: list[int] = []
+    ahead = linkage.base
+    for i, (joint, own) in enumerate(zip(linkage.joints, linkage.places, strict=True)):
+        whole = joint.row.is_screw or joint.row.is_ball
+        for step in joint.row.steps[:1] if whole else joint.row.steps:
+            letters += joint.kind if whole else step.letter
+            columns.append(own.start + len(letters) - 1 - (last[-1] + 1 if last else 0))
+            advances.append(joint.advance)
+            ahead = ahead @ joint.before(step) if step.tilted else ahead
+            fixed.append(ahead if step.axis == Z else ahead @ axis_to_z(step.axis))
+            ahead = STILL if step.axis == Z else inverse(axis_to_z(step.axis))
+        last.append(len(letters) - 1)
+        if i < len(linkage.links):
+            ahead = linkage.links[i] if ahead is STILL else ahead @ linkage.links[i]
+    ground = linkage.ground if ahead is STILL else linkage.ground @ inverse(ahead)
+    return Expanded(letters, advances, fixed[0], fixed[1:], ground, last, columns)
+
+
+def size_of(linkage: Loop) -> float:
+    """The size [length] of a loop, as the core has it: all links' lengths, and pitches by radian."""
+    lengths = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
+    return lengths + sum(abs(joint.pitch) / math.tau for joint in linkage.joints) or 1.0
+
+
+def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
+    """Limits of all circuits [rad in [0, 2 pi), or length], rising, equal ones once.
+
+    `size` [length] is that of the loop, by which slides are compared.
+    """
+    values: Floats = np.asarray(limits, dtype=np.float64)
+    same = SAME_LIMIT if turns else SAME_LIMIT * size
+    if turns:
+        values = np.mod(values, math.tau)
+        values[values > math.tau - ROUNDING] = 0.0
+    values = np.sort(values)
+    if values.size == 0:
+        return np.array([])
+    kept: Floats = values[np.concatenate([[True], np.diff(values) > same])]
+    if turns and kept.size > 1 and kept[0] + math.tau - kept[-1] < same:
+        kept = kept[:-1]
+    return kept
