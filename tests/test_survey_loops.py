@@ -155,8 +155,8 @@ def test_a_survey_of_a_task_is_written(task_file, tmp_path):
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["--y", "x^2"], "--y: asks for an RSSR"),
-        (["--bound", "L1=1:2"], "--bound: asks for an RSSR"),
+        (["--y", "x^2"], "--y: is of an RSSR"),
+        (["--bound", "L1=1:2"], "--bound: is of an RSSR"),
         (["--count", "2e9"], "is no number of linkages; give 1 to 1073741824"),
         (["--resume"], "--resume: of no folder"),
     ],

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 EXAMPLE = "as in L1=0.2:1, D=0 or angle=60:120deg"
 
 
-#: Options that ask for an RSSR; a task file says the same of any loop.
+#: Options of an RSSR; a task file says the same of any loop.
 OF_RSSRS = (
     "y", "x", "table", "input_range", "output_range", "swing", "time_ratio", "bounds", "tolerance",
     "transmission", "ball_angle", "motion_type", "ratio", "rank",
@@ -132,7 +132,7 @@ def survey(
         for name in OF_RSSRS:
             if getattr(ctx.get_parameter_source(name), "name", "") == "COMMANDLINE":
                 option = "bound" if name == "bounds" else name.replace("_", "-")
-                raise RequestError(f"--{option}: asks for an RSSR, and {file} for a task; leave one out")
+                raise RequestError(f"--{option}: is of an RSSR, and {file} is a task; leave one out")
         read = task_file(file)
         loops = LoopSurvey(read.task, 10**5 if count is None else count, seed_of(seed))
         of_loops = task_report(read.task, designs, command_line(), ())

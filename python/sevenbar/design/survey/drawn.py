@@ -15,7 +15,7 @@ MOST = 2**50
 
 
 class Drawn(ABC):
-    """Linkages drawn from a sequence by their index, and what is asked of them."""
+    """Linkages drawn from a sequence by their index, and what is wanted of them."""
 
     count: int
     seed: int

@@ -1,4 +1,4 @@
-"""Surveys of any loop: linkages drawn within the bounds of a design task, each judged by what that asks.
+"""Surveys of any loop: linkages drawn within the bounds of a design task, each judged by its wants and musts.
 
 Each is followed round all its circuits. Where a pass has what is wanted, what is left of it and what must
 hold are measured at the poses that are used, those between too. With the best hundred the search of
