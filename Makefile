@@ -37,7 +37,7 @@ check: lint rust-test  ## The lints and the fast tests, for every change
 	$(PYTEST) -m "not slow and not proof"
 
 .PHONY: test
-test: $(VENV)/.installed-dev have-chromium rust-test  ## Every test, the long proofs too
+test: $(VENV)/.installed-dev have-chromium rust-test  ## Every test but the proofs of an hour
 	$(PYTEST)
 
 .PHONY: proof

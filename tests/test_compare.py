@@ -242,7 +242,7 @@ def test_an_offset_needs_an_angle():
 def test_no_single_dimension_and_no_speed_explains_the_paper_s_measured_values():
     measured = MeasuredExtremes("table 1", {q: tuple(TABLE_1["measured"][q]) for q in QUANTITIES})
 
-    def misfit(speed=10.0, **changed):
+    def rms(speed=10.0, **changed):
         linkage = replace(PAPER, **changed).linkage()
         try:
             found = compare_extremes(linkage, measured, ends_of(linkage), speed=speed, circuit=0)
@@ -252,14 +252,14 @@ def test_no_single_dimension_and_no_speed_explains_the_paper_s_measured_values()
 
     def best(key, around, reach):
         grid = np.linspace(around - reach, around + reach, 41)
-        near = min(grid, key=lambda value: misfit(**{key: value}))
+        near = min(grid, key=lambda value: rms(**{key: value}))
         step = grid[1] - grid[0]
         found = minimize_scalar(
-            lambda v: misfit(**{key: v}), bounds=(near - step, near + step), method="bounded"
+            lambda v: rms(**{key: v}), bounds=(near - step, near + step), method="bounded"
         )
         return found.fun, found.x
 
-    assert misfit() == pytest.approx(0.0256, abs=1e-4)
+    assert rms() == pytest.approx(0.0256, abs=1e-4)
     least = {name: best(name, getattr(PAPER, name), 40.0) for name in ("M", "N", "L1", "L2", "L3", "D")}
     wanted = {"M": (0.0126, -5.1), "L2": (0.0127, 5.2), "L1": (0.0131, -3.9)}
     for name, (value, change) in wanted.items():

@@ -166,7 +166,7 @@ def test_an_overconstrained_loop_moves_until_its_condition_is_broken_and_then_do
     for off in [*OFF, *(-off for off in OFF)]:
         linkage = family(off)
         motion = told(linkage)
-        misses = motion.search.misfits.size > 0
+        misses = motion.search.open_by.size > 0
         if abs(off) >= DISAGREE:
             assert motion.motion_type in {"rigid", "cannot-assemble"}, off
             assert not motion.circuits
@@ -188,13 +188,13 @@ def test_a_leaning_four_bar_that_agrees_in_one_circuit_only_says_by_how_much_the
     motion = told(opened_four_bar(1e-9))
     assert len(motion.circuits) == 1
     # crossed over, coupler and rocker lean to different sides: by twice the angle at most, and the gap comes to it
-    misfits = motion.search.misfits
-    assert 1e-9 < misfits[0] < misfits[-1] < np.hypot(2e-9, 2e-9)
-    assert f"miss by {misfits[0]:.1e} to {misfits[-1]:.1e} (rad" in how_found(motion)
+    open_by = motion.search.open_by
+    assert 1e-9 < open_by[0] < open_by[-1] < np.hypot(2e-9, 2e-9)
+    assert f"miss by {open_by[0]:.1e} to {open_by[-1]:.1e} (rad" in how_found(motion)
     # at one input, too
     modes = motion.linkage.assembly_modes(0.3)
     assert len(modes) == 1
-    assert misfits[0] <= modes.misfits[0] <= misfits[-1]
+    assert open_by[0] <= modes.open_by[0] <= open_by[-1]
 
 
 @pytest.mark.parametrize("beyond", [1e-4, 1e-6, 1e-8, 1e-9])

@@ -403,3 +403,16 @@ def test_what_shall_be_great_is_better_the_greater_it_is_below_zero_too():
     assert np.concatenate(by).max() < 0
     # without a step or a corner at the unit
     assert left[4] == pytest.approx((left[3] + left[5]) / 2, abs=1e-4)
+
+
+def test_a_bound_of_a_path_is_one_of_its_distances():
+    places = PLACES + 3 * np.sign(np.random.default_rng(0).normal(size=PLACES.shape))
+    want = PathWant("Q", places, timing=INPUTS)
+    bounds = free(START, ("L1", "M", "N", "Q.x", "Q.y", "Q.z"), 60.0)
+
+    def best(*musts):
+        return designed(DesignTask(START, bounds, (want,), musts), count=1, starts=0).designs[0]
+
+    assert best().met[0].greatest > 7
+    most = 6.0 / float(np.ptp(places, axis=0).max())
+    assert best(Most(0, most)).met[0].greatest == pytest.approx(6.0, abs=1e-6)

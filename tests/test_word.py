@@ -161,9 +161,10 @@ def test_the_words_of_random_descriptions_are_what_their_form_means(form):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("count", [250, pytest.param(1000, marks=pytest.mark.proof)])
 @pytest.mark.parametrize("form", list(CHECKS))
-def test_the_words_of_hundreds_of_random_descriptions_are_what_their_form_means(form):
-    assert checked(form, 250) > 225
+def test_the_words_of_hundreds_of_random_descriptions_are_what_their_form_means(form, count):
+    assert checked(form, count) > 0.9 * count
 
 
 def test_numbers_stand_in_the_order_of_the_file_without_the_speed():

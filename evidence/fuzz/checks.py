@@ -112,7 +112,7 @@ def reported_short(motion: sb.Motion) -> list[str]:
     search = motion.search
     found = {
         "modes from which no motion could be followed": search.unfollowed,
-        "poses that close but for redundant constraints": search.misfits.size,
+        "poses that close but for redundant constraints": search.open_by.size,
         "circuits that are not known to close": sum(not circuit.closed for circuit in motion),
         "modes found by a search": motion.completeness == "searched",
     }
@@ -267,7 +267,7 @@ def circuits_are_distinct(motion: sb.Motion) -> None:
 
 def circuits_have_modes(motion: sb.Motion, modes: sb.Modes, at: float) -> None:
     """Each well-conditioned circuit whose input turns fully has its modes at an input."""
-    if motion.completeness == "searched" or motion.search.misfits.size:
+    if motion.completeness == "searched" or motion.search.open_by.size:
         return
     turning = [c for c in motion if c.closed and c.input_range is None and np.nanmax(c.condition) < WELL]
     least = sum(circuit.turns for circuit in turning)

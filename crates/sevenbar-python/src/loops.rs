@@ -141,7 +141,7 @@ impl Loop {
             PyArray1::from_vec(py, values.concat()).reshape([values.len(), self.0.columns()])?,
             residuals.into_pyarray(py),
             found.completeness.name(),
-            found.misfits,
+            found.open_by,
         ))
     }
 

@@ -141,7 +141,7 @@ pub(crate) struct RawSearch {
     columns: Vec<usize>,
     values: usize,
     unfollowed: usize,
-    misfits: Py<PyArray1<f64>>,
+    open_by: Py<PyArray1<f64>>,
     count: Option<Py<RawCount>>,
     uncounted: Option<&'static str>,
 }
@@ -164,7 +164,7 @@ impl RawSearch {
             columns: search.columns,
             values: search.values,
             unfollowed: search.unfollowed,
-            misfits: PyArray1::from_vec(py, search.misfits).unbind(),
+            open_by: PyArray1::from_vec(py, search.open_by).unbind(),
             count,
             uncounted,
         })

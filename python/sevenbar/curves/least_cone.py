@@ -99,7 +99,8 @@ def half_angle(directions: Floats) -> float:
     """Half the opening [rad] of the smallest cone about unit vectors (k, 3)."""
 
     def some(count: int) -> Floats:
-        return np.asarray(directions[np.linspace(0, len(directions) - 1, count).astype(int)])
+        chosen: Floats = directions[np.linspace(0, len(directions) - 1, count).astype(int)]
+        return chosen
 
     def farthest(axis: Floats) -> Floats:
         return np.asarray(directions[[int((directions @ axis).argmin())]])
@@ -109,10 +110,10 @@ def half_angle(directions: Floats) -> float:
 
 def least_cone(curve: Along) -> LeastCone:
     """The smallest cone about a curve of unit vectors (3,), as `exchanged` finds it."""
-    ends = curve.edges[[0, -1]]
+    ends = float(curve.edges[0]), float(curve.edges[-1])
 
     def some(count: int) -> Floats:
-        return curve.at(np.linspace(ends[0], ends[1], count, endpoint=False))
+        return curve.at(np.linspace(*ends, count, endpoint=False))
 
     def farthest(axis: Floats) -> Floats:
         return curve.at(np.concatenate([ends, dotted(curve, axis).stationary(0)]))

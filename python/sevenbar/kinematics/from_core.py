@@ -40,7 +40,7 @@ def search_from(raw: _core.RawSearch, columns: Sequence[str]) -> Search:
         unfollowed=raw.unfollowed,
         rank=None if found is None else found.rank,
         freedoms=None if found is None else found.finite,
-        misfits=raw.misfits,
+        open_by=raw.open_by,
         count=None
         if count is None
         else Count(

@@ -147,11 +147,11 @@ class GeneralLoop:
 
     def modes(self, column: int, value: float) -> Modes:
         """Every assembly mode at one value of a column."""
-        q, residual, completeness, misfits = self._solve(
+        q, residual, completeness, open_by = self._solve(
             column, partial(self._core.assembly_modes, column, value)
         )
         columns = self._linkage.columns
-        return Modes(q, residual * self.size, completeness, columns, value, np.array(misfits), self._agree)
+        return Modes(q, residual * self.size, completeness, columns, value, np.array(open_by), self._agree)
 
     def mobility(self, column: int) -> Mobility:
         """How freely the loop moves; poses are looked for over the values of a column."""

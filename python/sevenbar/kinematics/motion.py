@@ -106,7 +106,7 @@ class Modes(Printed):
     columns: tuple[str, ...]
     input: float
     #: Other poses that redundant constraints alone keep open: how much [rad, relative to the size], rising.
-    misfits: Floats = field(default_factory=_none)
+    open_by: Floats = field(default_factory=_none)
     #: The closure error [rad, relative to the size] up to which they agree; NaN where nothing is redundant.
     agree: float = math.nan
 
@@ -163,7 +163,7 @@ class Search:
     rank: int | None = None
     freedoms: int | None = None
     #: Poses that redundant constraints alone keep open: by how much [rad, or relative to the size], rising.
-    misfits: Floats = field(default_factory=_none)
+    open_by: Floats = field(default_factory=_none)
     #: How the circuits were counted; `None` where they were not.
     count: Count | None = None
     #: Why they were not: modes were "searched", a solution was "lost", or with the input "still" others move.

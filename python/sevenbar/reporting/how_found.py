@@ -61,8 +61,8 @@ def how_found(motion: Motion) -> str:
         parts.append(say("no motion leads out of them"))
     if counted := _counted(search):
         parts.append(counted)
-    if search.misfits.size:
-        parts.append(left_open(search.misfits, motion.agree))
+    if search.open_by.size:
+        parts.append(left_open(search.open_by, motion.agree))
     if motion.agree != AGREE:
         parts.append(
             say("redundant constraints are taken to agree up to {agree:.0e}, by request", agree=motion.agree)
@@ -111,12 +111,12 @@ def _counted(search: Search) -> str:
     )
 
 
-def left_open(misfits: Floats, agree: float) -> str:
+def left_open(open_by: Floats, agree: float) -> str:
     """How many poses redundant constraints alone keep open, and by how much; of one or more, rising."""
-    count = len(misfits)
+    count = len(open_by)
     return say(
         "{count} more pose{closes} except for redundant constraints, which miss by {least:.1e} to {most:.1e} "
         "(rad, or relative to the linkage size) and are taken to agree up to {agree:.0e}",
-        count=count, closes="s close" if count > 1 else " closes", least=misfits[0], most=misfits[-1],
+        count=count, closes="s close" if count > 1 else " closes", least=open_by[0], most=open_by[-1],
         agree=agree,
     )  # fmt: skip

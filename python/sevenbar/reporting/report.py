@@ -105,7 +105,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         },
         "completeness": motion.completeness,
         "how_found": how_found(motion),
-        "misfits": motion.search.misfits.tolist(),
+        "open_by": motion.search.open_by.tolist(),
         "agree": motion.agree,
         "near_motion": None if motion.near_motion is None else vars(motion.near_motion),
         "circuits": [
@@ -315,7 +315,7 @@ def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
         "units": {"length": linkage.length_unit, "angle": "rad"},
         "input": {"joint": linkage.columns[column], "value": modes.input},
         "completeness": modes.completeness,
-        "misfits": modes.misfits.tolist(),
+        "open_by": modes.open_by.tolist(),
         "agree": modes.agree,
         "count": len(modes),
         "columns": [
@@ -341,8 +341,8 @@ def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
                 completeness=completeness_text(modes.completeness),
             )
         )  # fmt: skip
-        if modes.misfits.size:
-            yield Text(left_open(modes.misfits, modes.agree))
+        if modes.open_by.size:
+            yield Text(left_open(modes.open_by, modes.agree))
         for sheet in modes_sheets(linkage, modes, width) if count else ():
             yield Text()
             yield _table(sheet)

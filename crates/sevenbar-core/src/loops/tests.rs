@@ -86,8 +86,8 @@ fn general_loops_have_sixteen_solutions_and_an_even_number_of_real_ones() {
 }
 
 #[test]
-fn a_planar_four_bar_that_leans_has_its_modes_while_it_agrees_and_tells_its_misfits_after() {
-    let modes_and_misfits = |lean: f64| {
+fn a_planar_four_bar_that_leans_has_its_modes_while_it_agrees_and_reports_how_far_others_are_open_after() {
+    let modes_and_open_by = |lean: f64| {
         let chain = loop_of(
             &[1.0, 2.0, 2.0, 3.5],
             &[0.0; 4],
@@ -97,20 +97,20 @@ fn a_planar_four_bar_that_leans_has_its_modes_while_it_agrees_and_tells_its_misf
         // half a turn on: the crank lies along the ground
         let rough = finder.around(4, None).0.swap_remove(2);
         let polished = finder.polished(&rough);
-        (polished.modes.len(), polished.misfits)
+        (polished.modes.len(), polished.open_by)
     };
     for lean in [0.0, 1e-13, 1e-11, 1e-10, -5e-10] {
-        assert_eq!(modes_and_misfits(lean), (2, vec![]));
+        assert_eq!(modes_and_open_by(lean), (2, vec![]));
     }
     for lean in [2e-9, 1e-7, -1e-6_f64] {
-        let (modes, misfits) = modes_and_misfits(lean);
-        assert_eq!((modes, misfits.len()), (0, 2));
+        let (modes, open_by) = modes_and_open_by(lean);
+        assert_eq!((modes, open_by.len()), (0, 2));
         // the axes fail to close by the angle itself, and nothing can make up for it
         assert!(
-            misfits
+            open_by
                 .iter()
                 .all(|m| (0.999 * lean.abs()..2.0 * lean.abs()).contains(m)),
-            "{misfits:?}"
+            "{open_by:?}"
         );
     }
 }

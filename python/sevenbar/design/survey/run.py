@@ -85,9 +85,9 @@ def survey(
         unfinished = UNFINISHED.format(done=tally.count, total=task.count)
     if isinstance(task, LoopSurvey):
         found = task.designs(tally, designs_wanted, progress)
-        candidates = tuple(one.candidate for one in found.designs)
+        made = tuple(one.candidate for one in found.designs)
         unfinished = unfinished or found.unfinished
-        return SurveyResult(task, tally, candidates, found.refusals, len(candidates), unfinished, found)
+        return SurveyResult(task, tally, made, found.refusals, len(made), unfinished, found)
     candidates, refusals, polished = designs(task, tally, designs_wanted, progress)
     return SurveyResult(task, tally, tuple(candidates), tuple(refusals), polished, unfinished)
 

@@ -2,7 +2,7 @@
 
 A step s from z solves  `min |r + J s|^2 + l |D s|^2`  over the unknowns that no bound stops, D the greatest
 lengths that the columns of J have had; l falls and rises with what the step before kept of its promise. A
-step is tried by its residuals alone; slopes are asked for where one was taken.
+step is tried by its residuals alone; slopes are worked out where one was taken.
 
 Source: K. Madsen, H. B. Nielsen, O. Tingleff, Methods for non-linear least squares problems, IMM 2004, (3.14)
 to (3.16); J. J. More, Lecture Notes in Mathematics 630 (1978), for D; M. Transtrum, J. Sethna, arXiv

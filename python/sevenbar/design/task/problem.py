@@ -38,7 +38,7 @@ from sevenbar.design.task.task import (
 )
 from sevenbar.design.task.wants.figures import Figures, figure_left
 from sevenbar.design.task.wants.joints import ReadingsWanted
-from sevenbar.design.task.wants.places import PlacesWanted
+from sevenbar.design.task.wants.places import PlacesWanted, heights_of
 from sevenbar.design.task.wants.straight import LineWanted
 from sevenbar.design.task.wants.wanted import Stations, Wanted
 
@@ -406,7 +406,8 @@ class TaskProblem:
         for i, must in self.model.most:
             at = slice(None) if must.at is None else list(must.at)
             left, by = wants[i][0][at], wants[i][1][at]
-            rooms += [("error", must.most - left, -by), ("error", must.most + left, by)]
+            height, height_by = heights_of(self.model.wanted[i], left, by)
+            rooms.append(("error", must.most - height, -height_by))
         return rooms
 
     def _order(self, z: Floats, number: int) -> tuple[Floats, Floats]:

@@ -29,7 +29,7 @@ class RssrLoop(TaskLoop):
 
     def closed(self, values: Floats, x: Floats, q: Floats) -> Floats:
         """The poses (n, columns) at inputs x (n,), on the branch nearest to q; NaN where there is none."""
-        if self.numbers.points:
+        if self._points:
             return super().closed(values, x, q)
         found = q.copy()
         ways = [self.on_branch(values, x, branch)[:, self.output] - q[:, self.output] for branch in (0, 1)]
@@ -40,7 +40,7 @@ class RssrLoop(TaskLoop):
 
     def here(self, values: Floats, q: Floats, *, slopes: bool = True) -> Here:
         """What is at closed poses (n, columns); slopes are infinite at dead centres of the input."""
-        if self.numbers.points:
+        if self._points:
             return super().here(values, q, slopes=slopes)
         none = np.empty((len(q), 0, 3))
         if not slopes:

@@ -194,7 +194,7 @@ def _worst(kept: Sequence[TaskDesign], count: int) -> float:
 def _take(
     model: TaskModel, look: Solved, count: int, kept: list[TaskDesign], refusals: list[Refusal]
 ) -> None:
-    """Solves a first look to the end, and keeps it or tells why not; one without prospects is left."""
+    """Solves a first look to the end, and keeps it, or the reason why not; one without prospects is left."""
     own = likeness(model.loop.drawn(look.seed.values), scale_free=False)
     if any(np.abs(own - likeness(one.draft, scale_free=False)).max() < ONE for one in kept):
         return

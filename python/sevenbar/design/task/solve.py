@@ -22,7 +22,7 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed, TaskValues
 from sevenbar.design.task.programs import MinimaxValues, lowered
-from sevenbar.design.task.wants.places import PlacesWanted
+from sevenbar.design.task.wants.places import heights_of
 
 #: Evaluations of a first look, of a design that is kept, and of one that comes near to what is wanted.
 LOOK, WHOLE, LONG = 40, 400, 1200
@@ -138,7 +138,7 @@ def solved(
 
 
 def _ended(problem: TaskProblem, z: Floats) -> bool:
-    """Whether least squares have come to an end: nothing is left, or (1) is met as far as slopes tell."""
+    """Whether least squares are done: nothing is left, or (1) is met as nearly as slopes alone lead to."""
     if problem.size(z) <= EXACT:
         return True
     at = _conditions(problem, z, minimax=False)
@@ -219,14 +219,9 @@ def _heights(problem: TaskProblem, here: TaskValues) -> tuple[Floats, Floats]:
         rows = slice(count, count + one.count)
         count += one.count
         left, by = math.sqrt(one.count) * here.left[rows], math.sqrt(one.count) * here.left_by[rows]
-        if isinstance(one, PlacesWanted):
-            left, by = left.reshape(-1, 3), by.reshape(len(left) // 3, 3, -1)
-            size = np.linalg.norm(left, axis=1)
-            heights.append(size)
-            slopes.append(np.einsum("ni,nik->nk", left, by) / np.maximum(size, 1e-300)[:, None])
-        else:
-            heights += [left, -left]
-            slopes += [by, -by]
+        height, height_by = heights_of(one, left, by)
+        heights.append(height)
+        slopes.append(height_by)
     heights += [here.left[count:], -here.left[count:]]
     slopes += [here.left_by[count:], -here.left_by[count:]]
     return np.concatenate(heights), np.concatenate(slopes)

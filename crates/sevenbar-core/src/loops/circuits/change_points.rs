@@ -279,7 +279,7 @@ impl Ray {
     }
 
     /// How far two ways out are from being one smooth curve: their tangents, then their bends.
-    fn misfit(&self, other: &Self) -> (f64, f64) {
+    fn mismatch(&self, other: &Self) -> (f64, f64) {
         let (a, b) = (self.tangent(), other.tangent());
         let kink = length(&std::array::from_fn(|c| a[c] + b[c]));
         // twice the bend of each, which a smooth curve has in common
@@ -312,7 +312,7 @@ fn partners(rays: &[Ray]) -> Vec<Option<usize>> {
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for i in 0..rays.len() {
         for j in i + 1..rays.len() {
-            let (kink, bend) = rays[i].misfit(&rays[j]);
+            let (kink, bend) = rays[i].mismatch(&rays[j]);
             if kink < OPPOSITE {
                 pairs.push((kink + bend, i, j));
             }

@@ -28,7 +28,7 @@ pub struct Search {
     /// Modes there that run into a place where the motion is not smooth, or do not move.
     pub unfollowed: usize,
     /// By how much redundant constraints keep other poses there open, least first [rad, or relative to the size].
-    pub misfits: Vec<f64>,
+    pub open_by: Vec<f64>,
     /// The account of the branch points of the first column, or why there is none.
     pub count: Result<Count, Uncounted>,
 }
@@ -42,7 +42,7 @@ impl Search {
             columns: Vec::new(),
             values: 0,
             unfollowed: 0,
-            misfits: Vec::new(),
+            open_by: Vec::new(),
             count: Err(Uncounted::Searched),
         }
     }

@@ -98,7 +98,7 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         out.take(chain, &std::mem::take(&mut drawings), wished[0]);
         for modes in &rough {
             let polished = finder.polished(&out.unknown(chain, modes));
-            out.search.misfits.extend(polished.misfits);
+            out.search.open_by.extend(polished.open_by);
             out.take(chain, &polished.modes, wished[0]);
         }
         out.ahead.clear();
@@ -127,7 +127,7 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         look_beside_paths(&mut out, chain);
     }
     out.finish(chain);
-    out.search.misfits.sort_by(f64::total_cmp);
+    out.search.open_by.sort_by(f64::total_cmp);
     if out.search.columns.is_empty() {
         out.search.completeness = Completeness::Searched;
     }

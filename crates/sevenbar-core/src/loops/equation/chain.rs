@@ -177,7 +177,7 @@ impl Chain {
         self.columns < COLUMNS
     }
 
-    /// Singular values below this part of the greatest are zero: those that a misfit within what agrees may bring.
+    /// Singular values below this part of the greatest are zero: those that a closure error within what agrees may bring.
     pub fn no_rank(&self) -> f64 {
         10.0 * self.agree
     }

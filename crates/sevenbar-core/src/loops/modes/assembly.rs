@@ -12,7 +12,7 @@ pub struct Modes {
     /// How complete they are.
     pub completeness: Completeness,
     /// By how much redundant constraints keep other poses open, least first [rad, or relative to the size].
-    pub misfits: Vec<f64>,
+    pub open_by: Vec<f64>,
 }
 
 /// Every assembly mode at one value of a column [rad, or length]; `None` where that column is no input.
@@ -27,11 +27,11 @@ pub fn modes(linkage: &Loop, column: usize, value: f64) -> Option<Modes> {
         found.modes.extend(finder.one_by_search(value));
         completeness = Completeness::Searched;
     }
-    found.misfits.sort_by(f64::total_cmp);
+    found.open_by.sort_by(f64::total_cmp);
     let closed = |at| (joint_values(linkage, at), chain.residual(&chain.place(at)));
     Some(Modes {
         modes: found.modes.iter().map(closed).collect(),
         completeness,
-        misfits: found.misfits,
+        open_by: found.open_by,
     })
 }

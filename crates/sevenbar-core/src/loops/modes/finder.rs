@@ -46,7 +46,7 @@ pub(crate) struct Polished {
     /// Those that close, in order.
     pub modes: Vec<Configuration>,
     /// By how much redundant constraints keep the others open [rad, or relative to the size].
-    pub misfits: Vec<f64>,
+    pub open_by: Vec<f64>,
 }
 
 /// A solution whose turns or slides have larger imaginary parts than this is not tried as a real one.
@@ -332,7 +332,7 @@ impl<'a> ModeFinder<'a> {
             self.settled(rough).into_iter().partition(|s| s.agrees);
         let open = open.iter().filter(|s| self.chain.counts(&s.at));
         Polished {
-            misfits: open.map(|s| s.misfit).collect(),
+            open_by: open.map(|s| s.error).collect(),
             modes: self.in_order(closed.into_iter().map(|s| s.at).collect()),
         }
     }

@@ -2,8 +2,8 @@
 //!
 //! A loop with redundant constraints closes by its exact dimensions alone: numbers that are rounded leave it open everywhere, though by
 //! next to nothing. Newton's method, by least squares, then settles where what is left is borne by wrenches to which no joint yields.
-//! Such a pose counts as closed while its misfit is below what the chain takes to agree, and so does a node of a circuit. What joints
-//! could close must be closed to rounding, in every loop.
+//! Such a pose counts as closed while its closure error is below what the chain takes to agree, and so does a node of a circuit. What
+//! joints could close must be closed to rounding, in every loop.
 
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, Columns, Factored, ROWS, least_squares, singular_values};
@@ -13,8 +13,8 @@ use crate::loops::mobility::rank::{rank, unyielding};
 /// The closure error [rad, or relative to the size] that a mode may keep in constraints that count.
 pub(crate) const CLOSED: f64 = 1e-11;
 
-/// The misfit [rad, or relative to the size] up to which a pose counts as kept open by redundant constraints alone: links of 100 mm cut
-/// to a hundredth of a millimetre.
+/// The closure error [rad, or relative to the size] up to which a pose counts as kept open by redundant constraints alone: links of 100 mm
+/// cut to a hundredth of a millimetre.
 const NEARLY: f64 = 1e-4;
 
 /// A move [rad, or relative to the size] after which the next would be rounding.
@@ -35,7 +35,7 @@ const LOOK: usize = 8;
 pub(crate) struct Settled {
     pub at: Configuration,
     /// The closure error that is left in redundant constraints [rad, or relative to the size].
-    pub misfit: f64,
+    pub error: f64,
     /// Whether its redundant constraints agree, so that it is a mode.
     pub agrees: bool,
 }
@@ -84,8 +84,8 @@ pub(crate) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
         .difference(rough, &at)
         .iter()
         .fold(0.0, |m: f64, d| m.max(d.abs()));
-    let misfit = misfit(chain, &at)?;
-    (gone <= reach).then_some(Settled { at, misfit, agrees: misfit < chain.agree })
+    let error = closure_error(chain, &at)?;
+    (gone <= reach).then_some(Settled { at, error, agrees: error < chain.agree })
 }
 
 /// The same where the other joints have freedoms to spare: each step is the shortest of those that lead as near.
@@ -132,7 +132,7 @@ pub(super) fn polish_with_spare(chain: &Chain, input: usize, rough: &Configurati
 }
 
 /// The closure error that is left in redundant constraints; `None` for a pose that is open in others too.
-fn misfit(chain: &Chain, at: &Configuration) -> Option<f64> {
+fn closure_error(chain: &Chain, at: &Configuration) -> Option<f64> {
     let placed = chain.place(at);
     let residual = chain.residual(&placed);
     if residual < CLOSED {

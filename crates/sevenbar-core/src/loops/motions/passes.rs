@@ -145,7 +145,7 @@ impl<'a> Passes<'a> {
             &curve::predicted(self.chain, node, along),
             -1.0,
         ));
-        // the misfit of redundant constraints changes between its nodes
+        // the closure error of redundant constraints changes between its nodes
         let closed = if self.chain.is_redundant() {
             2.0 * self.chain.agree
         } else {

@@ -17,11 +17,21 @@ from sevenbar.design.task.match import (
 )
 from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.task import PathWant, PoseWant
-from sevenbar.design.task.wants.wanted import Begun, Stations
+from sevenbar.design.task.wants.wanted import Begun, Stations, Wanted
 from sevenbar.kinematics.circuits import Circuit
 
 #: Of the rows of a pass one in so many is tried as the one that takes the first pose.
 FIRST_AT = 2
+
+
+def heights_of(one: Wanted, left: Floats, by: Floats) -> tuple[Floats, Floats]:
+    """Sizes (h,) of a want's residuals, and their slopes (h, k): distances of places, others both ways."""
+    if not isinstance(one, PlacesWanted):
+        return np.concatenate([left, -left]), np.concatenate([by, -by])
+    left = left.reshape(-1, 3)
+    size = np.linalg.norm(left, axis=1)
+    slopes = np.einsum("ni,nik->nk", left, by.reshape(*left.shape, by.shape[-1]))
+    return size, slopes / np.maximum(size, 1e-300)[:, None]
 
 
 class PlacesWanted:
