@@ -194,7 +194,7 @@ class Numbers:
         steps: _Floats | None = None,
     ) -> tuple[_Floats, _Floats]: ...
 
-_Place = tuple[int, _Floats, Sequence[tuple[int, _Floats]]]
+_Place = tuple[int, _Floats, Sequence[tuple[int, list[float]]]]
 
 @final
 class Acting:
@@ -203,7 +203,7 @@ class Acting:
     def __new__(
         cls,
         gravity: _Floats,
-        bodies: Sequence[tuple[int, float, _Floats, _Floats, Sequence[tuple[int, _Floats]]]],
+        bodies: Sequence[tuple[int, float, _Floats, _Floats, Sequence[tuple[int, list[float]]]]],
         loads: Sequence[tuple[_Place, _Floats, _Floats, bool]],
         springs: Sequence[tuple[_Place, _Place, _Floats]],
         joint_springs: Sequence[tuple[int, _Floats]],

@@ -72,18 +72,22 @@ class ForceSolver:
             self._frames[link] = self._carrier(link)[1].pose(self.numbers.values(self.loop.p))
         return self._frames[link]
 
-    def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, Floats]]]:
+    def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, list[float]]]]:
         steps, product = self._carrier(link)
         place = placed(self._frame(link), at) / self.numbers.size
         return steps, place, self.loop.core.twists(product) if self.by_numbers else []
 
-    def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, list[tuple[int, Floats]]]:
+    def _body(
+        self, link: int, body: Body
+    ) -> tuple[int, float, Floats, Floats, list[tuple[int, list[float]]]]:
         assert body.centre is not None
         steps, centre, ways = self._place(link, body.centre)
         axes = self._frame(link)[:3, :3]
         return steps, body.mass, centre, axes @ body.tensor @ axes.T / self.size**2, ways
 
-    def _load(self, load: Load) -> tuple[tuple[int, Floats, list[tuple[int, Floats]]], Floats, Floats, bool]:
+    def _load(
+        self, load: Load
+    ) -> tuple[tuple[int, Floats, list[tuple[int, list[float]]]], Floats, Floats, bool]:
         assert load.at is not None
         force, torque = np.array(load.force) / self.size, np.array(load.torque) / self.size**2
         turns = load.axes == "link"
