@@ -34,17 +34,17 @@ MADE = ("accuracy.md", "benchmarks.md", "hard-use.md", "changelog.md")
 
 #: How often each word may still be in the sources. A smaller number is always right; none may grow.
 ALLOWED = {
-    "told": 88,
+    "told": 87,
     "comes to": 23,
     "misfit": 0,
     "established": 0,
     "stands": 89,
-    "beside": 162,
+    "beside": 159,
     "but for": 4,
     "parts of": 38,
-    "looks": 99,
+    "looks": 81,
     "hard use": 8,
-    "asks of": 40,
+    "asks of": 38,
     "is said": 0,
 }
 

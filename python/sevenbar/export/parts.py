@@ -39,7 +39,7 @@ PAST_THE_OTHER, ELBOW = -0.35, 1.6
 DISC, SLIPPER, GAP = 0.4, 0.6, 0.04
 #: Above this cosine between an arm and the axis, the arm leaves through the hub's end, which then has a lid.
 THROUGH_THE_END = 0.5
-#: Below this distance [heights of a hub] two places of a link are one: copies, but for rounding.
+#: Below this distance [heights of a hub] two places of a link are one: copies up to rounding.
 SAME = 1e-6
 
 

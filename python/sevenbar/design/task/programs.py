@@ -118,7 +118,7 @@ def _step(now: MinimaxValues, reach: float) -> tuple[Floats, float]:
     from scipy.optimize import linprog
 
     unit, count = now.unit, now.height_slopes.shape[1]
-    # rows that no step within the reach comes to are left out
+    # rows out of reach of every step are left out
     up, down = (reach * np.abs(by).sum(axis=1) for by in (now.height_slopes, now.room_slopes))
     tall, near = ~(now.height + up < (now.height - up).max()), ~(now.room > down)
     matrix = np.block(

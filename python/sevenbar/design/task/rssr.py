@@ -13,12 +13,16 @@ from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, Most
 class RssrLoop(TaskLoop):
     """An RSSR of which crank and rocker alone are seen: the columns of its balls are not followed.
 
-    Once a point is asked for it is a loop as any other.
+    With a point to be seen it is a loop as any other.
     """
 
     @property
     def _columns(self) -> list[int]:
         return [self.numbers.names.index(name) for name in NAMES]
+
+    @property
+    def _sees_points(self) -> bool:
+        return len(self.numbers.points) > len(self.linkage.points)
 
     def on_branch(self, values: Floats, x: Floats, branch: int) -> Floats:
         """The poses (n, columns) at inputs x (n,) on a branch; NaN where there is none."""
@@ -29,7 +33,7 @@ class RssrLoop(TaskLoop):
 
     def closed(self, values: Floats, x: Floats, q: Floats) -> Floats:
         """The poses (n, columns) at inputs x (n,), on the branch nearest to q; NaN where there is none."""
-        if self._points:
+        if self._sees_points:
             return super().closed(values, x, q)
         found = q.copy()
         ways = [self.on_branch(values, x, branch)[:, self.output] - q[:, self.output] for branch in (0, 1)]
@@ -40,7 +44,7 @@ class RssrLoop(TaskLoop):
 
     def here(self, values: Floats, q: Floats, *, slopes: bool = True) -> Here:
         """What is at closed poses (n, columns); slopes are infinite at dead centres of the input."""
-        if self._points:
+        if self._sees_points:
             return super().here(values, q, slopes=slopes)
         none = np.empty((len(q), 0, 3))
         if not slopes:
@@ -56,7 +60,7 @@ class RssrLoop(TaskLoop):
 
 
 def loop_of(task: DesignTask) -> TaskLoop:
-    """The loop of a task, in closed form where it asks of an RSSR for a function and nothing else."""
+    """The loop of a task, in closed form where a function of an RSSR is all that is wanted."""
     draft = task.draft.holding(task.follow)
     linkage = draft.linkage
     ends = (linkage.drive.joint, linkage.drive.output) == (linkage.columns[0], linkage.columns[-1])

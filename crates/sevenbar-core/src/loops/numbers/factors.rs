@@ -186,7 +186,7 @@ impl Held {
 }
 
 impl Factor {
-    /// The numbers that it asks for.
+    /// The numbers that it holds.
     fn numbers(&self) -> Vec<usize> {
         match self {
             Self::Still(_) => Vec::new(),
@@ -226,7 +226,7 @@ impl Factor {
         }
     }
 
-    /// The twist in the frame behind it by one of a number that it asks for.
+    /// The twist in the frame behind it by one of a number that it holds.
     fn twist(&self, values: &[f64], number: usize) -> Twist {
         let mut out = [0.0; 6];
         let ([x, y, z, at], has_plane) = match self {
@@ -294,7 +294,7 @@ impl Product {
         )
     }
 
-    /// The numbers that it asks for.
+    /// The numbers that it holds.
     pub fn numbers(&self) -> impl Iterator<Item = usize> {
         self.0.iter().flat_map(|(factor, _)| factor.numbers())
     }
