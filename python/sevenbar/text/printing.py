@@ -74,9 +74,11 @@ class Drawable(Printed):
 
 
 def _import_words(value: object) -> None:
-    folder = type(value).__module__.rpartition(".")[0]
-    if folder in SAID_IN:
-        importlib.import_module(SAID_IN[folder])
+    module = type(value).__module__
+    for folder, words in SAID_IN.items():
+        if module.startswith(f"{folder}."):
+            importlib.import_module(words)
+            return
 
 
 @singledispatch

@@ -209,7 +209,7 @@ class NumberedLoop:
             axis = _core.Product()
             points += [_core.Carried(count, axis, None, (0.0, 0.0, end)) for end in (0.0, numbers.size)]
         #: What the core knows of it.
-        self.core = numbers.core.at(p, input, self.only, [*points, *extra])
+        self.core = numbers.core.at(np.ascontiguousarray(p), input, self.only, [*points, *extra])
 
     def followed(
         self, x: npt.ArrayLike, q: Floats, designs: Floats | None = None, steps: Floats | None = None
@@ -225,7 +225,8 @@ class NumberedLoop:
         scaled = None if steps is None else np.ascontiguousarray(steps / scales)
         start = np.ascontiguousarray(q / scales)
         start[:, self.numbers.held] = 0.0
-        found, sides = self.core.follow(start, inputs, designs, scaled)
+        others = None if designs is None else np.ascontiguousarray(designs)
+        found, sides = self.core.follow(start, inputs, others, scaled)
         return found * scales, sides
 
     def opening(self, circuit: Circuit) -> Booleans:
