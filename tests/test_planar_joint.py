@@ -81,7 +81,10 @@ def test_a_planar_joint_moves_as_two_slides_and_a_turn(kinds: str, seed: int) ->
     assert len(one.circuits) == len(other.circuits) > 0
     modes = [linkage.assembly_modes(0.02, input=drive["joint"]).q for linkage in (whole, parts)]
     np.testing.assert_allclose(modes[0], modes[1], atol=1e-8)
-    for a, b in zip(one.circuits, other.circuits, strict=True):
+    for a in one.circuits:
+        # circuits with the same limits may come in another order
+        alike = (circuit for circuit in other.circuits if circuit.q.shape == a.q.shape)
+        b = min(alike, key=lambda circuit: np.nanmax(np.abs(circuit.q - a.q)))
         for quantity in ("q", "dq", "ddq"):
             mine, theirs = getattr(a, quantity), getattr(b, quantity)
             scale = 1 + np.nanmax(np.abs(theirs))
