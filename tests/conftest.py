@@ -1,5 +1,6 @@
-"""What tests are given: a Chinese font; Chromium, its pages, the studio."""
+"""What tests are given: a Chinese font; Chromium, its pages, the studio; a cluster."""
 
+import logging
 from contextlib import ExitStack
 from itertools import count
 
@@ -54,3 +55,26 @@ def pages(chromium, studio):  # noqa: ARG001  # made after the studio, so that p
     yield opened
     opened.close()
     assert not opened.wrong
+
+
+@pytest.fixture
+def workers(tmp_path, monkeypatch):
+    """Start a cluster of processes on this machine; it leaves no file but in its own folder."""
+    import dask
+    from distributed import LocalCluster
+
+    started = []
+
+    def start(count: int, **settings):
+        with dask.config.set({"temporary-directory": str(tmp_path / "dask"), **settings}):
+            one = LocalCluster(
+                n_workers=count, threads_per_worker=1, processes=True, silence_logs=logging.CRITICAL,
+                dashboard_address=":0",  # a free port: other tests have clusters at the same time
+            )  # fmt: skip
+        started.append(one)
+        return one
+
+    monkeypatch.setenv("DASK_LOGGING__DISTRIBUTED", "critical")
+    yield start
+    for one in started:
+        one.close()

@@ -263,19 +263,9 @@ def test_a_survey_that_was_killed_goes_on(tmp_path):
 
 
 @pytest.mark.slow
-def test_workers_of_a_cluster_give_the_same_answer(tmp_path):
-    import dask
-    from distributed import LocalCluster
-
+def test_workers_of_a_cluster_give_the_same_answer(workers):
     task = SurveyTask(FLAP, count=600_000)
-    with dask.config.set({"temporary-directory": str(tmp_path)}):
-        cluster = LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
-        )
-    try:
-        there = survey(task, designs_wanted=0, scheduler=cluster.scheduler_address)
-    finally:
-        cluster.close()
+    there = survey(task, designs_wanted=0, scheduler=workers(2).scheduler_address)
     assert there.tally.line() == survey(task, designs_wanted=0, threads=1).tally.line()
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import logging
 import os
 import signal
 import warnings
@@ -28,29 +27,6 @@ def swept(**asked):
 
 def bits(folder: Path) -> dict[str, str]:
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir()}
-
-
-@pytest.fixture
-def workers(tmp_path, monkeypatch):
-    """Start a cluster of processes on this machine; it leaves no file but in its own folder."""
-    import dask
-    from distributed import LocalCluster
-
-    started = []
-
-    def start(count: int, **settings):
-        with dask.config.set({"temporary-directory": str(tmp_path / "dask"), **settings}):
-            one = LocalCluster(
-                n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None,
-                silence_logs=logging.CRITICAL,
-            )  # fmt: skip
-        started.append(one)
-        return one
-
-    monkeypatch.setenv("DASK_LOGGING__DISTRIBUTED", "critical")
-    yield start
-    for one in started:
-        one.close()
 
 
 @pytest.mark.slow

@@ -183,7 +183,7 @@ def test_no_linkages_give_no_rows() -> None:
 
 
 def test_a_wrong_request_is_told() -> None:
-    with pytest.raises(_core.CoreError, match=r"shape \(5, 3\); give a contiguous one of shape \(6, n\)"):
+    with pytest.raises(_core.CoreError, match=r"shape \[5, 3\]; give one of shape \(6, n\)"):
         _core.classify_rssr(np.ones((5, 3)), "crank", 1)
     with pytest.raises(_core.CoreError, match="'coupler' is not a side link; give crank or rocker"):
         measure(np.ones((6, 3)), "coupler", 1)

@@ -1,21 +1,14 @@
 //! Polynomials along a path, and the motion that they drive, for Python.
 
 use crate::numbers::{Array, shaped};
-use crate::{CoreError, flat};
+use crate::{CoreError, in_rows};
 use numpy::{PyReadonlyArray1, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use sevenbar_core::driven::{Along, Begin, TERMS};
 use sevenbar_core::piecewise::Piecewise;
 
-fn pieces<'a>(
-    edges: &'a PyReadonlyArray1<'_, f64>,
-    series: &'a PyReadonlyArray3<'_, f64>,
-) -> PyResult<Piecewise<'a>> {
-    let (terms, width) = (series.shape()[1], series.shape()[2]);
-    let values = series
-        .as_slice()
-        .map_err(|_| CoreError::new_err("series: the array is not contiguous"))?;
-    Piecewise::new(flat("edges", edges)?, values, terms, width)
+fn pieces<'a>(edges: &'a [f64], series: &'a [f64], shape: &[usize]) -> PyResult<Piecewise<'a>> {
+    Piecewise::new(edges, series, shape[1], shape[2])
         .ok_or_else(|| CoreError::new_err("series: it does not fit the edges"))
 }
 
@@ -30,8 +23,8 @@ pub(crate) fn piecewise<'py>(
     places: PyReadonlyArray1<'py, f64>,
     on: Option<PyReadonlyArray1<'py, i64>>,
 ) -> PyResult<Array<'py>> {
-    let own = pieces(&edges, &series)?;
-    let places = flat("places", &places)?;
+    let (edges, numbers, places) = (in_rows(&edges), in_rows(&series), in_rows(&places));
+    let own = pieces(&edges, &numbers, series.shape())?;
     let on = on.as_ref().map(|numbers| {
         numbers
             .as_array()
@@ -93,7 +86,8 @@ pub(crate) fn driven<'py>(
     bounds: (f64, f64),
     motor: Option<Motor<'py>>,
 ) -> PyResult<StepsFound<'py>> {
-    let own = pieces(&edges, &quantities)?;
+    let (edges, numbers) = (in_rows(&edges), in_rows(&quantities));
+    let own = pieces(&edges, &numbers, quantities.shape())?;
     if own.width() != 6 {
         return Err(CoreError::new_err("quantities: give six"));
     }

@@ -1,7 +1,7 @@
 //! Many linkages at once, for Python.
 
 use crate::loops::{kinds, pose};
-use crate::{CoreError, flat, input_named, raise};
+use crate::{CoreError, in_rows, input_named, raise};
 use numpy::ndarray::Axis;
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
@@ -103,17 +103,14 @@ impl LoopBatch {
     }
 }
 
-/// M, N, L1, L2, L3 and D as columns of numbers.
-fn columns<'a>(dimensions: &'a PyReadonlyArray2<'_, f64>) -> PyResult<[&'a [f64]; 6]> {
-    let &[rows, count] = dimensions.shape() else {
-        unreachable!("an array of two dimensions");
+/// M, N, L1, L2, L3 and D, from an array of this shape row by row.
+fn columns<'a>(dimensions: &'a [f64], shape: &[usize]) -> PyResult<[&'a [f64]; 6]> {
+    let &[6, count] = shape else {
+        return Err(CoreError::new_err(format!(
+            "dimensions: an array of shape {shape:?}; give one of shape (6, n)"
+        )));
     };
-    let values = dimensions.as_slice().ok().filter(|_| rows == 6).ok_or_else(|| {
-        CoreError::new_err(format!(
-            "dimensions: an array of shape ({rows}, {count}); give a contiguous one of shape (6, n)"
-        ))
-    })?;
-    Ok(std::array::from_fn(|k| &values[k * count..(k + 1) * count]))
+    Ok(std::array::from_fn(|k| &dimensions[k * count..(k + 1) * count]))
 }
 
 /// Rows of numbers as an array of two dimensions.
@@ -136,7 +133,8 @@ pub(crate) fn classify_rssr<'py>(
     input: &str,
     threads: usize,
 ) -> PyResult<Classes<'py>> {
-    let (columns, input) = (columns(&dimensions)?, input_named(input)?);
+    let numbers = in_rows(&dimensions);
+    let (columns, input) = (columns(&numbers, dimensions.shape())?, input_named(input)?);
     let count = columns[0].len();
     let (mut codes, mut limits) = (vec![0; count], vec![[0.0; MOST_LIMITS]; count]);
     py.detach(|| rssr::classify(columns, input, threads, &mut codes, &mut limits))
@@ -153,11 +151,11 @@ pub(crate) fn measure_rssr<'py>(
     speed: PyReadonlyArray1<'py, f64>,
     threads: usize,
 ) -> PyResult<RssrBatch> {
-    let (columns, input) = (columns(&dimensions)?, input_named(input)?);
+    let (numbers, speeds) = (in_rows(&dimensions), in_rows(&speed));
+    let (columns, input) = (columns(&numbers, dimensions.shape())?, input_named(input)?);
     checked("speed", speed.shape(), &[columns[0].len()])?;
-    let speed = flat("speed", &speed)?;
     let motions = py
-        .detach(|| rssr::measure(columns, input, speed, threads))
+        .detach(|| rssr::measure(columns, input, &speeds, threads))
         .map_err(raise)?;
     RssrBatch::new(py, &motions)
 }
@@ -208,7 +206,7 @@ pub(crate) fn measure_loops<'py>(
     checked("ground", ground.shape(), &[count, 4, 4])?;
     checked("links", links.shape(), &[count, joints - 1, 4, 4])?;
     checked("speed", speed.shape(), &[count])?;
-    let speed = flat("speed", &speed)?;
+    let speed = in_rows(&speed);
     let (advances, base, ground, links) = (
         advances.as_array(),
         base.as_array(),

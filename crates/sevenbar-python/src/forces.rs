@@ -1,7 +1,7 @@
 //! Torque and reactions of a loop with its numbers, for Python.
 
 use crate::numbers::{Array, Numbers, shaped};
-use crate::{CoreError, loops::pose};
+use crate::{CoreError, in_rows, loops::pose};
 use numpy::ndarray::Axis;
 use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -117,12 +117,7 @@ pub(crate) fn reactions<'py>(
     if !fits {
         return Err(CoreError::new_err("reactions: the parts do not fit together"));
     }
-    let contiguous = |_| CoreError::new_err("reactions: an array is not contiguous");
-    let (values, speeds, factors) = (
-        values.as_slice().map_err(contiguous)?,
-        speeds.as_slice().map_err(contiguous)?,
-        factors.as_slice().map_err(contiguous)?,
-    );
+    let (values, speeds, factors) = (in_rows(&values), in_rows(&speeds), in_rows(&factors));
     let seats: Vec<Seat> = joints
         .iter()
         .zip(frames.as_array().axis_iter(Axis(0)))
@@ -131,10 +126,10 @@ pub(crate) fn reactions<'py>(
     let found = py.detach(|| {
         loops::reactions(
             &numbers.0,
-            values,
-            speeds,
+            &values,
+            &speeds,
             &acting.0,
-            factors,
+            &factors,
             &seats,
             with_numbers,
         )

@@ -10,11 +10,13 @@ mod rssr;
 mod survey;
 mod values;
 
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::ndarray::Dimension;
+use numpy::{PyReadonlyArray, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use sevenbar_core::error::Error;
 use sevenbar_core::rssr::Input;
+use std::borrow::Cow;
 
 pyo3::create_exception!(
     _core,
@@ -37,11 +39,13 @@ fn input_named(name: &str) -> PyResult<Input> {
     }
 }
 
-/// A contiguous array as a slice.
-fn flat<'a>(what: &str, array: &'a PyReadonlyArray1<'_, f64>) -> PyResult<&'a [f64]> {
-    array
-        .as_slice()
-        .map_err(|_| CoreError::new_err(format!("{what}: the array is not contiguous")))
+/// The numbers of an array, row by row, whatever their order in memory. (`as_slice` gives them in that order.)
+fn in_rows<'a, D: Dimension>(array: &'a PyReadonlyArray<'_, f64, D>) -> Cow<'a, [f64]> {
+    let view = array.as_array();
+    match view.to_slice() {
+        Some(numbers) => Cow::Borrowed(numbers),
+        None => Cow::Owned(view.iter().copied().collect()),
+    }
 }
 
 /// An input law as rows of value and three derivatives.

@@ -2,7 +2,7 @@
 
 use crate::rows::{Course, Rows};
 use crate::values::{RawCircuit, RawFound, RawMotion, RawSearch, RowArrays, change_point};
-use crate::{CoreError, flat, law_rows};
+use crate::{CoreError, in_rows, law_rows};
 use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
@@ -73,8 +73,7 @@ impl Loop {
         links: PyReadonlyArray3<'_, f64>,
         agree: f64,
     ) -> PyResult<Self> {
-        let advances = flat("advances", &advances)?;
-        let kinds = kinds(letters, advances)?;
+        let kinds = kinds(letters, &in_rows(&advances))?;
         let (base, ground, links) = (base.as_array(), ground.as_array(), links.as_array());
         let right = base.shape() == [4, 4]
             && ground.shape() == [4, 4]
@@ -211,12 +210,12 @@ impl Loop {
         law: Option<PyReadonlyArray2<'py, f64>>,
     ) -> PyResult<RawThrough> {
         let law = law_rows(law);
-        let pose = flat("pose", &pose)?;
+        let pose = in_rows(&pose);
         if pose.len() != self.0.columns() {
             return Err(CoreError::new_err("pose needs one value for each column"));
         }
         let through = py
-            .detach(|| loops::circuit_through(&self.0, pose, input, output, samples, speed, law.as_deref()))
+            .detach(|| loops::circuit_through(&self.0, &pose, input, output, samples, speed, law.as_deref()))
             .ok_or_else(|| no_input(input))?;
         Ok(match through {
             Through::Circuit(circuit) => RawThrough::Circuit(Py::new(py, self.circuit(py, *circuit)?)?),

@@ -1,6 +1,6 @@
 //! Derivatives of a loop by the numbers of its description, for Python.
 
-use crate::{CoreError, flat, loops::pose};
+use crate::{CoreError, in_rows, loops::pose};
 use numpy::{
     IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
     PyUntypedArrayMethods,
@@ -114,11 +114,11 @@ impl Product {
 
     /// The motion (4, 4) at values (k,) of all numbers.
     fn pose<'py>(&self, py: Python<'py>, values: PyReadonlyArray1<'py, f64>) -> PyResult<Array<'py>> {
-        let values = flat("values", &values)?;
+        let values = in_rows(&values);
         if self.0.numbers().any(|k| k >= values.len()) {
             return Err(wrong());
         }
-        let found = self.0.pose(values);
+        let found = self.0.pose(&values);
         let mut matrix = Vec::with_capacity(16);
         for (row, shift) in found.rotation.iter().zip(found.translation) {
             matrix.extend([row[0], row[1], row[2], shift]);
@@ -188,7 +188,7 @@ impl LoopWord {
         points: Vec<Carried>,
     ) -> PyResult<Numbers> {
         let points: Vec<_> = points.into_iter().map(|point| point.0).collect();
-        NumberedLoop::new(&self.0, flat("numbers", &numbers)?, input, &only, &points)
+        NumberedLoop::new(&self.0, &in_rows(&numbers), input, &only, &points)
             .map(Numbers)
             .ok_or_else(wrong)
     }
@@ -212,10 +212,8 @@ impl Numbers {
                 "slopes: give rows of all columns, and an order up to 3",
             ));
         }
-        let values = values
-            .as_slice()
-            .map_err(|_| CoreError::new_err("values: the array is not contiguous"))?;
-        let found = py.detach(|| slopes(&self.0, values, order));
+        let values = in_rows(&values);
+        let found = py.detach(|| slopes(&self.0, &values, order));
         let (all, points, idle) = (self.0.numbers() + 1, self.0.points(), self.0.idle());
         Ok(vec![
             shaped(py, found.rates, &[rows, 3, width])?,
@@ -234,10 +232,8 @@ impl Numbers {
         if values.shape()[1] != self.0.columns() {
             return Err(CoreError::new_err("places: give rows of all columns"));
         }
-        let values = values
-            .as_slice()
-            .map_err(|_| CoreError::new_err("values: the array is not contiguous"))?;
-        let found = py.detach(|| self.0.places(values));
+        let values = in_rows(&values);
+        let found = py.detach(|| self.0.places(&values));
         shaped(py, found, &[rows, self.0.points(), 3])
     }
 
@@ -268,18 +264,12 @@ impl Numbers {
         if !fits {
             return Err(CoreError::new_err("follow: the arrays do not fit together"));
         }
-        let contiguous = |_| CoreError::new_err("follow: an array is not contiguous");
-        let values = values.as_slice().map_err(contiguous)?;
-        let numbers = numbers
-            .as_ref()
-            .map(|all| all.as_slice().map_err(contiguous))
-            .transpose()?;
-        let steps = steps
-            .as_ref()
-            .map(|s| s.as_slice().map_err(contiguous))
-            .transpose()?;
-        let inputs = flat("inputs", &inputs)?;
-        let found = py.detach(|| self.0.follow(values, inputs, steps, numbers));
+        let (values, inputs) = (in_rows(&values), in_rows(&inputs));
+        let (numbers, steps) = (numbers.as_ref().map(in_rows), steps.as_ref().map(in_rows));
+        let found = py.detach(|| {
+            self.0
+                .follow(&values, &inputs, steps.as_deref(), numbers.as_deref())
+        });
         Ok((
             shaped(py, found.values, &[designs, rows, width])?,
             shaped(py, found.sides, &[designs, rows])?,

@@ -1,6 +1,6 @@
 //! The rows of a circuit as Python keeps them.
 
-use crate::{CoreError, flat};
+use crate::{CoreError, in_rows};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
@@ -40,12 +40,11 @@ impl Rows {
         offsets: PyReadonlyArray1<'_, f64>,
         speed: f64,
     ) -> PyResult<Self> {
-        let numbers = numbers
-            .as_slice()
-            .ok()
-            .filter(|_| numbers.shape()[1] == loops::ROW_NUMBERS)
-            .ok_or_else(|| CoreError::new_err(format!("rows need {} numbers each", loops::ROW_NUMBERS)))?;
-        loops::Rows::from_numbers(numbers, flat("offsets", &offsets)?.to_vec(), speed)
+        if numbers.shape()[1] != loops::ROW_NUMBERS {
+            let wanted = loops::ROW_NUMBERS;
+            return Err(CoreError::new_err(format!("rows need {wanted} numbers each")));
+        }
+        loops::Rows::from_numbers(&in_rows(&numbers), in_rows(&offsets).to_vec(), speed)
             .map(Self)
             .ok_or_else(|| CoreError::new_err("no rows of a circuit have these numbers"))
     }

@@ -2,7 +2,7 @@
 
 use crate::loops::pose;
 use crate::values::{RawCircuit, RawMotion, RowArrays};
-use crate::{CoreError, flat, input_named, law_rows, raise};
+use crate::{CoreError, in_rows, input_named, law_rows, raise};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyReadonlyArray3, PyReadwriteArray2,
@@ -63,22 +63,22 @@ impl Rssr {
         law: Option<[PyReadonlyArray1<'py, f64>; 3]>,
     ) -> PyResult<()> {
         let pair = self.0.pair(input_named(input)?);
-        let values = flat("input", &inputs)?;
+        let values = in_rows(&inputs);
+        let law = law.as_ref().map(|rates| rates.each_ref().map(in_rows));
         let rates = match &law {
             None => BatchRates::Constant(speed),
-            Some([d1, d2, d3]) => {
-                BatchRates::Law([flat("speed", d1)?, flat("acceleration", d2)?, flat("jerk", d3)?])
-            }
+            Some(rates) => BatchRates::Law(rates.each_ref().map(|d| &**d)),
         };
         let mut slices = outputs
             .iter_mut()
             .map(|array| {
                 array
-                    .as_slice_mut()
-                    .map_err(|e| CoreError::new_err(e.to_string()))
+                    .as_array_mut()
+                    .into_slice()
+                    .ok_or_else(|| CoreError::new_err("outputs: an array is not in rows"))
             })
             .collect::<PyResult<Vec<_>>>()?;
-        py.detach(|| pair.outputs(values, rates, &mut slices))
+        py.detach(|| pair.outputs(&values, rates, &mut slices))
             .map_err(raise)
     }
 

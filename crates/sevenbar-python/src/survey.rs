@@ -1,6 +1,6 @@
 //! Surveys of many RSSRs, for Python.
 
-use crate::{CoreError, flat};
+use crate::{CoreError, in_rows};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyUntypedArrayMethods,
@@ -215,7 +215,8 @@ pub(crate) fn survey_figures<'py>(
     py: Python<'py>,
     numbers: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Figures<'py>> {
-    let (rows, _) = flat("numbers", &numbers)?.as_chunks::<NUMBERS>();
+    let numbers = in_rows(&numbers);
+    let (rows, _) = numbers.as_chunks::<NUMBERS>();
     let found = py.detach(|| survey::figures(rows));
     let count = found.len();
     let table = |values: Vec<f64>, columns: usize| PyArray1::from_vec(py, values).reshape([count, columns]);

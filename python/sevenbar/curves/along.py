@@ -38,6 +38,7 @@ class Along:
     series: Floats
 
     def __post_init__(self) -> None:
+        # once here, so that the core need not copy it at each call
         object.__setattr__(self, "series", np.ascontiguousarray(self.series))
 
     @property
@@ -67,11 +68,11 @@ class Along:
 
     def at(self, s: Floats) -> Floats:
         """The quantities (j, k) at places (j,); beyond the ends the polynomials of these go on."""
-        return piecewise(self.edges, self.series, np.ascontiguousarray(s, dtype=np.float64))
+        return piecewise(self.edges, self.series, np.asarray(s, dtype=np.float64))
 
     def on(self, piece: npt.NDArray[np.int64], s: Floats) -> Floats:
         """The quantities (j, k) by the polynomials of given pieces (j,) at places (j,)."""
-        return piecewise(self.edges, self.series, np.ascontiguousarray(s), np.ascontiguousarray(piece))
+        return piecewise(self.edges, self.series, s, piece)
 
     def stationary(self, column: int) -> Floats:
         """Places (j,) where one quantity has slope zero, or may turn at an edge, in order."""

@@ -430,4 +430,4 @@ def _rate(name: str, value: npt.ArrayLike, count: int) -> Floats:
         raise RequestError(
             f"{name}: {array.size} values where the input has {count}; give {count}, or one number"
         )
-    return np.ascontiguousarray(np.broadcast_to(array, (count,)))
+    return np.broadcast_to(array, (count,))

@@ -156,9 +156,9 @@ class ForceSolver:
         return _core.reactions(
             self.loop.core,
             self.acting,
-            np.ascontiguousarray(poses / scales),
-            np.ascontiguousarray(speeds / scales[self.input]),
-            np.ascontiguousarray(np.reshape(factors, (-1, len(inputs))).T),
+            poses / scales,
+            speeds / scales[self.input],
+            np.reshape(factors, (-1, len(inputs))).T,
             steps,
             frames,
             self.by_numbers,

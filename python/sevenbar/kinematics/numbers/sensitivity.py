@@ -209,7 +209,7 @@ class NumberedLoop:
             axis = _core.Product()
             points += [_core.Carried(count, axis, None, (0.0, 0.0, end)) for end in (0.0, numbers.size)]
         #: What the core knows of it.
-        self.core = numbers.core.at(np.ascontiguousarray(p), input, self.only, [*points, *extra])
+        self.core = numbers.core.at(p, input, self.only, [*points, *extra])
 
     def followed(
         self, x: npt.ArrayLike, q: Floats, designs: Floats | None = None, steps: Floats | None = None
@@ -221,12 +221,11 @@ class NumberedLoop:
         its sign: that determinant (designs, n) comes second.
         """
         scales = self.numbers.scales
-        inputs = np.ascontiguousarray(np.broadcast_to(np.asarray(x) / scales[self.input], (len(q),)))
-        scaled = None if steps is None else np.ascontiguousarray(steps / scales)
-        start = np.ascontiguousarray(q / scales)
+        inputs = np.broadcast_to(np.asarray(x) / scales[self.input], (len(q),))
+        scaled = None if steps is None else steps / scales
+        start = q / scales
         start[:, self.numbers.held] = 0.0
-        others = None if designs is None else np.ascontiguousarray(designs)
-        found, sides = self.core.follow(start, inputs, others, scaled)
+        found, sides = self.core.follow(start, inputs, designs, scaled)
         return found * scales, sides
 
     def opening(self, circuit: Circuit) -> Booleans:
@@ -264,15 +263,13 @@ class NumberedLoop:
 
     def places(self, q: Floats) -> Floats:
         """The points (n, points, 3) at poses q (n, columns)."""
-        return self.core.places(np.ascontiguousarray(q / self.numbers.scales)) * self.numbers.size
+        return self.core.places(q / self.numbers.scales) * self.numbers.size
 
     def slopes(self, q: Floats, order: int = 2) -> Slopes:
         """Rates and derivatives up to an order (0 to 3) at closed poses q (n, columns)."""
         numbers, own = self.numbers, self.numbers.scales[self.input]
         scales, size = numbers.scales, numbers.size
-        rates, by, points, points_by, aside, idle, points_idle = self.core.slopes(
-            np.ascontiguousarray(q / scales), order
-        )
+        rates, by, points, points_by, aside, idle, points_idle = self.core.slopes(q / scales, order)
         by_time = own ** -np.arange(4.0)
         by = by * scales * by_time[: order + 1, None, None]
         points_by = points_by * size * by_time[:2, None, None]

@@ -84,7 +84,7 @@ def rssr_types(dimensions: Floats, side: str, threads: int) -> tuple[npt.NDArray
 
     Source: docs/theory_many.md, (1) to (6).
     """
-    return _core.classify_rssr(np.ascontiguousarray(dimensions), side, threads)
+    return _core.classify_rssr(dimensions, side, threads)
 
 
 def rssr_motions(dimensions: Floats, side: str, speed: Floats, threads: int) -> Motions:
@@ -92,9 +92,7 @@ def rssr_motions(dimensions: Floats, side: str, speed: Floats, threads: int) -> 
 
     The output range of a change point is not among it: that takes following. As `rssr_types` for the rest.
     """
-    raw = _core.measure_rssr(
-        np.ascontiguousarray(dimensions), side, np.ascontiguousarray(speed, np.float64), threads
-    )
+    raw = _core.measure_rssr(dimensions, side, np.asarray(speed, np.float64), threads)
     codes, limits, counts = raw.codes, raw.limits, raw.circuits
     linkage, circuit = _numbered(counts)
     # a circuit of an RSSR has the type of all of them

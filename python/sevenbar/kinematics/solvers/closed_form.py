@@ -108,8 +108,7 @@ class ClosedForm:
 
     def _trace(self, rates: Floats, _order: Integers, _status: Words, link: int, at: Floats) -> Trace:
         """A point, `at` in its link's own frame, along rows of both sides' rates, (n, 2, 4)."""
-        crank, rocker = (np.ascontiguousarray(rates[:, end]) for end in (0, 1))
-        position, velocity, acceleration, jerk = self._core.point(link, at, crank, rocker)
+        position, velocity, acceleration, jerk = self._core.point(link, at, rates[:, 0], rates[:, 1])
         status = np.full(len(rates), "ok", dtype="<U15")
         status[np.isnan(velocity[:, 0])] = "dead-centre"
         unsolved = np.isnan(rates[:, :, 0]).any(axis=1)

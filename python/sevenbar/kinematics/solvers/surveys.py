@@ -34,7 +34,7 @@ RawTally = _core.RawTally
 
 def core_survey(bounds: Floats, seed: int, **wish: Any) -> CoreSurvey:
     """The core's survey of linkages between bounds (7, 2) [parts of a length, rad]; `wish` as it takes it."""
-    return _core.Survey(np.ascontiguousarray(bounds, np.float64), seed, **wish)
+    return _core.Survey(np.asarray(bounds, np.float64), seed, **wish)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +58,6 @@ def survey_figures(numbers: Floats) -> SurveyFigures:
     The rocker turns about (sin, 0, cos) of the angle, M along it from (0, D, 0).
     Source: docs/theory_many.md, (21) and (22).
     """
-    flat = np.ascontiguousarray(numbers, np.float64).reshape(-1)
+    flat = np.asarray(numbers, np.float64).reshape(-1)
     codes, limits, swing, time_ratio, transmission = _core.survey_figures(flat)
     return SurveyFigures(WORDS[codes], limits, swing, time_ratio, transmission)
