@@ -6,7 +6,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.exact.bilinear import on_cubic, partner
-from sevenbar.design.synthesis.function.generation import need_scipy
+from sevenbar.design.extra import need_scipy
 from sevenbar.errors import RequestError, shown
 
 #: A pair of points (a, b), both (3,), that bilinear forms make zero.

@@ -1,6 +1,7 @@
 """The best linkages of a survey made better with exact slopes, and checked by the ordinary analysis.
 
-Unknown are the numbers that have a range, the input's start, the output's zero and the seats of both balls.
+Unknown are the numbers that have a range, the input's start, and where they count the output's zero and the
+seats of both balls.
 By linear programs (`programs`) the greatest error is made least, or the least transmission angle or the
 greatest ball angle as good as can be with what is wanted met; bounds and limits are inequalities. A linkage
 that ends worse than it began, or whose new form fails the check, stays as it was drawn.
@@ -15,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.curves.least_cone import half_angle
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Candidate, Claim, Refusal, checked, distinct, renamed
@@ -58,40 +59,49 @@ SEATS = 6
 class Polish:
     """A linkage of a survey as unknowns z: free numbers and start, the output's zero, both seats."""
 
-    def __init__(self, task: SurveyTask, numbers: Floats, kept: Kept) -> None:
-        self.task, self.branch, self.sense = task, kept.branch, kept.sense
-        self.numbers = np.append(numbers, kept.start)
+    def __init__(
+        self, task: SurveyTask, numbers: Floats, branch: int, sense: float = 1.0, *, worth: float = WORTH
+    ) -> None:
+        self.task, self.numbers, self.branch, self.sense, self.worth = task, numbers, branch, sense, worth
         table = np.array(list(task.table.values()))
         self.free = np.append(np.flatnonzero(table[:, 1] > table[:, 0]), START)
         self.low = np.append(table[:, 0], -np.inf)[self.free]
         self.high = np.append(table[:, 1], np.inf)[self.free]
         self.inputs, self.wanted = task.readings
         self.balls = task.ball_angle < math.pi or task.rank == "ball angle"
+        self.exactly = isinstance(task.want, Travel | SwingWish)
         if isinstance(task.want, SwingWish):
-            stroke = self._stroke(kept)
+            stroke = self._stroke()
             turn = np.arange(1, TURN) * math.tau / TURN
             # the two ends first, the low one at the start
             self.inputs, self.wanted = np.append([0.0, stroke], turn), np.array([0.0, task.want.angle])
+        # a travel counts on its way, a swing at its ends
+        self.ends = self.inputs[:2] if isinstance(task.want, SwingWish) else self.inputs
 
-    def _stroke(self, kept: Kept) -> float:
+    def _stroke(self) -> float:
         """The turn of the input to the high end: the slower stroke, or the quicker, by which is nearer."""
-        assert isinstance(self.task.want, SwingWish)
-        slow = self.task.want.slow
-        turn = np.array([0.0, slow, math.tau - slow])
-        found = poses(np.append(self.numbers[:START], kept.start), turn, self.branch)
+        want = self.task.want
+        assert isinstance(want, SwingWish)
+        found = poses(self.numbers, np.array([0.0, want.slow, math.tau - want.slow]), self.branch)
         if found is None:
-            return slow
-        return slow if found.output[1] >= found.output[2] else math.tau - slow
+            return want.slow
+        off = np.abs(short_way(found.output[1:] - found.output[0] - want.angle))
+        return want.slow if off[0] <= off[1] else math.tau - want.slow
 
     def packed(self) -> Floats | None:
         """The unknowns at the start; `None` where a pose is out of reach."""
         now = poses(self.numbers, self.inputs, self.branch)
         if now is None:
             return None
-        seats = [direction.mean(axis=0) for direction in (now.crank, now.rocker)]
-        units = [seat / max(float(np.linalg.norm(seat)), 1e-9) for seat in seats]
-        off = self.sense * now.output - self.wanted if len(self.wanted) == len(self.inputs) else np.zeros(1)
-        return np.concatenate([self.numbers[self.free], [(off.max() + off.min()) / 2], *units])
+        parts = [self.numbers[self.free]]
+        # an unknown that nothing follows would go as far as a step may
+        if not self.exactly:
+            off = self.sense * now.output - self.wanted
+            parts.append(np.array([(off.max() + off.min()) / 2]))
+        if self.balls:
+            seats = [direction.mean(axis=0) for direction in (now.crank, now.rocker)]
+            parts += [seat / max(float(np.linalg.norm(seat)), 1e-9) for seat in seats]
+        return np.concatenate(parts)
 
     def unpacked(self, z: Floats) -> Floats:
         """The numbers (8,) of unknowns."""
@@ -106,7 +116,8 @@ class Polish:
             off = self.sense * (now.output[-1:] - now.output[0]) - self.wanted[-1]
             return off, self._wide(self.sense * (now.output_slopes[-1:] - now.output_slopes[0]), z)
         if isinstance(self.task.want, SwingWish):
-            off = np.append(now.still[:2], now.output[1] - now.output[0] - self.wanted[1])
+            swing = short_way(now.output[1] - now.output[0] - self.wanted[1])
+            off = np.append(now.still[:2], swing)
             slopes = np.vstack([now.still_slopes[:2], now.output_slopes[1] - now.output_slopes[0]])
             return off, self._wide(slopes, z)
         return np.zeros(0), wide
@@ -130,7 +141,7 @@ class Polish:
             slopes.append(by)
             if task.rank == "ball angle":
                 heights = 1.0 - cosines, -by
-        if not isinstance(task.want, Travel | SwingWish):
+        if not self.exactly:
             off = self.sense * now.output - self.wanted - z[len(self.free)]
             by = self._wide(self.sense * now.output_slopes, z)
             by[:, len(self.free)] = -1.0
@@ -155,21 +166,22 @@ class Polish:
         return MinimaxValues(*heights, np.concatenate(rooms), np.concatenate(slopes))
 
     def exact(self, z: Floats) -> Floats:
-        """The unknowns near by that meet the travel or the swing to rounding, by Newton's shortest steps."""
-        own = slice(0, len(self.free))
-        for _ in range(MOST_NEWTON):
-            z[own] = np.clip(z[own], self.low, self.high)
-            now = poses(self.unpacked(z), self.inputs, self.branch)
+        """The unknowns near by that meet the travel or the swing to rounding, by Newton's shortest steps.
+
+        The same unknowns where a function is wanted, or where Newton's steps lead nowhere.
+        """
+        own, near = slice(0, len(self.free)), z.copy()
+        for _ in range(MOST_NEWTON if self.exactly else 0):
+            near[own] = np.clip(near[own], self.low, self.high)
+            now = poses(self.unpacked(near), self.ends, self.branch)
             if now is None:
                 break
-            off, slopes = self.met(now, z)
-            if np.abs(off).max(initial=0.0) < MET:
-                break
+            off, slopes = self.met(now, near)
+            if np.abs(off).max() < MET:
+                return near
             # what is at a bound stays there
-            slopes[:, own][:, (z[own] <= self.low) | (z[own] >= self.high)] = 0.0
-            z = z - np.linalg.lstsq(slopes, off, rcond=None)[0]
-        # what has not arrived may have left its bounds
-        z[own] = np.clip(z[own], self.low, self.high)
+            slopes[:, own][:, (near[own] <= self.low) | (near[own] >= self.high)] = 0.0
+            near = near - np.linalg.lstsq(slopes, off, rcond=None)[0]
         return z
 
     def polished(self) -> Floats:
@@ -177,7 +189,7 @@ class Polish:
         z = self.packed()
         if z is None:
             return self.numbers
-        return self.unpacked(self.exact(lowered(self.values, z, worth=WORTH)))
+        return self.unpacked(self.exact(lowered(self.values, z, worth=self.worth, mended=self.exact)))
 
     def _wide(self, slopes: Floats, z: Floats) -> Floats:
         """Slopes by the unknowns (.., z), of those by the numbers (.., 8)."""
@@ -290,16 +302,22 @@ def judged(task: SurveyTask, numbers: Floats, kept: Kept) -> Candidate | Refusal
     if isinstance(result, Refusal):
         return result
     result = replace(result, transmission_lowest=lowest)
-    return _swung(task.want, result) if isinstance(task.want, SwingWish) else result
+    return swung(task.want, result) if isinstance(task.want, SwingWish) else result
 
 
-def _swung(want: SwingWish, found: Candidate) -> Candidate:
+def swung(want: SwingWish, found: Candidate) -> Candidate:
     """A crank-rocker with the swing and the time ratio that its circuit has, exactly."""
     circuit = found.draft.linkage.motion().circuits[found.circuit]
     swing, ratio = circuit.swing or 0.0, circuit.time_ratio or math.inf
     late = abs(math.tau * ratio / (1 + ratio) - want.slow)
     error = max(abs(swing - want.angle), late)
-    figures = {**found.claim.figures, "swing_deg": math.degrees(swing), "time_ratio": ratio}
+    figures = {
+        **found.claim.figures,
+        "swing_deg": math.degrees(swing),
+        "time_ratio": ratio,
+        "input_at_low_deg": math.degrees(circuit.angle.lowest_at % math.tau),
+        "input_at_high_deg": math.degrees(circuit.angle.highest_at % math.tau),
+    }
     return replace(found, claim=replace(found.claim, figures=figures), error_greatest=error, error_rms=error)
 
 
@@ -333,10 +351,11 @@ def designs(
     with suppress(KeyboardInterrupt):
         for done, (kept, numbers) in enumerate(zip(best, rows, strict=True)):
             progress(done, len(best), f"polishing, {len(found)} checked")
-            new = judged(task, Polish(task, numbers, kept).polished(), kept)
+            drawn = np.append(numbers, kept.start)
+            new = judged(task, Polish(task, drawn, kept.branch, kept.sense).polished(), kept)
             better += not isinstance(new, Refusal)
             if isinstance(new, Refusal):
-                new = judged(task, np.append(numbers, kept.start), kept)
+                new = judged(task, drawn, kept)
             if isinstance(new, Refusal):
                 refused.append(new)
             else:

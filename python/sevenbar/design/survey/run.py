@@ -18,7 +18,7 @@ from sevenbar.design.survey.polish import designs
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.tally import BEST, SurveyTally
 from sevenbar.design.survey.task import SurveyTask
-from sevenbar.design.synthesis.function.generation import need_scipy
+from sevenbar.design.extra import need_scipy
 from sevenbar.errors import RequestError
 from sevenbar.sweep.parts import other_maker
 from sevenbar.sweep.plan import maker

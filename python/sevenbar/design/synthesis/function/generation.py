@@ -28,6 +28,7 @@ from sevenbar.design.candidates import (
 )
 from sevenbar.design.closure import NAMES, draft_of, outputs, scaled
 from sevenbar.design.course import SearchCourse
+from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.function.precision import reflected
 from sevenbar.design.synthesis.function.starts import ON_BRANCH, Start, chosen, starts
@@ -36,7 +37,7 @@ from sevenbar.design.task.rssr import RssrLoop
 from sevenbar.design.task.solve import solved
 from sevenbar.design.task.task import DesignTask, FreeNumber, FunctionWant, Most
 from sevenbar.design.wish import Wish, wish_of_function, wish_of_pairs
-from sevenbar.errors import MissingExtraError, RequestError
+from sevenbar.errors import RequestError
 from sevenbar.text.expression import function_of
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
@@ -167,17 +168,6 @@ def function_generation(
             formula=function if isinstance(function, str) else None,
         )
     return _found(wish, limits, tolerance, count, seed, progress)
-
-
-def need_scipy() -> None:
-    """Raises `MissingExtraError` where scipy is not installed."""
-    try:
-        import scipy.optimize
-        import scipy.stats  # noqa: F401
-    except ImportError:
-        raise MissingExtraError(
-            "design needs scipy and tomlkit; install them with: pip install 'sevenbar[design]'"
-        ) from None
 
 
 def _found(
