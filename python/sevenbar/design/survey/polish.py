@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.arrays import Floats, short_way
+from sevenbar.arrays import Floats
 from sevenbar.curves.least_cone import half_angle
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Candidate, Claim, Refusal, checked, distinct, renamed
@@ -32,7 +32,7 @@ from sevenbar.text.progress import Progress
 DENSE = 361
 
 #: Inputs of a whole turn at which a polished swing is measured.
-TURN = 36
+TURN = 72
 
 #: Room that is left at each limit for what lies between the inputs measured.
 MARGIN = 1e-4
@@ -70,23 +70,23 @@ class Polish:
         self.inputs, self.wanted = task.readings
         self.balls = task.ball_angle < math.pi or task.rank == "ball angle"
         self.exactly = isinstance(task.want, Travel | SwingWish)
+        # where what is met exactly ends: a travel, or a swing whose low end is at the start
+        self.end = len(self.inputs) - 1
         if isinstance(task.want, SwingWish):
-            stroke = self._stroke()
-            turn = np.arange(1, TURN) * math.tau / TURN
-            # the two ends first, the low one at the start
-            self.inputs, self.wanted = np.append([0.0, stroke], turn), np.array([0.0, task.want.angle])
-        # a travel counts on its way, a swing at its ends
-        self.ends = self.inputs[:2] if isinstance(task.want, SwingWish) else self.inputs
+            turn = np.arange(TURN) * math.tau / TURN
+            stroke = self._stroke(turn)
+            self.inputs, self.wanted = np.sort(np.append(turn, stroke)), np.array([0.0, task.want.angle])
+            self.end = int(np.searchsorted(self.inputs, stroke))
 
-    def _stroke(self) -> float:
+    def _stroke(self, turn: Floats) -> float:
         """The turn of the input to the high end: the slower stroke, or the quicker, by which is nearer."""
-        want = self.task.want
-        assert isinstance(want, SwingWish)
-        found = poses(self.numbers, np.array([0.0, want.slow, math.tau - want.slow]), self.branch)
+        assert isinstance(self.task.want, SwingWish)
+        slow = self.task.want.slow
+        found = poses(self.numbers, turn, self.branch)
         if found is None:
-            return want.slow
-        off = np.abs(short_way(found.output[1:] - found.output[0] - want.angle))
-        return want.slow if off[0] <= off[1] else math.tau - want.slow
+            return slow
+        high = turn[found.output.argmax()]
+        return slow if abs(high - slow) <= abs(math.tau - high - slow) else math.tau - slow
 
     def packed(self) -> Floats | None:
         """The unknowns at the start; `None` where a pose is out of reach."""
@@ -111,16 +111,16 @@ class Polish:
 
     def met(self, now: Poses, z: Floats) -> tuple[Floats, Floats]:
         """What is to be zero (m,) and its slopes (m, z): the travel, or the ends of a swing."""
-        wide = np.zeros((0, len(z)))
+        low, high = 0, self.end
         if isinstance(self.task.want, Travel):
-            off = self.sense * (now.output[-1:] - now.output[0]) - self.wanted[-1]
-            return off, self._wide(self.sense * (now.output_slopes[-1:] - now.output_slopes[0]), z)
+            off = self.sense * (now.output[high] - now.output[low]) - self.wanted[-1]
+            slopes = self.sense * (now.output_slopes[high] - now.output_slopes[low])
+            return np.array([off]), self._wide(slopes[None], z)
         if isinstance(self.task.want, SwingWish):
-            swing = short_way(now.output[1] - now.output[0] - self.wanted[1])
-            off = np.append(now.still[:2], swing)
-            slopes = np.vstack([now.still_slopes[:2], now.output_slopes[1] - now.output_slopes[0]])
+            off = np.append(now.still[[low, high]], now.output[high] - now.output[low] - self.wanted[1])
+            slopes = np.vstack([now.still_slopes[[low, high]], now.output_slopes[high] - now.output_slopes[low]])
             return off, self._wide(slopes, z)
-        return np.zeros(0), wide
+        return np.zeros(0), np.zeros((0, len(z)))
 
     def values(self, z: Floats) -> MinimaxValues | None:
         """What is to be made low and what must not be negative; `None` out of reach."""
@@ -173,7 +173,7 @@ class Polish:
         own, near = slice(0, len(self.free)), z.copy()
         for _ in range(MOST_NEWTON if self.exactly else 0):
             near[own] = np.clip(near[own], self.low, self.high)
-            now = poses(self.unpacked(near), self.ends, self.branch)
+            now = poses(self.unpacked(near), self.inputs[: self.end + 1], self.branch)
             if now is None:
                 break
             off, slopes = self.met(now, near)

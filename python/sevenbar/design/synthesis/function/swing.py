@@ -17,6 +17,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.candidates import (
+    SAME,
     Candidate,
     Claim,
     Refusal,
@@ -32,7 +33,7 @@ from sevenbar.design.course import SearchCourse
 from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import MARGIN, Limits
 from sevenbar.design.survey.polish import Polish, swung
-from sevenbar.design.survey.skew_closure import START
+from sevenbar.design.survey.skew_closure import START, N
 from sevenbar.design.survey.task import SurveyTask, SwingWish
 from sevenbar.design.synthesis.function.generation import USUAL, Synthesis
 from sevenbar.design.synthesis.function.precision import reflected
@@ -47,6 +48,9 @@ FITTED_EACH, FITTED_LEAST = 4, 24
 
 #: Two starts are one where the arctangent of no ratio differs by more.
 START_APART = 0.12
+
+#: Of starts that end in one design so many are enough; those that follow keep their own N, so that designs differ.
+ENOUGH = 8
 
 #: Gain of a squared sine that is not worth another step.
 WORTH = 1e-4
@@ -94,17 +98,21 @@ def swing_generation(
     if count < 1:
         raise RequestError(f"designs: {count} is no number of designs; give 1 or more")
     want = SwingWish(swing, time_ratio)
-    task = _task(want, limits)
     course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
     chosen, searched = _chosen(want, limits, course.total - 1, seed)
     course.step()
     kept: list[Candidate] = []
     refused: list[tuple[float, Refusal]] = []
     unfinished = ""
+    ends: list[Floats] = []
     try:
         for numbers, branch in chosen:
-            polished = Polish(task, numbers, branch, worth=WORTH).polished()
+            held = numbers[N] if _most_alike(ends) >= ENOUGH else None
+            polished = Polish(_task(want, limits, held), numbers, branch, worth=WORTH).polished()
+            ends.append(np.abs(polished[:6]) / np.abs(polished[:6]).max())
             far, result = _judged(want, limits, polished, branch)
+            if math.isinf(far):
+                far, result = _judged(want, limits, numbers, branch)
             if isinstance(result, Candidate):
                 kept.append(result)
             else:
@@ -130,11 +138,19 @@ def swing_generation(
     )
 
 
-def _task(want: SwingWish, limits: Limits) -> SurveyTask:
-    """The wish as polishing has it: axes at right angles, L3 = 1, what limits the size of a design."""
+def _most_alike(ends: list[Floats]) -> int:
+    """How many of the designs (6,), relative to their longest, are one."""
+    rows = np.array(ends).reshape(-1, 6)
+    return int((np.abs(rows[:, None] - rows).max(axis=2) < SAME).sum(axis=1).max(initial=0))
+
+
+def _task(want: SwingWish, limits: Limits, held: float | None) -> SurveyTask:
+    """The wish as polishing has it: axes at right angles, L3 = 1, what limits the size; N where it is held."""
     ratio, square = limits.ratio, math.pi / 2
     bounds = {name: (-ratio, ratio) for name in ("M", "N", "D")} | {"angle": (square, square)}
     bounds |= {name: (1 / ratio, ratio) for name in ("L1", "L2")} | {"L3": (1.0, 1.0)}
+    if held is not None:
+        bounds["N"] = held, held
     # a margin is left that Newton's last steps may use
     return SurveyTask(want, bounds, transmission_lowest=0.0, ratio=ratio ** (1 - MARGIN), rank="transmission")
 
