@@ -342,12 +342,38 @@ def test_a_survey_is_printed_written_and_given_as_json(tmp_path):
         (["--rank", "best"], "rank: 'best' is not offered"),
         (["--resume"], "--resume: of no folder; give --journal too"),
         (["--output-range", "0:400deg"], "output range: 400 deg is no part of a turn"),
-        (["--count", "0"], "count: 0 is no number of linkages"),
+        (["--count", "0"], "count: 0 is not a number of linkages"),
         (["--ball-angle", "0deg"], "ball angle: 0 deg is no limit"),
     ],
 )
 def test_what_makes_no_survey_has_one_message(words, message):
     assert message in mistake("design", "survey", *words)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"count": 1e6}, "count: 1000000.0 is not a number of linkages; give 1 to "),
+        ({"count": True}, "count: True is not a number of linkages"),
+        ({"seed": 1.5}, "seed: 1.5 is not a seed; give 0 to "),
+        ({"seed": -1}, "seed: -1 is not a seed"),
+        ({"bounds": None}, "bounds: None are none; give ranges by name"),
+        ({"bounds": {3: (0, 1)}}, "bounds: 3 is no number of an RSSR"),
+        ({"bounds": {"M": 1.0}}, "M: 1.0 is no range; give two numbers that rise"),
+        ({"bounds": {"M": (0, 1, 2)}}, "M: (0, 1, 2) is no range"),
+        ({"bounds": {"M": ("a", "b")}}, "M: ('a', 'b') is not an array of numbers"),
+        ({"bounds": {"M": (math.nan, 1)}}, "M: nan:1 is no range"),
+    ],
+)
+def test_what_is_no_survey_in_python_is_a_request_error(wrong, message):
+    with pytest.raises(RequestError) as told:
+        SurveyTask(FLAP, **wrong)
+    assert message in str(told.value)
+
+
+def test_counts_and_seeds_of_numpy_are_numbers():
+    plain, given = (SurveyTask(FLAP, count=kind(10), seed=kind(3)) for kind in (int, np.int64))
+    assert plain.digest() == given.digest()
 
 
 def test_bounds_must_be_of_a_linkage():

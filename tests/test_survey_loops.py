@@ -157,7 +157,7 @@ def test_a_survey_of_a_task_is_written(task_file, tmp_path):
     [
         (["--y", "x^2"], "--y: is of an RSSR"),
         (["--bound", "L1=1:2"], "--bound: is of an RSSR"),
-        (["--count", "2e9"], "is no number of linkages; give 1 to 1073741824"),
+        (["--count", "2e9"], "is not a number of linkages; give 1 to 1073741824"),
         (["--resume"], "--resume: of no folder"),
     ],
 )

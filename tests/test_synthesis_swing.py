@@ -8,49 +8,76 @@ import pytest
 import sevenbar as sb
 from sevenbar.design.closure import NAMES, outputs, transmissions
 from sevenbar.design.limits import Limits
-from sevenbar.design.synthesis.function.swing import ends_of_swing, swing_generation
+from sevenbar.design.survey import SurveyTask, SwingWish
+from sevenbar.design.survey.polish import Polish
+from sevenbar.design.survey.skew_closure import poses
+from sevenbar.design.synthesis.function.swing import swing_generation
 from sevenbar.errors import RequestError
 
 CRANK = np.array([700.0, 700.0, 250.0, 1000.0, 550.0, -150.0]) / 550.0
-
-
-def ratio(ends):
-    """The slower stroke over the quicker, both ways of the crank."""
-    strokes = sorted((ends.stroke, math.tau - ends.stroke))
-    return strokes[1] / strokes[0]
 
 
 def linkage(row):
     return sb.rssr(**dict(zip(NAMES, row, strict=True)))
 
 
-@pytest.mark.parametrize("branch", [0, 1])
-def test_the_ends_of_a_swing_are_the_dead_centres_of_the_ordinary_analysis(branch):
-    ends = ends_of_swing(CRANK, branch)
-    circuit = linkage(CRANK).motion().circuits[branch]
-    assert ends.swing == pytest.approx(circuit.swing, abs=1e-12)
-    assert ratio(ends) == pytest.approx(circuit.time_ratio, abs=1e-10)
-    low, high = circuit.angle.lowest_at, circuit.angle.highest_at
-    np.testing.assert_allclose(np.exp(1j * ends.crank), np.exp(1j * np.array([low, high])), atol=1e-10)
+def polish_of(row, circuit):
+    """The polishing of a design for the swing and the time ratio that it has, its unknowns, and its branch."""
+    want = SwingWish(circuit.swing, circuit.time_ratio)
+    bounds = {name: (-5.0, 5.0) for name in ("M", "N", "D")} | {name: (0.1, 5.0) for name in ("L1", "L2")}
+    task = SurveyTask(want, bounds | {"angle": (math.pi / 2, math.pi / 2)}, transmission_lowest=0.0)
+    polish = Polish(task, np.array([*row, math.pi / 2, circuit.angle.lowest_at]), circuit.index)
+    return polish, polish.packed()
 
 
 @pytest.mark.parametrize("branch", [0, 1])
-@pytest.mark.parametrize("column", range(6))
-def test_the_slopes_of_the_ends_are_their_differences(branch, column):
-    ends = ends_of_swing(CRANK, branch)
-    step = 1e-5 * np.eye(6)[column]
-    more, less = ends_of_swing(CRANK + step, branch), ends_of_swing(CRANK - step, branch)
-    np.testing.assert_allclose(ends.output_slopes[:, column], (more.output - less.output) / 2e-5, atol=1e-8)
-    np.testing.assert_allclose(ends.crank_slopes[:, column], (more.crank - less.crank) / 2e-5, atol=1e-8)
+def test_what_polishing_wants_is_met_at_the_dead_centres_of_the_ordinary_analysis(branch):
+    polish, z = polish_of(CRANK, linkage(CRANK).motion().circuits[branch])
+    off, _ = polish.met(poses(polish.unpacked(z), polish.inputs, branch), z)
+    np.testing.assert_allclose(off, 0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize("branch", [0, 1])
+def test_the_slopes_of_what_is_wanted_are_their_differences(branch):
+    polish, z = polish_of(CRANK, linkage(CRANK).motion().circuits[branch])
+    # away from the ends, where nothing vanishes
+    z = z + 0.01
+
+    def at(z):
+        off, slopes = polish.met(poses(polish.unpacked(z), polish.inputs, branch), z)
+        return off, slopes
+
+    differences = [(at(z + step)[0] - at(z - step)[0]) / 2e-5 for step in 1e-5 * np.eye(len(z))]
+    np.testing.assert_allclose(at(z)[1].T, differences, atol=1e-8)
+
+
+@pytest.mark.parametrize("branch", [0, 1])
+def test_newtons_steps_bring_a_design_back_to_its_swing(branch):
+    polish, z = polish_of(CRANK, linkage(CRANK).motion().circuits[branch])
+    row = polish.unpacked(polish.exact(z + 0.01))
+    circuits = linkage(row[:6]).motion().circuits
+    got = [(c.swing, c.time_ratio) for c in circuits]
+    want = polish.task.want
+    assert min(math.dist(each, (want.angle, want.time_ratio)) for each in got) < 1e-9
+    # where they lead nowhere all stays as it is
+    np.testing.assert_array_equal(polish.exact(z + 5.0), z + 5.0)
+
+
+def test_a_swing_beyond_half_a_turn_is_no_swing_the_other_way_round():
+    """The output's difference counts along the way to the high end, not by the short way round."""
+    found = swing_generation(math.radians(200), 1.0, limits=Limits(), count=1)
+    for candidate in found.candidates:
+        assert math.degrees(candidate.draft.linkage.motion().circuits[candidate.circuit].swing) == pytest.approx(200.0)
+    assert "swing 160 deg" not in "".join(refusal.detail for refusal in found.refusals)
 
 
 def test_a_linkage_with_M_zero_is_as_quick_one_way_as_back():
     """With M = 0 the closure holds sin alpha only, so the output is the same at alpha and at pi - alpha."""
     row = np.array([0.0, 1.4, 0.45, 1.9, 1.0, 0.6])
-    for branch in (0, 1):
-        ends = ends_of_swing(row, branch)
-        assert ratio(ends) == pytest.approx(1.0, abs=1e-12)
-        np.testing.assert_allclose(np.abs(np.sin(ends.crank)), 1.0, atol=1e-12)
+    for circuit in linkage(row).motion().circuits:
+        assert circuit.time_ratio == pytest.approx(1.0, abs=1e-12)
+        ends = [circuit.angle.lowest_at, circuit.angle.highest_at]
+        np.testing.assert_allclose(np.abs(np.sin(ends)), 1.0, atol=1e-12)
 
 
 @pytest.mark.slow
@@ -92,11 +119,10 @@ def test_no_random_crank_rocker_of_the_wish_transmits_better():
     near = np.flatnonzero(np.abs(np.ptp(angles, axis=1) - math.radians(60)) < 0.02)
     rivals = 0
     for row in rows[near]:
-        ends = ends_of_swing(row, 0)
-        if ends is None or abs(ends.swing - math.radians(60)) > 0.02 or ratio(ends) > 1.02:
+        circuit = linkage(row).motion(36).circuits[0]
+        if circuit.time_ratio is None or circuit.time_ratio > 1.02 or abs(circuit.swing - math.radians(60)) > 0.02:
             continue
         rivals += 1
-        circuit = linkage(row).motion(36).circuits[0]
         # within 0.02 rad of the wish, a rival may be better by about as much
         assert circuit.transmission.lowest < best + 0.04
     assert rivals > 5

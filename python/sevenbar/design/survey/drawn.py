@@ -8,10 +8,13 @@ from abc import ABC, abstractmethod
 from typing import Any
 
 from sevenbar.design.survey.tally import Kept, SurveyTally
-from sevenbar.errors import RequestError
+from sevenbar.sweep.axes import whole_number
 
 #: Most linkages: indices beyond are no whole numbers in every program's JSON.
 MOST = 2**50
+
+#: Greatest seed: the core counts in 64 bits.
+MOST_SEED = 2**64 - 1
 
 
 class Drawn(ABC):
@@ -61,8 +64,9 @@ class Drawn(ABC):
         return hashlib.sha256(json.dumps(self.request(), sort_keys=True).encode()).hexdigest()
 
     def check_counts(self, most: int = MOST) -> None:
-        """Raises `RequestError` for a count or a seed that is none."""
-        if not 1 <= self.count <= most:
-            raise RequestError(f"count: {self.count} is no number of linkages; give 1 to {most}")
-        if self.seed < 0:
-            raise RequestError(f"seed: {self.seed} is no seed; give a number >= 0")
+        """Makes count and seed plain whole numbers; raises `RequestError` where one is none."""
+        count = whole_number("count", self.count, 1, most, "a number of linkages")
+        seed = whole_number("seed", self.seed, 0, MOST_SEED, "a seed")
+        # a task cannot be changed but while it is made
+        object.__setattr__(self, "count", count)
+        object.__setattr__(self, "seed", seed)

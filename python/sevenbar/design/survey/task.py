@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, real_array
 from sevenbar.design.limits import MOST_RATIO, MOTION_TYPES, USUAL_SIZE
 from sevenbar.design.survey.drawn import Drawn
 from sevenbar.design.survey.tally import Kept, SurveyTally
@@ -103,13 +103,19 @@ class SurveyTask(Drawn):
     rank: str = "error"
 
     def __post_init__(self) -> None:
-        for name in self.bounds:
+        if not isinstance(self.bounds, Mapping):
+            raise RequestError(
+                f"bounds: {shown(self.bounds)} are none; give ranges by name, as in {{'L1': (0.2, 1)}}"
+            )
+        for name, ends in self.bounds.items():
             if name not in NUMBERS:
                 known = ", ".join(NUMBERS)
                 raise RequestError(
                     f"bounds: {shown(name)} is no number of an RSSR; "
-                    f"{suggestion(name, NUMBERS)}give some of {known}"
+                    f"{suggestion(str(name), NUMBERS)}give some of {known}"
                 )
+            if real_array(name, ends).size != 2:
+                raise RequestError(f"{name}: {shown(ends)} is no range; give two numbers that rise")
         for name, (low, high) in self.table.items():
             if not (math.isfinite(low) and math.isfinite(high) and low <= high):
                 raise RequestError(f"{name}: {low:g}:{high:g} is no range; give two numbers that rise")
