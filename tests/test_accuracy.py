@@ -240,6 +240,7 @@ def test_one_linkage_goes_through_the_whole(small: dict) -> None:
     assert small["closed_forms"]["planar_4r"]["output"]["jerk"]["errors"]["greatest"] < 1e-12
 
 
+@pytest.mark.slow
 def test_the_page_holds_each_number_of_the_results(small: dict) -> None:
     text = page.text(small)
     assert "**A part only:**" in text

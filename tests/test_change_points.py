@@ -229,6 +229,7 @@ def test_loops_with_freedoms_to_spare_are_found_from_their_rows_too(joints: int)
         assert modes.residual.max() < 1e-10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("joints", [5, 6, 7])
 def test_longer_loops_that_close_stretched_only_are_rigid(joints: int) -> None:
     lengths = [1.2, 0.7, 2.0, 0.4, 1.1, 0.3][: joints - 1]
@@ -284,6 +285,7 @@ def test_a_sarrus_linkage_of_equal_links_passes_the_poses_in_which_it_folds(long
     assert "there it can also move with 2 freedoms" in sb.report.markdown(motion)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "error",
     [
@@ -331,6 +333,7 @@ def test_a_motion_leads_over_poses_where_redundant_constraints_miss_each_other(e
     np.testing.assert_allclose(np.sort(passed), [-2 * pi / 3, 2 * pi / 3], atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_walk_into_a_change_point_from_afar_is_not_told_beside_the_whole_motion() -> None:
     """Two slides run to infinity on both sides of a pose in which three motions meet; at right angles but for 1.7e-9."""
     row = [("R", 1, 90, 0.5, 0), ("R", 2, 90, 1, 0), ("P", 10, 89.9999999, 0, -90)] * 2

@@ -434,6 +434,7 @@ def test_each_way_not_to_move_is_told_in_a_sentence():
     assert "turns fully" not in told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_the_report_of_every_linkage_of_the_gallery_holds_its_extremes_within_a_page(name):
     motion = sb.load(name).motion(samples=36)

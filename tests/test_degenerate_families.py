@@ -73,6 +73,7 @@ def grashof(ground: float, crank: float, coupler: float, rocker: float) -> tuple
     return shortest[links[0]], 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("changed", range(4))
 @pytest.mark.parametrize(
@@ -153,6 +154,7 @@ def opened_four_bar(off: float) -> sb.Linkage:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "family", [bennett_off("length"), bennett_off("twist"), bennett_off("offset"), opened_four_bar],
     ids=["length", "twist", "offset", "axis that leans"],
@@ -223,6 +225,7 @@ def perturbed(case: Rows, off: float, rng: np.random.Generator) -> sb.Linkage:
     ).linkage()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

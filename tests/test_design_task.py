@@ -336,6 +336,7 @@ WAVED = FunctionWant(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "must",
     [Apart((1, 3), 892.0), InBox((-763.0,) * 3, (763.0,) * 3, ("ball_b", "Q"))],
@@ -405,6 +406,7 @@ def test_what_shall_be_great_is_better_the_greater_it_is_below_zero_too():
     assert left[4] == pytest.approx((left[3] + left[5]) / 2, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_bound_of_a_path_is_one_of_its_distances():
     places = PLACES + 3 * np.sign(np.random.default_rng(0).normal(size=PLACES.shape))
     want = PathWant("Q", places, timing=INPUTS)

@@ -78,6 +78,7 @@ def test_a_want_in_words_has_its_unit(want, words):
     assert want_words(want, sb.load("rssr")) == words
 
 
+@pytest.mark.slow
 def test_the_design_of_known_readings_is_found_and_reported(task_path, tmp_path):
     read = task_file(task_path)
     found = TaskDesigns(designed(read.task, count=1, starts=0), read.name, read.source, 0, 0)

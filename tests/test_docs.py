@@ -37,6 +37,7 @@ LONG = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=[pytest.mark.slow] if name in LONG else []) for name in WITH_EXAMPLES],
@@ -69,6 +70,7 @@ def test_the_examples_of_the_readme_print_what_their_comments_say():
         assert promise.startswith(line)
 
 
+@pytest.mark.slow
 def test_the_report_in_the_readme_is_the_report_of_today():
     command = [sys.executable, "-m", "sevenbar.commands.cli", "analyze", "examples/rssr.toml"]
     report = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout

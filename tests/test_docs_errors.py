@@ -52,6 +52,7 @@ def call(tmp_path, monkeypatch, capsys):
     return called
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("files", "words", "without", "said"), list(calls()))
 def test_a_command_of_the_page_says_what_the_page_shows(
     call, tmp_path, monkeypatch, files, words, without, said

@@ -14,6 +14,7 @@ ENGLISH, CHINESE = QUICK
 SIMPLE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["quick-start", "planar", "papers", "zh/quick-start"])
 def test_the_examples_of_a_page_print_what_their_comments_say(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -49,6 +49,7 @@ def slides(run):
     )
 
 
+@pytest.mark.slow
 def test_the_paper_s_rssr_in_exudyn_is_sevenbar_s_to_the_figures_asked_for(rssr_in_exudyn):
     run = rssr_in_exudyn
     assert len(run.time) == 3601
@@ -97,6 +98,7 @@ def test_gallery_linkages_move_in_exudyn_as_sevenbar_says(name):
     assert told == bool(run.linkage.mobility().redundant)
 
 
+@pytest.mark.slow
 def test_a_screw_moves_in_exudyn_though_it_has_none():
     run = simulate(sb.load("screw_drill"), "exudyn", steps=180)
     assert max(turns(run), slides(run), run.tilt, run.gap / run.course.circuit.size) < 1e-9
@@ -112,6 +114,7 @@ ON_A_PLATE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("input", ["crank", "plate.1", "plate.2", "plate.3"])
 def test_a_plate_on_the_ground_moves_and_drives_in_exudyn_as_sevenbar_says(input):
     run = simulate(sb.from_axes(ON_A_PLATE), "exudyn", input=input, steps=400)
@@ -134,6 +137,7 @@ def errors(engine, steps):
     return run, [found.greatest for found in run.differences[:3]], run.gap
 
 
+@pytest.mark.slow
 def test_differences_shrink_with_the_step_at_the_order_of_the_method(rssr_in_exudyn, rssr_in_mujoco):
     _, few, _ = errors("exudyn", 1800)
     many = [found.greatest for found in rssr_in_exudyn.differences[:3]]
@@ -255,6 +259,7 @@ def test_the_constraint_of_a_screw_has_the_slope_of_its_value():
         assert screw.slope(None, 0.0, 0, q, None, False)[0] == pytest.approx(differences, abs=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("unit", "factor", "speed"),
     [("um", 1e-3, 10.0), ("ft", 100.0, 10.0), ("mm", 1.0, 1e4), ("mm", 1.0, -1e-6)],

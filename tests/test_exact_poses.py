@@ -47,6 +47,7 @@ def test_a_hundred_random_planar_tasks_are_complete():
     assert {found.real for found in counts} == {0, 2, 4}
 
 
+@pytest.mark.slow
 def test_a_known_four_bar_is_found_again_without_defects():
     rng, done = np.random.default_rng(5), 0
     while done < 20:
@@ -116,6 +117,7 @@ def test_coordinates_far_away_and_tiny_ones_change_nothing():
         assert 1e6 * lines_of(small)[0] == pytest.approx(lines_of(one)[0], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_three_and_four_poses_have_families():
     for count in (3, 4):
         found = planar_poses(FIVE[:count], samples=8)
@@ -179,6 +181,7 @@ def test_a_hundred_random_spherical_tasks_are_complete():
     assert {2, 4, 6} <= {found.real for found in counts}
 
 
+@pytest.mark.slow
 def test_a_known_spherical_four_bar_is_found_again_without_defects():
     rng, done = np.random.default_rng(2), 0
     while done < 20:

@@ -30,6 +30,7 @@ def same_line(at, axis, other_at, other_axis):
     return max(np.abs(np.cross(axis, other_axis)).max(), np.abs(apart).max() / 50)
 
 
+@pytest.mark.slow
 def test_a_hundred_tasks_of_five_poses_have_six_dyads_cc():
     real = []
     for seed in range(100):
@@ -125,6 +126,7 @@ def test_poses_without_dyads_say_so(poses, said):
         cc_dyads(poses)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(10))
 def test_three_poses_have_one_bennett_linkage_without_defects(seed):
     poses = random_poses(3, seed)
@@ -153,6 +155,7 @@ def test_a_hundred_tasks_have_one_bennett_linkage_each():
         assert max(a.error for a in found.answers) < 1e-9
 
 
+@pytest.mark.slow
 def test_a_known_bennett_linkage_is_found_again():
     rng = np.random.default_rng(1)
     for _ in range(20):

@@ -153,6 +153,7 @@ KIND = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", GALLERY)
 def test_adams_markers_of_each_joint_meet_and_point_the_same_way(name, posed):
     motion, circuit, row, folder = posed(name, "cmd")

@@ -63,6 +63,7 @@ def joint_lines(linkage, circuit, row):
 QUICK = ["rssr", "bennett", "rscr"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=[] if n in QUICK else [pytest.mark.slow]) for n in names()]
 )
@@ -95,6 +96,7 @@ def test_step_holds_sound_solids_whose_holes_are_in_line(name, tmp_path):
             assert off_line((scale * point, along), one, size) < 1e-9
 
 
+@pytest.mark.slow
 def test_the_balls_and_bores_of_the_paper_s_linkage_are_where_it_puts_them(tmp_path):
     alpha = 0.5
     linkage = sb.load("rssr")
@@ -216,6 +218,7 @@ def test_parts_do_not_run_into_each_other(name, tmp_path):
     assert met <= MEET.get(name, set())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unit", ["um", "m", "ft"])
 def test_any_length_unit_gives_the_same_shape(unit, tmp_path):
     metres = {"um": 1e-6, "m": 1.0, "ft": 0.3048}[unit]

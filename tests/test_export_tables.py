@@ -176,6 +176,7 @@ def test_a_linkage_that_does_not_close_has_nothing_to_export(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("to", "package", "extra"),
     [

@@ -185,6 +185,7 @@ def test_a_figure_of_several_panels_is_composed() -> None:
         plot.curves(motion, ax=panels[0])
 
 
+@pytest.mark.slow
 def test_styles_sizes_and_titles_are_as_asked() -> None:
     motion = sb.load("rssr").motion(samples=48)
     before = dict(matplotlib.rcParams)

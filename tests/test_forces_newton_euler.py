@@ -197,6 +197,7 @@ def gallery(name: str, seed: int = 3) -> Loaded:
     return Loaded(name, linkage, circuit, random_loading(np.random.default_rng(seed), linkage))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*KNOWN, "sarrus", "bricard_line", "bricard_plane", "bricard_trihedral", "myard_5r",
                                   "screw_drill", "universal_joint", "swash_plate", "five_bar", "six_bar"])  # fmt: skip
 def test_gallery_linkages_are_those_of_newton_and_euler(name: str) -> None:
@@ -226,6 +227,7 @@ def test_what_is_open_in_sarrus_are_moments_about_one_direction() -> None:
     assert np.isnan(moment[..., :2][:, ~flags[:, :2]]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["seven_r", "rssr", "rscr", "rssp", "planar_4r", "bennett", "spherical_4r"])
 def test_statics_is_the_derivative_of_potential_energy(name: str) -> None:
     loaded = gallery(name)

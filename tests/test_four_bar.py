@@ -60,6 +60,7 @@ def test_textbook_four_bars_have_their_class(lengths, grashof):
         assert motion.motion_type == expected(found, "theta_1", "theta_4")
 
 
+@pytest.mark.slow
 def test_the_class_is_that_of_the_motion_of_random_four_bars_for_every_input():
     rng = np.random.default_rng(2)
     seen = set()
@@ -77,6 +78,7 @@ def test_the_class_is_that_of_the_motion_of_random_four_bars_for_every_input():
     assert seen == {"crank-rocker", "double-crank", "double-rocker", "triple rocker"}
 
 
+@pytest.mark.slow
 def test_the_class_is_that_of_the_motion_of_random_spherical_four_bars_for_every_input():
     rng = np.random.default_rng(3)
     seen, count = set(), 0
@@ -100,6 +102,7 @@ def test_the_class_is_that_of_the_motion_of_random_spherical_four_bars_for_every
     assert seen == {"crank-rocker", "double-crank", "double-rocker", "triple rocker"}
 
 
+@pytest.mark.slow
 def test_the_class_is_that_of_the_motion_of_random_slider_cranks_for_every_input():
     rng = np.random.default_rng(4)
     seen, count = set(), 0

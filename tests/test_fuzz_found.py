@@ -71,6 +71,7 @@ def test_an_output_that_turns_back_where_the_input_does_has_the_range_of_its_row
         assert high - 1e-3 < circuit.output.max() < high + 1e-9
 
 
+@pytest.mark.slow
 def test_an_output_that_turns_back_with_the_input_is_found_whatever_the_sign_of_a_zero() -> None:
     # its rate at the input's second dead centre is -7e-19 in one step and positive in the next: a range of one value was told
     links = [
@@ -239,6 +240,7 @@ def test_names_in_a_list_of_what_there_is_have_no_characters_that_are_not_printe
     assert "\\ufeff" in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_circuit_between_change_points_is_found_once() -> None:
     # at a quarter turn a slide is where it may be anything: seeds there were followed as circuits of their own
     linkage = sb.from_axes(

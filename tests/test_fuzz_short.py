@@ -73,6 +73,7 @@ def test_a_description_is_written_without_losing_a_digit() -> None:
         np.testing.assert_array_equal(sb.loads(written(description)).transforms, want)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_the_gallery_holds_what_must_hold(name: str) -> None:
     assert (
@@ -271,6 +272,7 @@ def test_batches_that_contradict_the_motion_are_found() -> None:
             batches.loop_crossed(linkage, dataclasses.replace(motions, **changes), 0)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::sevenbar.errors.AngleUnitWarning")
 def test_mutations_reach_every_stage_of_the_loader() -> None:
     seen: Counter[str] = Counter()

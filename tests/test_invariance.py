@@ -292,6 +292,7 @@ def test_the_loop_begun_at_another_joint_moves_alike(joints: Joints, start: int)
     alike(first, second, ends, ends)
 
 
+@pytest.mark.slow
 @settings(few, max_examples=12)
 @given(st.integers(0, 10**6), st.integers(1, 6))
 def test_rows_begun_at_another_joint_move_alike(seed: int, start: int) -> None:

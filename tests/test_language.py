@@ -119,6 +119,7 @@ def english(motion, text):
     return [word for word in re.findall(r"[A-Za-z]+", text) if word not in {*LEFT, linkage.length_unit}]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", gallery.names())
 def test_no_english_is_left_in_a_chinese_report_of_the_gallery(name):
     motion, text = report_of(name)
@@ -223,6 +224,7 @@ COMMANDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "call", [pytest.param(c, marks=pytest.mark.slow if c.startswith("design ") else ()) for c in COMMANDS]
 )
@@ -245,6 +247,7 @@ def texts_of(figure):
     return " ".join(text.get_text() for text in figure.findobj(match=lambda one: hasattr(one, "get_text")))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("chinese_font")
 @pytest.mark.parametrize("kind", ["curves", "configuration", "transmission", "joints", "axodes"])
 def test_a_figure_has_no_english_and_every_character(kind):
@@ -257,6 +260,7 @@ def test_a_figure_has_no_english_and_every_character(kind):
     assert re.search("[\u4e00-\u9fff]", texts)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("chinese_font")
 @pytest.mark.parametrize("kind", ["torque", "reactions", "bearings", "shaking", "energies"])
 def test_a_figure_of_forces_has_no_english(kind):

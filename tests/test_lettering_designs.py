@@ -97,6 +97,7 @@ FIGURES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "style"),
     [
@@ -110,6 +111,7 @@ def test_no_text_of_a_design_s_figure_lies_on_another_or_leaves_the_page(name, s
         assert collisions(FIGURES[name][0](), monkeypatch) == []
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("chinese_font")
 @pytest.mark.parametrize(
     "name",
@@ -120,6 +122,7 @@ def test_nor_does_it_in_chinese(name, monkeypatch):
         assert collisions(FIGURES[name][0](), monkeypatch) == []
 
 
+@pytest.mark.slow
 def test_a_style_makes_the_page_as_wide_as_its_columns():
     for style, widths in (("paper", (85, 170)), ("ieee", (88.9, 181.864))):
         with drawn_as(style=style):

@@ -67,6 +67,7 @@ def test_rows_that_are_computed_again_are_the_same_to_the_last_bit(name, chosen,
         np.testing.assert_array_equal(trace.status, again.status)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "chosen"), CASES)
 def test_reports_and_tables_are_the_same_to_the_last_digit(name, chosen, monkeypatch, tmp_path):
     kept, long = both(name, chosen, monkeypatch)

@@ -102,6 +102,7 @@ def well(circuit: sb.Circuit) -> np.ndarray:
 # Each row
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_every_row_closes_and_rows_follow_each_other_without_a_jump(family: str, amount: str) -> None:
     judged = 0
@@ -136,6 +137,7 @@ def _steps_agree_with_rates(circuit: sb.Circuit, loop: Loop, seed: int) -> int:
     return int(calm.sum())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_closed_circuit_returns_to_its_first_row_and_holds_no_row_twice(family: str, amount: str) -> None:
     met = 0
@@ -216,6 +218,7 @@ def _idle_count(loop: Loop, *rows: np.ndarray) -> int:
     return min((loop.idle(row, 0)[0] for row in q[:4]), default=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", ["general", "drawn", "right twists", "compound joints"])
 def test_modes_come_or_go_at_each_limit_and_nowhere_else(family: str, amount: str) -> None:
     met = 0
@@ -335,6 +338,7 @@ def test_half_the_step_gives_the_same_circuits_of_random_loops(amount: str) -> N
 # Any joint can be the input
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "family", ["general", "drawn", "right twists", "Bennett", "planar 4R", "spherical 4R"]
 )

@@ -129,6 +129,7 @@ def test_none_is_missing_in_a_search_of_many_more_starts(loops: int) -> None:
     check(drawn_by(general, loops, first=50_000), starts=DEEP_STARTS, even=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", SPECIAL.values(), ids=SPECIAL.keys())
 def test_no_mode_of_special_geometry_is_missing(
     family: Callable[[np.random.Generator], Case], amount: str

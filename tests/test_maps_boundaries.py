@@ -96,6 +96,7 @@ def test_ten_thousand_points_have_the_motion_type_of_the_region_they_are_drawn_i
     assert len(np.unique(drawn)) > 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", cases())
 def test_points_a_hair_beside_a_boundary_have_the_type_of_their_side_by_the_ordinary_analysis(name):
     of, case = made(name), (FAST | SLOW)[name]

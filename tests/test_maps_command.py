@@ -250,6 +250,7 @@ def test_a_circuit_that_no_linkage_on_the_map_has_is_refused(tmp_path):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", SIZES)
 def test_a_sheet_has_the_size_asked_for_and_nothing_leaves_it(of, size):
     (heights,) = measure_heights(of, ["swing"])

@@ -71,6 +71,7 @@ def test_a_measure_that_some_types_have_not_is_drawn_in_the_others_only(of):
     assert {of.kinds[line.kind].motion_type for line in heights.contours} == {"crank-rocker"}
 
 
+@pytest.mark.slow
 def test_higher_values_stand_on_the_left_of_a_contour(of):
     (heights,) = measure_heights(of, ["transmission_lowest"], levels=[30.0])
     assert {line.level for line in heights.contours} == {30.0}

@@ -67,6 +67,7 @@ def test_with_what_is_let_pass_it_turns_by_bennett_s_law_and_says_the_closure_er
     assert motion.near_motion is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 def test_a_bennett_whose_four_lengths_are_cut_to_a_hundredth_of_a_millimetre_moves_where_that_is_let_pass(
     seed,

@@ -36,6 +36,7 @@ def drawn(name, link, at):
     return draft, loop, circuit
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LINKAGES)
 def test_a_point_and_its_velocity_are_those_of_the_ordinary_analysis(name):
     for link in range(1, len(sb.load(name).links) + 1):

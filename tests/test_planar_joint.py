@@ -70,6 +70,7 @@ def in_parts(joints: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kinds", LOOPS)
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_planar_joint_moves_as_two_slides_and_a_turn(kinds: str, seed: int) -> None:

@@ -89,6 +89,7 @@ def test_each_ending_gives_a_file_of_its_kind(figure: Figure, tmp_path: Path) ->
     assert eps.read_bytes().startswith(b"%!PS-Adobe-3.0 EPSF")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", plot.FORMATS)
 def test_the_same_figure_gives_the_same_bytes(crank_rocker: sb.Motion, tmp_path: Path, ending: str) -> None:
     first, second = (
@@ -145,6 +146,7 @@ def test_drawing_leaves_matplotlib_as_it_was(crank_rocker: sb.Motion) -> None:
 # --- the configuration
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MOTIONS)
 def test_a_length_is_as_long_along_each_axis_and_all_is_inside(name: str) -> None:
     motion = MOTIONS[name]()
@@ -159,6 +161,7 @@ def test_a_length_is_as_long_along_each_axis_and_all_is_inside(name: str) -> Non
     assert (places <= limits[:, 1]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MOTIONS)
 def test_every_drawn_pose_is_an_assembled_pose(name: str) -> None:
     motion = MOTIONS[name]()
@@ -213,6 +216,7 @@ def test_names_are_shown_as_they_are_written() -> None:
 # --- the curves
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MOTIONS)
 def test_curves_are_the_circuits_numbers(name: str) -> None:
     motion = MOTIONS[name]()
@@ -273,6 +277,7 @@ def test_extremes_are_marked_at_the_papers_numbers(figure: Figure) -> None:
         np.testing.assert_allclose(values, [low, high], rtol=5e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("over", ["input", "time"])
 def test_extremes_lie_on_their_curves(over: str) -> None:
     for name in ("crank-rocker", "double-rocker", "backwards"):
@@ -321,6 +326,7 @@ def test_bounded_rates_at_a_change_point_are_not_cut() -> None:
     np.testing.assert_allclose(marked, np.degrees(motion.change_point_inputs))
 
 
+@pytest.mark.slow
 def test_time_runs_above_a_turning_input_and_beside_a_rocking_one(crank_rocker: sb.Motion) -> None:
     assert len(plot.curves(crank_rocker).axes) == 3
     (above,) = plot.curves(crank_rocker).axes[0].child_axes

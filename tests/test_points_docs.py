@@ -13,6 +13,7 @@ ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs" / "points.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_the_example_prints_what_its_comments_say():
     (code,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
     printed = io.StringIO()

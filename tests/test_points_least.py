@@ -54,6 +54,7 @@ def dense_search(motion, link, box, *, of="acceleration", per_side=17, rounds=10
     return best, where
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "link"), [("seven_r", 4), ("rssr", 2)])
 def test_a_dense_search_never_beats_the_point_of_least_acceleration_and_comes_near_it(name, link):
     motion = sb.load(name).motion(720)
@@ -75,6 +76,7 @@ def test_the_paper_s_link_4_has_less_than_a_third_of_its_point_s_acceleration_el
     assert found.sides == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("of", ["velocity", "acceleration", "jerk"])
 @pytest.mark.parametrize("side", [200.0, 50.0, 5.0])
 @pytest.mark.parametrize(
@@ -87,6 +89,7 @@ def test_the_gap_between_value_and_bound_is_nothing(name, link, side, of):
     assert found.optimal
 
 
+@pytest.mark.slow
 def test_the_bound_holds_at_random_points_of_the_box(seven_r):
     circuit, random = seven_r.circuits[0], np.random.default_rng(5)
     for of in ("velocity", "acceleration", "jerk"):
@@ -152,6 +155,7 @@ def test_the_axis_of_a_planar_crank_has_no_acceleration():
     assert found.optimal
 
 
+@pytest.mark.slow
 def test_a_crank_s_point_off_the_axis_has_r_omega_squared():
     motion = sb.load("planar_4r").motion(speed=3.0)
     found = least_acceleration_point(motion, 1, [(0, 0), (12, 30), (5, 30)])

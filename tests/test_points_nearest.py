@@ -32,6 +32,7 @@ def test_with_inputs_a_known_point_is_found_again(seven_r, odd_rows, measure):
     assert found.bound is not None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "link", "at"), [("seven_r", 4, KNOWN), ("rssr", 2, (310.0, 40.0, -25.0))])
 def test_without_inputs_a_known_point_is_found_again(name, link, at):
     linkage = sb.load(name)

@@ -83,6 +83,7 @@ importlib.import_module("sevenbar.{module}").{name} = interrupted
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("module", "name", "command"),
     [

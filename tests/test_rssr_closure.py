@@ -65,6 +65,7 @@ def test_a_million_poses_close_and_a_missing_one_cannot_be_reached(driver: str) 
     assert found > 500_000  # the other half comes from the other input
 
 
+@pytest.mark.slow
 @DRIVERS
 @pytest.mark.parametrize("decades", [4.0, 8.0])
 def test_lengths_that_differ_by_many_decades_close(driver: str, decades: float) -> None:
@@ -77,6 +78,7 @@ def test_lengths_that_differ_by_many_decades_close(driver: str, decades: float) 
     assert found > 2000
 
 
+@pytest.mark.slow
 @DRIVERS
 @pytest.mark.parametrize("share", [1e-2, 1e-5, 1e-8])
 def test_a_tiny_coupler_closes(driver: str, share: float) -> None:
@@ -90,6 +92,7 @@ def test_a_tiny_coupler_closes(driver: str, share: float) -> None:
     assert found > 500
 
 
+@pytest.mark.slow
 @DRIVERS
 def test_the_two_poses_meet_at_a_limit(driver: str) -> None:
     rng = np.random.default_rng(9)

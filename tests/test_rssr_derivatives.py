@@ -235,6 +235,7 @@ def test_rates_of_the_output_hold_12_11_and_10_digits_away_from_dead_centres(
     assert (worst(of_output, 1e4) < 10 * np.array(RELATIVE)).all()
 
 
+@pytest.mark.slow
 def test_rates_of_the_output_lose_no_more_than_their_condition_takes(
     of_output: list[Error], form: str
 ) -> None:
@@ -242,6 +243,7 @@ def test_rates_of_the_output_lose_no_more_than_their_condition_takes(
     assert (worst_over_condition(of_output) < FACTORS[form]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantity", ["output", "turns", "points"])
 def test_rates_along_a_circuit_hold_12_11_and_10_digits_away_from_dead_centres(
     of_circuits: dict[str, list[Error]], form: str, quantity: str

@@ -34,6 +34,7 @@ def poses(linkage, input, output, count=5, circuit=0):
     return loop, q, found.output_column
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("driver", "other", "dims"),
     [
@@ -193,6 +194,7 @@ def held_columns(numbers):
     return columns
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "orders"),
     [

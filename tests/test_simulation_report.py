@@ -68,6 +68,7 @@ def test_json_is_one_object_and_nothing_else():
     assert found["closure_error"]["length"] > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["exudyn", "mujoco"])
 def test_an_engine_that_is_not_there_is_named_with_the_extra_that_brings_it(engine, tmp_path):
     message = mistake(
@@ -95,6 +96,7 @@ def test_an_engine_that_cannot_be_loaded_says_why(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_the_rest_works_without_any_engine():
     before = "sys.modules['exudyn'] = sys.modules['mujoco'] = None"
     assert sevenbar("analyze", "rssr", "--json", before=before).returncode == 0
@@ -259,6 +261,7 @@ def test_figures_have_theory_as_a_line_the_engine_as_marks_and_the_difference_on
     ]
 
 
+@pytest.mark.slow
 def test_each_run_draws_what_it_has(rssr, rccc, tmp_path):
     for run, stems in ((rssr, ["joints", "output", "points"]), (rccc, ["joints", "output"])):
         name = run.record.engine.lower()

@@ -203,6 +203,7 @@ class Walked:
             self.wrong.append(f"{what}: shown {distance(motion, gone, true):.3g} from where it went")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_a_pose_goes_on_through_small_changes(case: str, steps: int) -> None:
     walked = Walked(begun(case), np.random.default_rng(steps))
@@ -213,6 +214,7 @@ def test_a_pose_goes_on_through_small_changes(case: str, steps: int) -> None:
     assert walked.followed > steps / 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_a_pose_goes_on_while_a_slider_is_dragged(case: str, steps: int) -> None:
     """From the pose that was left to the next, without a person's hand: small errors must not add up to a leap."""
@@ -241,6 +243,7 @@ def test_a_pose_goes_on_while_a_slider_is_dragged(case: str, steps: int) -> None
     assert followed_all
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "steps",
     [

@@ -142,6 +142,7 @@ def test_what_is_kept_does_what_is_said_of_it(want):
             assert np.allclose(angles, one.balls, atol=1e-7)
 
 
+@pytest.mark.slow
 def test_no_start_of_a_dense_scan_is_much_better_than_the_one_that_was_found():
     task = SurveyTask(parabola(), count=400, tolerance=math.radians(90), transmission_lowest=0.0)
     core, (inputs, wanted) = task.core(), task.readings
@@ -228,6 +229,7 @@ def test_a_journal_cut_anywhere_is_gone_on_with(tmp_path, monkeypatch):
         survey(task, out=tmp_path / "a", resume=True)
 
 
+@pytest.mark.slow
 def test_a_survey_that_was_killed_goes_on(tmp_path):
     words = [
         "design",
@@ -269,6 +271,7 @@ def test_workers_of_a_cluster_give_the_same_answer(workers):
     assert there.tally.line() == survey(task, designs_wanted=0, threads=1).tally.line()
 
 
+@pytest.mark.slow
 def test_designs_are_better_than_what_was_drawn_and_keep_what_must_hold():
     task = SurveyTask(parabola(), count=30000, tolerance=math.radians(5), ball_angle=math.radians(40))
     tally = SurveyTally.of(task.core().tally(0, task.count))
@@ -288,6 +291,7 @@ def test_designs_are_better_than_what_was_drawn_and_keep_what_must_hold():
         assert off.min() < candidate.error_greatest + 1e-9
 
 
+@pytest.mark.slow
 def test_a_swing_and_a_travel_are_met_exactly():
     for want in (FLAP, SwingWish(math.radians(60), 1.2)):
         task = SurveyTask(want, count=40000, tolerance=math.radians(4))
@@ -296,6 +300,7 @@ def test_a_swing_and_a_travel_are_met_exactly():
         assert found.candidates[0].transmission_lowest > math.radians(40)
 
 
+@pytest.mark.slow
 def test_pairs_are_met_as_well_as_can_be():
     want = wish_of_pairs(np.radians([0, 20, 40, 60]), np.radians([0, 31, 50, 64]))
     found = survey(SurveyTask(want, count=40000, tolerance=math.radians(4)), designs_wanted=1, threads=1)
@@ -312,6 +317,7 @@ def test_that_none_does_it_is_an_answer_with_what_comes_nearest():
     assert list(found.tally.refused) == list(VERDICTS[1:])
 
 
+@pytest.mark.slow
 def test_a_survey_is_printed_written_and_given_as_json(tmp_path):
     words = ["design", "survey", "--output-range", "0:23.75deg", "--count", "2e3", "--ball-angle", "30deg"]
     words += ["--bound", "angle=90deg", "--designs", "2", "--threads", "1"]

@@ -81,6 +81,7 @@ def test_each_verdict_is_that_of_the_analysis():
     assert 0 <= max(np.flatnonzero(counts)) * 10 <= most
 
 
+@pytest.mark.slow
 def test_the_answer_is_the_same_however_the_work_is_divided(tmp_path, monkeypatch):
     whole = LoopSurvey(about("planar_4r", 30.0, Most(0, 0.05)), 60, 2).tally(0)
     monkeypatch.setattr("sevenbar.design.survey.loops.PART", 25)
@@ -120,6 +121,7 @@ def test_two_processes_give_the_answer_of_one_and_a_killed_run_goes_on(tmp_path,
     assert again.tally.line() == survey(asked, designs_wanted=0, threads=1).tally.line()
 
 
+@pytest.mark.slow
 def test_designs_are_better_than_what_was_drawn():
     found = survey(LoopSurvey(about("planar_4r", 20.0, Most(0, 0.2)), 40, 1), designs_wanted=1, threads=1)
     assert found.found is not None
@@ -128,6 +130,7 @@ def test_designs_are_better_than_what_was_drawn():
     assert found.answer == f"{found.tally.found} of 40 do it"
 
 
+@pytest.mark.slow
 def test_that_none_does_it_is_an_answer_with_what_comes_nearest(task_file):
     text = (
         TASK.replace('most = "20deg"', 'most = "0.001deg"').replace("ball.[xy]", "ball.x").replace("z]", "y]")

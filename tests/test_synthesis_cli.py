@@ -16,6 +16,7 @@ from sevenbar.errors import RequestError
 PAIRS = "input_deg,output_deg\n0,0\n20,31\n40,50\n60,64\n"
 
 
+@pytest.mark.slow
 def test_a_function_is_printed_written_and_told_as_json(tmp_path):
     out = tmp_path / "new" / "folder"
     words = ("design", "function", "--y", "x^2", "--points", "7", "--designs", "2")
@@ -67,6 +68,7 @@ def test_a_swing_is_printed_and_written(tmp_path):
     assert min(abs(circuit.time_ratio - 1.2) for circuit in circuits) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -75,6 +75,7 @@ def answers_alike(motion: sb.Motion, other: sb.Motion) -> bool:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("again", AGAIN)
 @pytest.mark.parametrize("name", gallery.names())
 def test_a_linkage_is_copied_before_and_after_it_is_used(name, again):
@@ -89,6 +90,7 @@ def test_a_linkage_is_copied_before_and_after_it_is_used(name, again):
     assert answers_alike(linkage.motion(SAMPLES), late.motion(SAMPLES))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("again", AGAIN)
 @pytest.mark.parametrize("name", gallery.names())
 def test_a_copied_motion_tells_the_points_of_every_link(name, again):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import typer
 
 from sevenbar.commands.command import Command
+from sevenbar.commands.exact import exact
 from sevenbar.commands.function import function, swing
 from sevenbar.commands.path import path
 from sevenbar.commands.points import inertia, point
@@ -19,5 +20,5 @@ design = typer.Typer(
     help="Find linkages for a wanted motion, and points of links; each is a file that opens in the studio.",
 )
 
-for _command in (task, function, swing, survey, path, point, inertia):
+for _command in (task, function, swing, exact, survey, path, point, inertia):
     design.command(cls=Command)(_command)

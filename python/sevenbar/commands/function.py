@@ -157,11 +157,16 @@ def _before(out: Path | None, designs: int, figures: list[str] | None, force: bo
     from sevenbar.design.synthesis.function.report import synthesis_report
 
     formats = figure_formats(figures, out)
-    if not 1 <= designs <= MOST_DESIGNS:
-        raise RequestError(f"--designs: {designs} designs are not offered; give 1 to {MOST_DESIGNS}")
+    checked_designs(designs)
     report = synthesis_report(designs, command_line(), formats)
     check_out(report, out, force=force)
     return report
+
+
+def checked_designs(count: int) -> None:
+    """Raises `RequestError` for a number of designs that one command does not give."""
+    if not 1 <= count <= MOST_DESIGNS:
+        raise RequestError(f"--designs: {count} designs are not offered; give 1 to {MOST_DESIGNS}")
 
 
 def seed_of(seed: int) -> int:

@@ -52,21 +52,17 @@ def read_curve(
     return np.column_stack(columns), inputs
 
 
-def _names(table: TextTable) -> list[str]:
-    return [plain_name(table.name_and_unit(place)[0]) for place in range(len(table.names))]
-
-
 def _place(table: TextTable, letter: str, point: str, unit: str) -> int | None:
     """The column of a coordinate: of the point where it is named, else the one that is called so."""
-    names = _names(table)
+    names = table.plain_names
     if not any(names) and len(names) >= len("xyz"):
         example = f"x [{unit}], y [{unit}], z [{unit}]"
         raise table.wrong(
             f"has no header, so the unit of its numbers is not known; write '{example}' above them"
         )
-    for wanted in (plain_name(f"{point} {letter}"), letter):
-        if wanted in names:
-            return names.index(wanted)
+    place = table.column(f"{point} {letter}", letter)
+    if place is not None:
+        return place
     # turn_x and the like are of a rotation
     found = [
         place
@@ -84,7 +80,7 @@ def _place(table: TextTable, letter: str, point: str, unit: str) -> int | None:
 
 def _input(table: TextTable, joint: str) -> int | None:
     """The column of the input; not that of its velocity, which has its name too."""
-    names = _names(table)
+    names = table.plain_names
     for wanted in (plain_name(joint), "input"):
         for place, name in enumerate(names):
             unit = table.unit(place)

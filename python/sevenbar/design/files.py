@@ -7,8 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
+from sevenbar.description.draft import Draft
 from sevenbar.description.files import loads
-from sevenbar.design.candidates import Candidate
 from sevenbar.reporting.files import Write, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
 
@@ -16,11 +16,25 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+class Writable(Protocol):
+    """A design that can be written: its description, and what is reported of it."""
+
+    @property
+    def draft(self) -> Draft:
+        """Its description."""
+        ...
+
+    @property
+    def columns(self) -> dict[str, float | str | int | None]:
+        """What is reported of it, column by column, its dimensions last."""
+        ...
+
+
 class DesignSet(Protocol):
     """What a search found: the best design first."""
 
     @property
-    def candidates(self) -> Sequence[Candidate]:
+    def candidates(self) -> Sequence[Writable]:
         """The designs."""
         ...
 
@@ -33,7 +47,7 @@ def design_files(
     formats: Sequence[str],
     *,
     head: Callable[[T], Sequence[str]],
-    figure: Callable[[T, Candidate], Figure] | None = None,
+    figure: Callable[[T, Any], Figure] | None = None,
     as_dict: Callable[[T], dict[str, Any]],
 ) -> dict[str, Write[T]]:
     """The files of at most `count` designs: design_1.toml with its figure, .., summary.csv, summary.json.
@@ -50,7 +64,7 @@ def design_files(
     return files | {"summary.csv": write_summary, "summary.json": json_file(as_dict)}
 
 
-def _figure(found: T, *, place: int, figure: Callable[[T, Candidate], Figure]) -> Figure | None:
+def _figure(found: T, *, place: int, figure: Callable[[T, Any], Figure]) -> Figure | None:
     return figure(found, found.candidates[place]) if place < len(found.candidates) else None
 
 
@@ -68,7 +82,7 @@ def write_summary(found: DesignSet, path: Path) -> None:
     write_csv(path, names, ([row.get(name) for name in names] for row in rows))
 
 
-def toml_of(candidate: Candidate, head: Sequence[str]) -> str:
+def toml_of(candidate: Writable, head: Sequence[str]) -> str:
     """The design as TOML: comments with what was wanted and what it does, then the description."""
     values = [f"{name} = {_plain(value)}" for name, value in candidate.columns.items() if value is not None]
     measured = values[: len(values) - sum(d.kind != "speed" for d in candidate.draft.dimensions)]

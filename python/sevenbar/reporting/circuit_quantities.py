@@ -54,29 +54,34 @@ class CircuitQuantity:
 Reported = tuple[CircuitQuantity, list[Texts]]
 
 
-def quantities_of(motion: Motion) -> list[CircuitQuantity]:
-    """All that is reported of circuits, in order."""
-    first, second = motion.input, motion.output
-    in_unit, out_unit = (motion.linkage.unit_of(end) for end in (first, second))
-    place, result = (Shown("rad" if unit == "rad" else "") for unit in (in_unit, out_unit))
-    # of a slide the unit is in the label: a line is not broken between a number and its unit
-    in_label, out_label = ("" if unit == "rad" else f"[{unit}]" for unit in (in_unit, out_unit))
-    in_head, out_head = (f"\n{label}" if label else "" for label in (in_label, out_label))
+class _Texts:
+    """The texts of a motion's circuits: numbers in the units of its input and output."""
 
-    def ends(extremes: Extremes | None, show: Callable[[float], str], otherwise: str) -> Texts:
+    def __init__(self, motion: Motion) -> None:
+        self.motion, self.input, self.output = motion, motion.input, motion.output
+        self.in_unit, self.out_unit = (motion.linkage.unit_of(end) for end in (motion.input, motion.output))
+        self.place, self.result = (
+            Shown("rad" if unit == "rad" else "") for unit in (self.in_unit, self.out_unit)
+        )
+        # the search for peaks once for both, and only where they are reported
+        self.peaks = cache(peaks_of)
+
+    def ends(self, extremes: Extremes | None, show: Callable[[float], str], otherwise: str) -> Texts:
+        """The lowest and the highest value, and the input at each."""
         if extremes is None:
             return (otherwise,)
         pairs = ((extremes.lowest, extremes.lowest_at), (extremes.highest, extremes.highest_at))
         if extremes.lowest == extremes.highest:
             # throughout, and at no place more than at another
             return (show(extremes.lowest),)
-        return tuple(f"{show(value)} @ {place(at, whole=True)}" for value, at in pairs)
+        return tuple(f"{show(value)} @ {self.place(at, whole=True)}" for value, at in pairs)
 
-    def settled(extremes: Extremes | None, circuit: Circuit, order: int) -> Extremes | None:
+    def settled(self, extremes: Extremes | None, circuit: Circuit, order: int) -> Extremes | None:
         """Extremes without rounding: of a joint that rests, or follows evenly, both are one number."""
         if extremes is None:
             return None
-        quick = abs(motion.speed) if motion.law is None else float(np.abs(motion.law.dq).max(initial=0.0))
+        law = self.motion.law
+        quick = abs(self.motion.speed) if law is None else float(np.abs(law.dq).max(initial=0.0))
         size = circuit.size or 1.0
         natural = (1.0 if circuit.output_turns else size) * (
             quick / (1.0 if circuit.input_turns else size)
@@ -84,135 +89,111 @@ def quantities_of(motion: Motion) -> list[CircuitQuantity]:
         low, high = (0.0 if abs(x) < REST * natural else x for x in (extremes.lowest, extremes.highest))
         return replace(extremes, lowest=low, highest=low if high - low < REST * natural else high)
 
-    def rate(extremes: Extremes | None, circuit: Circuit) -> Texts:
-        if motion.law is not None:
-            return ends(extremes, six_digits, say("no row within the range"))
-        return ends(
-            extremes, six_digits, say("change point") if circuit.goes_round else say("no bound at limits")
-        )
+    def motion_type(self, circuit: Circuit) -> Texts:
+        """Its motion type where circuits differ in it, and how it goes round where they differ in that."""
+        words = (say(circuit.motion_type),) if self.motion.motion_type == "mixed" else ()
+        ways = {way_round(other) for other in self.motion}
+        return (*words, way_round(circuit)) if len(ways) > 1 else words or ("-",)
 
-    def range_of(circuit: Circuit, end: int, show: Shown) -> Texts:
-        extent = circuit.output_range if end else circuit.input_range
-        if extent is not None and words_of(circuit.motion_type)[end] == "spindle":
-            return (say("without end"),)
+    def input_range(self, circuit: Circuit) -> Texts:
+        """The range of the input, in the convention of its limits."""
+        extent = circuit.input_range
+        return self._endless(circuit, extent, 0) or self.place.range(*(extent or ()))
+
+    def output_range(self, circuit: Circuit) -> Texts:
+        """The range of the output."""
+        extent = circuit.output_range
+        return self._endless(circuit, extent, 1) or tuple(map(self.result, extent or ()))
+
+    def _endless(self, circuit: Circuit, extent: tuple[float, float] | None, end: int) -> Texts:
+        """The words in place of a range; nothing where there is one."""
         if extent is None:
             return (say("full turns"),)
-        # the input is given as its limits are
-        return show.range(*extent) if end == 0 else (show(extent[0]), show(extent[1]))
+        return (say("without end"),) if words_of(circuit.motion_type)[end] == "spindle" else ()
 
-    def way(circuit: Circuit) -> Texts:
-        words = (say(circuit.motion_type),) if motion.motion_type == "mixed" else ()
-        return (*words, way_round(circuit)) if len({way_round(c) for c in motion}) > 1 else words or ("-",)
+    def output_reach(self, circuit: Circuit) -> Texts:
+        """The least and the greatest value of the output with their inputs, or its range."""
+        if circuit.angle is None:
+            return self.output_range(circuit)
+        return self.ends(self.settled(circuit.angle, circuit, 0), self.result, "")
 
-    def swing(circuit: Circuit) -> Texts:
-        return ("-",) if circuit.swing is None else (result(circuit.swing),)
+    def output_values(self, circuit: Circuit) -> Texts:
+        """The least and the greatest value of the output, as plain numbers."""
+        return self.ends(self.settled(circuit.angle, circuit, 0), six_digits, "-")
 
-    def time_ratio(circuit: Circuit) -> Texts:
-        # a ratio of angles, and of times at a constant speed
+    def swing(self, circuit: Circuit) -> Texts:
+        """The swing of the output."""
+        return ("-",) if circuit.swing is None else (self.result(circuit.swing),)
+
+    def time_ratio(self, circuit: Circuit) -> Texts:
+        """The time ratio: one of angles, and of times at a constant speed."""
         ratio = circuit.time_ratio
-        if ratio is None or motion.law is not None:
+        if ratio is None or self.motion.law is not None:
             return ("-",)
         between = degrees(math.pi * (ratio - 1) / (ratio + 1))
         return (say("{ratio}", ratio=six_digits(ratio), between=between),)
 
-    def reach(circuit: Circuit) -> Texts:
-        return (
-            ends(settled(circuit.angle, circuit, 0), result, "")
-            if circuit.angle
-            else range_of(circuit, 1, result)
-        )
+    def transmission(self, circuit: Circuit) -> Texts:
+        """The least and the greatest transmission angle."""
+        return self.ends(circuit.transmission, degrees, "-")
 
-    def rate_of(name: Literal["velocity", "acceleration"], unit: str) -> CircuitQuantity:
-        order = 1 + (name == "acceleration")
-        words = say("{joint} {quantity}", joint=second, quantity=say(name))
+    def velocity(self, circuit: Circuit) -> Texts:
+        """The extremes of the output's velocity."""
+        return self._rate(self.settled(circuit.velocity, circuit, 1), circuit)
 
-        def of(circuit: Circuit) -> Texts:
-            return rate(settled(getattr(circuit, name), circuit, order), circuit)
+    def acceleration(self, circuit: Circuit) -> Texts:
+        """The extremes of the output's acceleration."""
+        return self._rate(self.settled(circuit.acceleration, circuit, 2), circuit)
 
-        head = f"{words}\n[{unit}] @ {first}"
-        return CircuitQuantity(f"{second} {name}", words, head, of, f"[{unit}]", ends=True)
+    def _rate(self, extremes: Extremes | None, circuit: Circuit) -> Texts:
+        if self.motion.law is not None:
+            return self.ends(extremes, six_digits, say("no row within the range"))
+        unbounded = say("change point") if circuit.goes_round else say("no bound at limits")
+        return self.ends(extremes, six_digits, unbounded)
 
-    def stands_still(end: Literal["input", "output"]) -> list[CircuitQuantity]:
-        # in a table the ends of a range are its own column
-        ranged = end == "output" or any(c.input_range is not None for c in motion)
-        name = f"dead centres of the {end}"
-        if end == "input":
-            words, others = say("dead centres of the input"), say("other dead centres of the input")
-            head, head_of_others = (
-                say("dead\ncentres of\nthe input"),
-                say("other dead\ncentres of\nthe input"),
-            )
-        else:
-            words, others = say("dead centres of the output"), say("other dead centres of the output")
-            head, head_of_others = "", say("other dead\ncentres of\nthe output")
-        if ranged:
-            head = head_of_others
-        return [
-            CircuitQuantity(name, words, "", lambda c: _dead_centres(c, end, place), in_label, only="list"),
-            CircuitQuantity(
-                f"other {name}" if ranged else name,
-                others if ranged else words,
-                head,
-                lambda c: _dead_centres(c, end, place, within=True),
-                only="table",
-            ),
-        ]
+    def peak_torque(self, circuit: Circuit) -> Texts:
+        """The greatest torque or force of the input."""
+        peaks = self.peaks(circuit)
+        if peaks is None:
+            return ("-" if circuit.goes_round else say("no bound at limits"),)
+        return (f"{number(peaks.torque.value)} @ {self.place(peaks.torque.input, whole=True)}",)
 
-    def forces() -> list[CircuitQuantity]:
-        if motion.linkage.loading.is_empty:
-            return []
-        unit = "N m" if in_unit == "rad" else "N"
-        # once for both, and only where they are reported
-        found = cache(peaks_of)
+    def reaction(self, circuit: Circuit) -> Texts:
+        """The greatest reaction, and in which joint."""
+        peaks = self.peaks(circuit)
+        if peaks is None or peaks.greatest is None:
+            return ("-",)
+        name, peak = peaks.greatest
+        where = say("{force} in {joint}", force=number(peak.value), joint=name)
+        return (f"{where} @ {self.place(peak.input, whole=True)}",)
 
-        def torque(circuit: Circuit) -> Texts:
-            peaks = found(circuit)
-            if peaks is None:
-                return ("-" if circuit.goes_round else say("no bound at limits"),)
-            return (f"{number(peaks.torque.value)} @ {place(peaks.torque.input, whole=True)}",)
 
-        def bearing(circuit: Circuit) -> Texts:
-            peaks = found(circuit)
-            if peaks is None or peaks.greatest is None:
-                return ("-",)
-            name, peak = peaks.greatest
-            where = say("{force} in {joint}", force=number(peak.value), joint=name)
-            return (f"{where} @ {place(peak.input, whole=True)}",)
-
-        peak = say("peak torque") if unit == "N m" else say("peak force")
-        reaction = say("greatest reaction")
-        return [
-            CircuitQuantity(
-                "peak torque",
-                say("{joint} {quantity}", joint=first, quantity=peak),
-                f"{peak}\n[{unit}] @ {first}",
-                torque,
-                f"[{unit}]",
-            ),
-            CircuitQuantity(
-                "greatest reaction", reaction, f"{reaction}\n[N] @ {first}", bearing, "[N]", spare=True
-            ),
-        ]
-
-    position = "angle" if out_unit == "rad" else "position"
+def quantities_of(motion: Motion) -> list[CircuitQuantity]:
+    """All that is reported of circuits, in order."""
+    texts = _Texts(motion)
+    first, second = motion.input, motion.output
+    # of a slide the unit is in the label: a line is not broken between a number and its unit
+    in_label, out_label = ("" if unit == "rad" else f"[{unit}]" for unit in (texts.in_unit, texts.out_unit))
+    in_head, out_head = (f"\n{label}" if label else "" for label in (in_label, out_label))
+    position = "angle" if texts.out_unit == "rad" else "position"
     between = say(" to ")
     first_range, second_range = (say("range of {joint}", joint=joint) for joint in (first, second))
     return [
-        CircuitQuantity("motion type", say("motion type"), say("motion type"), way),
+        CircuitQuantity("motion type", say("motion type"), say("motion type"), texts.motion_type),
         CircuitQuantity(
             f"range of {first}",
             first_range,
             say("range of\n{joint}", joint=first) + in_head,
-            lambda c: range_of(c, 0, place),
+            texts.input_range,
             in_label,
             between=between,
         ),
-        *stands_still("input"),
+        *_standstills(texts, "input", in_label),
         CircuitQuantity(
             f"range of {second}",
             second_range,
             "",
-            lambda c: range_of(c, 1, result),
+            texts.output_range,
             out_label,
             between=between,
             only="list",
@@ -221,35 +202,84 @@ def quantities_of(motion: Motion) -> list[CircuitQuantity]:
             f"range of {second}",
             second_range,
             say("range of\n{joint} @ {other}", joint=second, other=first) + out_head,
-            reach,
+            texts.output_reach,
             out_label,
             between=between,
             only="table",
         ),
         CircuitQuantity(
-            f"swing of {second}", say("swing of {joint}", joint=second), "", swing, out_label, only="list"
+            f"swing of {second}",
+            say("swing of {joint}", joint=second),
+            "",
+            texts.swing,
+            out_label,
+            only="list",
         ),
-        *stands_still("output"),
-        CircuitQuantity("time ratio", say("time ratio"), say("time\nratio"), time_ratio, spare=True),
+        *_standstills(texts, "output", in_label),
+        CircuitQuantity("time ratio", say("time ratio"), say("time\nratio"), texts.time_ratio, spare=True),
         CircuitQuantity(
             "transmission angle",
             say("transmission angle"),
             say("transmission\nangle @ {joint}", joint=first),
-            lambda c: ends(c.transmission, degrees, "-"),
+            texts.transmission,
             ends=True,
         ),
         CircuitQuantity(
             f"{second} {position}",
             say("{joint} {quantity}", joint=second, quantity=say(position)),
             "",
-            lambda c: ends(settled(c.angle, c, 0), six_digits, "-"),
-            f"[{out_unit}]",
+            texts.output_values,
+            f"[{texts.out_unit}]",
             ends=True,
             only="list",
         ),
-        rate_of("velocity", f"{out_unit}/s"),
-        rate_of("acceleration", f"{out_unit}/s\u00b2"),
-        *forces(),
+        _rate(texts, "velocity", f"[{texts.out_unit}/s]", texts.velocity),
+        _rate(texts, "acceleration", f"[{texts.out_unit}/s\u00b2]", texts.acceleration),
+        *_forces(texts),
+    ]
+
+
+def _rate(texts: _Texts, name: str, unit: str, cells: Callable[[Circuit], Texts]) -> CircuitQuantity:
+    words = say("{joint} {quantity}", joint=texts.output, quantity=say(name))
+    head = f"{words}\n{unit} @ {texts.input}"
+    return CircuitQuantity(f"{texts.output} {name}", words, head, cells, unit, ends=True)
+
+
+def _standstills(texts: _Texts, end: Literal["input", "output"], unit: str) -> list[CircuitQuantity]:
+    """The dead centres of an end; in a table those that are no ends of a range, which is its own column."""
+    ranged = end == "output" or any(c.input_range is not None for c in texts.motion)
+    name = f"dead centres of the {end}"
+    if end == "input":
+        words, others = say("dead centres of the input"), say("other dead centres of the input")
+        head, head_of_others = say("dead\ncentres of\nthe input"), say("other dead\ncentres of\nthe input")
+    else:
+        words, others = say("dead centres of the output"), say("other dead centres of the output")
+        head, head_of_others = "", say("other dead\ncentres of\nthe output")
+    return [
+        CircuitQuantity(name, words, "", lambda c: _dead_centres(c, end, texts.place), unit, only="list"),
+        CircuitQuantity(
+            f"other {name}" if ranged else name,
+            others if ranged else words,
+            head_of_others if ranged else head,
+            lambda c: _dead_centres(c, end, texts.place, within=True),
+            only="table",
+        ),
+    ]
+
+
+def _forces(texts: _Texts) -> list[CircuitQuantity]:
+    """The peak torque and the greatest reaction, where there are loads."""
+    if texts.motion.linkage.loading.is_empty:
+        return []
+    first, unit = texts.input, "N m" if texts.in_unit == "rad" else "N"
+    peak = say("peak torque") if unit == "N m" else say("peak force")
+    reaction = say("greatest reaction")
+    words = say("{joint} {quantity}", joint=first, quantity=peak)
+    return [
+        CircuitQuantity("peak torque", words, f"{peak}\n[{unit}] @ {first}", texts.peak_torque, f"[{unit}]"),
+        CircuitQuantity(
+            "greatest reaction", reaction, f"{reaction}\n[N] @ {first}", texts.reaction, "[N]", spare=True
+        ),
     ]
 
 

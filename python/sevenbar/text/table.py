@@ -84,6 +84,16 @@ class TextTable:
             )
         return name, unit or below
 
+    @property
+    def plain_names(self) -> list[str]:
+        """The columns' names for comparing, without their units."""
+        return [plain_name(self.name_and_unit(column)[0]) for column in range(len(self.names))]
+
+    def column(self, *names: str) -> int | None:
+        """The column that has the first of these names that one has; `None` where none has any."""
+        own = self.plain_names
+        return next((own.index(plain_name(name)) for name in names if plain_name(name) in own), None)
+
     def unit(self, column: int) -> MeasuredUnit | None:
         """What the unit of a column means; `None` where it has none, or one that is not known."""
         return measured_unit(self.name_and_unit(column)[1])

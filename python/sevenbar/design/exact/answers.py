@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 
@@ -50,6 +51,27 @@ class ExactAnswer:
     def error(self) -> float:
         """The greatest closure error at the wanted poses, relative to the size of the linkage."""
         return self.claim.figures["closure_error"]
+
+    @property
+    def defect(self) -> str:
+        """Why the circuits do not take the wanted poses in order: "none", a fault, or "two freedoms"."""
+        if self.verdict is None:
+            return "two freedoms"
+        return self.fault or "none"
+
+    @property
+    def columns(self) -> dict[str, float | str | int | None]:
+        """What is reported of it, column by column; each number's name ends in its unit."""
+        free = self.verdict if isinstance(self.verdict, Candidate) else None
+        # of other linkages than the RSSR it would be that of the whole circuit
+        lowest = None if free is None or self.linkage.form != "rssr" else free.transmission_lowest
+        return {
+            "defect": self.defect,
+            "motion_type": free.motion_type if free is not None else self.linkage.motion().motion_type,
+            "transmission_lowest_deg": None if lowest is None else math.degrees(lowest),
+            **self.claim.figures,
+            **{d.column: d.value for d in self.draft.dimensions if d.kind != "speed"},
+        }
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,21 +131,23 @@ def judged(draft: Draft, claim: Claim, poses: Floats | None = None) -> ExactAnsw
     return ExactAnswer(draft, claim, verdict, poses)
 
 
-@text_of.register(ExactAnswers)
-def _(found: ExactAnswers) -> str:
+def answer_facts(found: ExactAnswers) -> list[tuple[str, str]]:
+    """How many answers there are and what they do, by labels."""
     faults = ", ".join(f"{count} by {fault}" for fault, count in found.faults.items())
     unjudged = sum(a.verdict is None for a in found.answers)
     number = "a family" if found.theory is None else f"{found.found} of {found.theory} {found.counted}"
-    return lines(
-        f"Answers to {found.task}",
-        [
-            ("over the complex numbers", number),
-            ("real", f"{found.real}"),
-            ("linkages", f"{len(found.answers)}"),
-            ("assemblable", f"{len(found.assemblable)}"),
-            ("free of defects", f"{len(found.defect_free)}"),
-            ("defects", faults or "none"),
-            *([("without a verdict", f"{unjudged}: two freedoms")] if unjudged else []),
-            ("how", found.how),
-        ],
-    )
+    return [
+        ("over the complex numbers", number),
+        ("real", f"{found.real}"),
+        ("linkages", f"{len(found.answers)}"),
+        ("assemblable", f"{len(found.assemblable)}"),
+        ("free of defects", f"{len(found.defect_free)}"),
+        ("defects", faults or "none"),
+        *([("without a verdict", f"{unjudged}: two freedoms")] if unjudged else []),
+        ("how", found.how),
+    ]
+
+
+@text_of.register(ExactAnswers)
+def _(found: ExactAnswers) -> str:
+    return lines(f"Answers to {found.task}", answer_facts(found))

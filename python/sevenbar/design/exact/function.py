@@ -33,7 +33,7 @@ from sevenbar.design.exact.bilinear import cubic_roots
 from sevenbar.design.exact.closures import SkewRssr, designed, products, rssr_of
 from sevenbar.design.exact.draws import directions
 from sevenbar.design.synthesis.function.precision import null_angles, reflected
-from sevenbar.design.wish import wish_of_pairs
+from sevenbar.design.wish import FEWEST, wish_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
 
 #: Coefficients of a closure: with free zeros, with the zeros given, and with zeros and axes given.
@@ -88,10 +88,12 @@ def function_pairs(
 
     Raises `RequestError` for pairs that are none, axes that are parallel, or more pairs than numbers.
     """
-    wish = wish_of_pairs(inputs, outputs, title="pairs of angles")
-    a, b = wish.input, wish.output
     cosine = None if twist is None else _cosine(twist)
     most = 8 - (twist is not None) - 2 * (zeros is not None)
+    if np.size(inputs) < FEWEST:
+        raise RequestError(f"points: {np.size(inputs)} pairs leave too much open; give {FEWEST} to {most}")
+    wish = wish_of_pairs(inputs, outputs, title="pairs of angles")
+    a, b = wish.input, wish.output
     if a.size > most:
         given = " and ".join(w for w, v in (("twist", twist), ("zeros", zeros)) if v is not None)
         raise RequestError(

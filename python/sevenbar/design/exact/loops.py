@@ -65,7 +65,7 @@ def all_loops(
     for i, driver in enumerate(dyads):
         for j, follower in enumerate(dyads):
             if i != j and not share_a_line(driver, follower):
-                title = f"{name}, dyads {i + 1} and {j + 1}"
+                title = f"{name}, dyads {i + 1}, {j + 1}"
                 found.append(loop(driver, follower, task, title, length_unit))
     return tuple(found)
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.curve_table import read_curve
-from sevenbar.design.task.file.pose_table import read_poses
+from sevenbar.design.pose_table import read_poses
 from sevenbar.design.task.file.schema import (
     DwellForm,
     FigureForm,

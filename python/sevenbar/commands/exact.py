@@ -1,0 +1,79 @@
+"""The command `sevenbar design exact`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sevenbar.commands.deliver import check_out, command_line, deliver
+from sevenbar.commands.function import checked_designs, seed_of
+from sevenbar.commands.given import angle
+from sevenbar.commands.options import Force, Json
+from sevenbar.commands.progress import progress_bar
+from sevenbar.errors import RequestError, shown
+
+
+def exact(
+    table: Annotated[
+        Path,
+        typer.Argument(
+            metavar="TABLE",
+            help="CSV of pairs of angles (input [deg], output [deg]), or of poses of a link: x [mm], y [mm], "
+            "z [mm] with turn_x, turn_y, turn_z [deg], an axis times its angle; what is left out is 0.",
+        ),
+    ],
+    linkage: Annotated[
+        str | None,
+        typer.Option(
+            help="rssr, planar, spherical, bennett, rccc or cccc; by the columns and how many rows they have."
+        ),
+    ] = None,
+    twist: Annotated[
+        str | None, typer.Option(help="Angle between the axes of an RSSR: 7 pairs at most then.")
+    ] = None,
+    zeros: Annotated[
+        str | None,
+        typer.Option(help="Angles of crank and rocker where an RSSR's dials read zero, as in 30deg,90deg."),
+    ] = None,
+    samples: Annotated[
+        int | None, typer.Option(help="How many members of a family are drawn, where fewer rows leave one.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed of these draws.")] = None,
+    designs: Annotated[int, typer.Option(help="How many linkages are printed and written, at most.")] = 50,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for design_1.toml, .., summary.csv and summary.json.")
+    ] = None,
+    force: Force = False,
+    json: Json = False,
+) -> None:
+    """All linkages that take pairs of angles, or poses of a link (extra 'design')."""
+    from sevenbar.design.exact.report import ExactDesigns, exact_report
+    from sevenbar.design.exact.table import read_exact_task
+    from sevenbar.design.synthesis.function.generation import need_scipy
+
+    need_scipy()
+    checked_designs(designs)
+    report = exact_report(designs, command_line())
+    check_out(report, out, force=force)
+    given = {
+        "twist": None if twist is None else angle("--twist", twist),
+        "zeros": None if zeros is None else _zeros(zeros),
+        "samples": samples,
+        "seed": None if seed is None else seed_of(seed),
+    }
+    task = read_exact_task(table)
+    with progress_bar(f"all answers to {table.name}"):
+        found = task.answers(linkage, **{name: value for name, value in given.items() if value is not None})
+    deliver(ExactDesigns(found, table.name, task.length_unit), report, out, json=json, force=force)
+
+
+def _zeros(text: str) -> tuple[float, float]:
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise RequestError(
+            f"--zeros: {shown(text)} is not two angles; give those of crank and rocker, as in 30deg,90deg"
+        )
+    first, second = (angle("--zeros", part) for part in parts)
+    return first, second

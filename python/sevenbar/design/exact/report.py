@@ -1,0 +1,130 @@
+"""Exact answers as people and programs read them: printed, as JSON, as a folder of linkages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from sevenbar.design.candidates import Refusal
+from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers, answer_facts
+from sevenbar.design.exact.dyads import Line
+from sevenbar.design.exact.given import place_text
+from sevenbar.design.files import design_files
+from sevenbar.reporting.files import Report
+from sevenbar.reporting.page import Facts, number_table
+
+#: Closure errors, relative to the size of the linkage, below which nothing is to be seen but rounding.
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class ExactDesigns:
+    """Answers with the source of their task and its unit of lengths."""
+
+    found: ExactAnswers
+    source: str
+    length_unit: str
+
+    @cached_property
+    def candidates(self) -> tuple[ExactAnswer, ...]:
+        """The answers in the order of the report: those without defects first."""
+        return tuple(sorted(self.found.answers, key=lambda answer: isinstance(answer.verdict, Refusal)))
+
+
+def exact_report(count: int, command: str) -> Report[ExactDesigns]:
+    """How answers are reported, with files of at most `count` linkages; their heads name the `command`."""
+    files = design_files(count, (), head=partial(_head, command), as_dict=as_dict)
+    return Report(partial(text, count), as_dict, files)
+
+
+def text(count: int, designs: ExactDesigns) -> RenderableType:
+    """The answers for people, with the first `count` linkages."""
+    found, facts = designs.found, Facts()
+    facts.add("task", f"{found.task} of {designs.source}", "bold")
+    for label, words in answer_facts(found):
+        facts.add(label, words)
+    parts: list[RenderableType] = [Text("All answers", style="bold underline"), facts.grid]
+    if found.dyads:
+        unit = designs.length_unit
+        size = max(float(abs(line.at).max()) for dyad in found.dyads for line in (dyad.ground, dyad.body))
+        plane = all(_flat(line, size) for dyad in found.dyads for line in (dyad.ground, dyad.body))
+        rows = [
+            [str(i), dyad.kind, *(_place(line, size, plane) for line in (dyad.ground, dyad.body))]
+            for i, dyad in enumerate(found.dyads, 1)
+        ]
+        heads = ["dyad", "joints", f"at the ground\n[{unit}]", f"at the link in pose 1\n[{unit}]"]
+        parts += [Text(), number_table(heads, rows, words=[1, 2, 3])]
+    if designs.candidates:
+        rows = [
+            [
+                str(i),
+                answer.linkage.name,
+                str(answer.columns["motion_type"]),
+                answer.defect,
+                f"{answer.error:.1e}",
+            ]
+            for i, answer in enumerate(designs.candidates[:count], 1)
+        ]
+        heads = ["design", "linkage", "motion type", "defect", "closure\nerror"]
+        parts += [Text(), number_table(heads, rows, words=[1, 2, 3])]
+    left = len(designs.candidates) - count
+    if left > 0:
+        parts += [Text(), Text(f"and {left} more; --json lists them all")]
+    return Group(*parts)
+
+
+def as_dict(designs: ExactDesigns) -> dict[str, Any]:
+    """The answers as plain values; inputs and outputs at the wanted poses [rad, or length]."""
+    found = designs.found
+    return {
+        "format": 1,
+        "task": found.task,
+        "source": designs.source,
+        "counted": found.counted,
+        "theory": found.theory,
+        "found": found.found,
+        "real": found.real,
+        "how": found.how,
+        "dyads": [
+            {
+                "joints": dyad.kind,
+                "ground": dyad.ground.written("ground", np.zeros(3)),
+                "link": dyad.body.written("link", np.zeros(3)),
+            }
+            for dyad in found.dyads
+        ],
+        "designs": [
+            {
+                "design": i,
+                "name": answer.linkage.name,
+                "inputs": answer.claim.inputs.tolist(),
+                "outputs": answer.claim.outputs.tolist(),
+                **answer.columns,
+            }
+            for i, answer in enumerate(designs.candidates, 1)
+        ],
+    }
+
+
+def _flat(line: Line, size: float) -> bool:
+    """Whether a joint moves its link in the plane of x and y."""
+    lies = abs(line.axis[2]) <= ROUNDING if line.kind == "P" else abs(line.axis[2]) >= 1 - ROUNDING
+    return bool(lies and abs(line.at[2]) <= ROUNDING * size)
+
+
+def _place(line: Line, size: float, plane: bool) -> str:
+    """Where a joint is: "(10, -2.5)" for a turning one in a plane, else with its direction, too."""
+    if plane and line.kind == "R":
+        return place_text(line.at[:2], size)
+    if plane:
+        return f"{place_text(line.at[:2], size)} along {place_text(line.axis[:2], 1.0)}"
+    return f"{place_text(line.at, size)} along {place_text(line.axis, 1.0)}"
+
+
+def _head(command: str, designs: ExactDesigns) -> list[str]:
+    return [f"answer to: {designs.found.task} of {designs.source}", f"made by: {command}"]
