@@ -301,6 +301,16 @@ def test_a_swing_and_a_travel_are_met_exactly():
 
 
 @pytest.mark.slow
+def test_a_swing_as_quick_one_way_as_back_is_met_though_change_points_are_near():
+    square = {"angle": (math.pi / 2, math.pi / 2)}
+    task = SurveyTask(SwingWish(math.radians(60), 1.0), square, count=40000, tolerance=math.radians(4))
+    found = survey(task, designs_wanted=3, threads=1)
+    assert found.polished > 6
+    for candidate in found.candidates:
+        assert candidate.error_greatest < 1e-9
+        assert candidate.transmission_lowest > math.radians(70)
+
+
 def test_pairs_are_met_as_well_as_can_be():
     want = wish_of_pairs(np.radians([0, 20, 40, 60]), np.radians([0, 31, 50, 64]))
     found = survey(SurveyTask(want, count=40000, tolerance=math.radians(4)), designs_wanted=1, threads=1)

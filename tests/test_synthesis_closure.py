@@ -16,7 +16,6 @@ from sevenbar.design.closure import (
     transmission_slopes,
     transmissions,
 )
-from sevenbar.design.limits import Limits, size_room
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 
 DESIGNS = np.array(
@@ -85,20 +84,6 @@ def test_there_is_no_output_where_the_input_cannot_stand():
     limit = linkage(row[0]).motion().limits[0]
     beyond = np.array([limit + 0.1])
     assert np.isnan(outputs(row, beyond, 0)).all()
-
-
-def test_the_room_for_the_size_is_negative_just_where_a_design_is_too_large_or_too_small():
-    limits = Limits(size=(50.0, 1000.0))
-    good = np.array([300.0, -999.0, 250.0, 640.0, 51.0, -150.0])
-    assert size_room(good, limits)[0].min() > 0
-    for column, value in ((1, -1100.0), (4, 40.0), (5, 1030.0), (3, 1100.0)):
-        bad = good.copy()
-        bad[column] = value
-        room, slopes = size_room(bad, limits)
-        assert room.min() < 0
-        step = np.array([1.0, -2.0, 3.0, 1.0, -1.0, 2.0])
-        moved, _ = size_room(bad + step, limits)
-        np.testing.assert_allclose(moved - room, slopes @ step, atol=1e-12)
 
 
 def test_a_draft_of_a_design_has_its_dimensions():

@@ -24,7 +24,7 @@ def linkage(row):
 def polish_of(row, circuit):
     """The polishing of a design for the swing and the time ratio that it has, its unknowns, and its branch."""
     want = SwingWish(circuit.swing, circuit.time_ratio)
-    bounds = {name: (-5.0, 5.0) for name in ("M", "N", "D")} | {name: (0.1, 5.0) for name in ("L1", "L2")}
+    bounds = dict.fromkeys(("M", "N", "D"), (-5.0, 5.0)) | dict.fromkeys(("L1", "L2"), (0.1, 5.0))
     task = SurveyTask(want, bounds | {"angle": (math.pi / 2, math.pi / 2)}, transmission_lowest=0.0)
     polish = Polish(task, np.array([*row, math.pi / 2, circuit.angle.lowest_at]), circuit.index)
     return polish, polish.packed()
@@ -67,7 +67,9 @@ def test_a_swing_beyond_half_a_turn_is_no_swing_the_other_way_round():
     """The output's difference counts along the way to the high end, not by the short way round."""
     found = swing_generation(math.radians(200), 1.0, limits=Limits(), count=1)
     for candidate in found.candidates:
-        assert math.degrees(candidate.draft.linkage.motion().circuits[candidate.circuit].swing) == pytest.approx(200.0)
+        assert math.degrees(
+            candidate.draft.linkage.motion().circuits[candidate.circuit].swing
+        ) == pytest.approx(200.0)
     assert "swing 160 deg" not in "".join(refusal.detail for refusal in found.refusals)
 
 
@@ -120,7 +122,11 @@ def test_no_random_crank_rocker_of_the_wish_transmits_better():
     rivals = 0
     for row in rows[near]:
         circuit = linkage(row).motion(36).circuits[0]
-        if circuit.time_ratio is None or circuit.time_ratio > 1.02 or abs(circuit.swing - math.radians(60)) > 0.02:
+        if (
+            circuit.time_ratio is None
+            or circuit.time_ratio > 1.02
+            or abs(circuit.swing - math.radians(60)) > 0.02
+        ):
             continue
         rivals += 1
         # within 0.02 rad of the wish, a rival may be better by about as much

@@ -51,7 +51,7 @@ def exact(
     """All linkages that take pairs of angles, or poses of a link (extra 'design')."""
     from sevenbar.design.exact.report import ExactDesigns, exact_report
     from sevenbar.design.exact.table import read_exact_task
-    from sevenbar.design.synthesis.function.generation import need_scipy
+    from sevenbar.design.extra import need_scipy
 
     need_scipy()
     checked_designs(designs)

@@ -85,26 +85,6 @@ class Limits:
         return "; ".join(parts) or "none"
 
 
-#: (longest dimension, its sign, shortest link) of each inequality of `size_room`, as columns of a row (6,).
-_PAIRS = [
-    (column, sign, short)
-    for column in range(6)
-    for sign in ((1.0,) if column in (2, 3, 4) else (1.0, -1.0))
-    for short in (2, 3, 4)
-    if column != short
-]
-
-
-def size_room(row: Floats, limits: Limits) -> tuple[Floats, Floats]:
-    """What must not be negative for the ratio of the lengths (k,), and its derivatives (k, 6)."""
-    values, slopes = np.empty(len(_PAIRS)), np.zeros((len(_PAIRS), 6))
-    for k, (column, sign, short) in enumerate(_PAIRS):
-        values[k] = row[short] - sign * row[column] / limits.ratio
-        slopes[k, short] += 1.0
-        slopes[k, column] -= sign / limits.ratio
-    return values, slopes
-
-
 def transmission_room(row: Floats, inputs: Floats, limits: Limits) -> tuple[Floats, Floats, Floats]:
     """sin^2 of the transmission angle less that of its limit at inputs (m,); must not be negative.
 

@@ -1,10 +1,9 @@
 """The best linkages of a survey made better with exact slopes, and checked by the ordinary analysis.
 
 Unknown are the numbers that have a range, the input's start, and where they count the output's zero and the
-seats of both balls.
-By linear programs (`programs`) the greatest error is made least, or the least transmission angle or the
-greatest ball angle as good as can be with what is wanted met; bounds and limits are inequalities. A linkage
-that ends worse than it began, or whose new form fails the check, stays as it was drawn.
+seats of both balls. By linear programs (`programs`) the greatest error is made least, or the least transmission
+angle or the greatest ball angle as good as can be with what is wanted met, to which Newton's steps bring each
+trial back; bounds and limits are inequalities. A linkage that ends worse than it began, or whose new form fails the check, stays as it was drawn.
 """
 
 from __future__ import annotations
@@ -118,7 +117,9 @@ class Polish:
             return np.array([off]), self._wide(slopes[None], z)
         if isinstance(self.task.want, SwingWish):
             off = np.append(now.still[[low, high]], now.output[high] - now.output[low] - self.wanted[1])
-            slopes = np.vstack([now.still_slopes[[low, high]], now.output_slopes[high] - now.output_slopes[low]])
+            slopes = np.vstack(
+                [now.still_slopes[[low, high]], now.output_slopes[high] - now.output_slopes[low]]
+            )
             return off, self._wide(slopes, z)
         return np.zeros(0), np.zeros((0, len(z)))
 
@@ -308,8 +309,9 @@ def judged(task: SurveyTask, numbers: Floats, kept: Kept) -> Candidate | Refusal
 def swung(want: SwingWish, found: Candidate) -> Candidate:
     """A crank-rocker with the swing and the time ratio that its circuit has, exactly."""
     circuit = found.draft.linkage.motion().circuits[found.circuit]
+    assert circuit.angle is not None
     swing, ratio = circuit.swing or 0.0, circuit.time_ratio or math.inf
-    late = abs(math.tau * ratio / (1 + ratio) - want.slow)
+    late = abs(math.tau / (1 + 1 / ratio) - want.slow)
     error = max(abs(swing - want.angle), late)
     figures = {
         **found.claim.figures,

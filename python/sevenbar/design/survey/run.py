@@ -11,6 +11,7 @@ from functools import partial, reduce
 from operator import add
 from pathlib import Path
 
+from sevenbar.design.extra import need_scipy
 from sevenbar.design.survey.drawn import Drawn
 from sevenbar.design.survey.journal import Journal
 from sevenbar.design.survey.loops import LoopSurvey
@@ -18,7 +19,6 @@ from sevenbar.design.survey.polish import designs
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.tally import BEST, SurveyTally
 from sevenbar.design.survey.task import SurveyTask
-from sevenbar.design.extra import need_scipy
 from sevenbar.errors import RequestError
 from sevenbar.sweep.parts import other_maker
 from sevenbar.sweep.plan import maker

@@ -1,9 +1,12 @@
 """Swing and time ratio: RSSR crank-rockers whose output rocks through an angle, slower one way than back.
 
-Of crank-rockers drawn in closed form those nearest to the wish are polished as the best of a survey are: both
-ends of the swing stand still, G_alpha = 0 (G of `closure`, (1)), one stroke of the crank apart and one swing of
-the output. These are three equations for the five ratios and the input at the low end; the three numbers that
-remain make the least transmission angle of the whole turn as great as can be.
+Of crank-rockers drawn in closed form those nearest to the wish are polished as the best of a survey are. With
+G of `closure`, (1), the input u at the low end, the stroke s of the crank and the swing w
+
+    G_alpha(u) = 0,      G_alpha(u + s) = 0,      beta(u + s) - beta(u) = w                               (1)
+
+are three equations for the five ratios and u; the three numbers that remain make the least transmission angle
+of the whole turn as great as can be.
 
 Source: docs/theory_design.md, (27).
 """
@@ -49,7 +52,8 @@ FITTED_EACH, FITTED_LEAST = 4, 24
 #: Two starts are one where the arctangent of no ratio differs by more.
 START_APART = 0.12
 
-#: Of starts that end in one design so many are enough; those that follow keep their own N, so that designs differ.
+#: Of starts that end in one design so many are enough; those that follow keep their own N, so that designs
+#: differ.
 ENOUGH = 8
 
 #: Gain of a squared sine that is not worth another step.
@@ -145,19 +149,17 @@ def _most_alike(ends: list[Floats]) -> int:
 
 
 def _task(want: SwingWish, limits: Limits, held: float | None) -> SurveyTask:
-    """The wish as polishing has it: axes at right angles, L3 = 1, what limits the size; N where it is held."""
+    """The wish as polishing has it: axes at right angles, L3 = 1, the limits of the size; N may be `held`."""
     ratio, square = limits.ratio, math.pi / 2
-    bounds = {name: (-ratio, ratio) for name in ("M", "N", "D")} | {"angle": (square, square)}
-    bounds |= {name: (1 / ratio, ratio) for name in ("L1", "L2")} | {"L3": (1.0, 1.0)}
+    bounds = dict.fromkeys(("M", "N", "D"), (-ratio, ratio)) | {"angle": (square, square)}
+    bounds |= dict.fromkeys(("L1", "L2"), (1 / ratio, ratio)) | {"L3": (1.0, 1.0)}
     if held is not None:
         bounds["N"] = held, held
     # a margin is left that Newton's last steps may use
     return SurveyTask(want, bounds, transmission_lowest=0.0, ratio=ratio ** (1 - MARGIN), rank="transmission")
 
 
-def _chosen(
-    want: SwingWish, limits: Limits, most: int, seed: int
-) -> tuple[list[tuple[Floats, int]], int]:
+def _chosen(want: SwingWish, limits: Limits, most: int, seed: int) -> tuple[list[tuple[Floats, int]], int]:
     """Crank-rockers of a Sobol sequence that are nearest to the wish and differ; how many were looked at.
 
     Each as the numbers (8,) of `skew_closure`, the input's start at its low end, and the branch.
