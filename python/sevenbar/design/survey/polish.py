@@ -1,9 +1,10 @@
 """The best linkages of a survey made better with exact slopes, and checked by the ordinary analysis.
 
 Unknown are the numbers that have a range, the input's start, and where they count the output's zero and the
-seats of both balls. By linear programs (`programs`) the greatest error is made least, or the least transmission
-angle or the greatest ball angle as good as can be with what is wanted met, to which Newton's steps bring each
-trial back; bounds and limits are inequalities. A linkage that ends worse than it began, or whose new form fails the check, stays as it was drawn.
+seats of both balls. By linear programs (`programs`) the greatest error is made least, or the least
+transmission angle or the greatest ball angle as good as can be with what is wanted met, to which Newton's
+steps bring each trial back; bounds and limits are inequalities. A linkage that ends worse than it began, or
+whose new form fails the check, stays as it was drawn.
 """
 
 from __future__ import annotations
