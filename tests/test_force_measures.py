@@ -57,7 +57,7 @@ def test_measures_are_those_of_the_sizing() -> None:
 def test_derivatives_by_dimensions_are_those_of_differences(name: str) -> None:
     linkage, _ = loaded_circuit(name)
     joint = linkage.joints[1].name
-    names = ["peak_torque", "rms_torque", f"peak_force:{joint}"]
+    names = ["peak_torque", "rms_torque", "peak_power", "peak_shaking", f"peak_force:{joint}"]
     slopes = gradient(linkage.motion())
     numbers = Numbers(linkage)
     checked = 0
@@ -82,7 +82,7 @@ def test_derivatives_by_masses_add_up_to_what_masses_do_alone() -> None:
     masses = np.array([bodies[0].mass for _, bodies in sorted(alone.loading.bodies.items())])
     found = mass_gradient(alone.motion())
     # weights and inertia alone are linear in all masses together
-    for name in ("peak_torque", "rms_torque", "peak_force:theta_3"):
+    for name in ("peak_torque", "rms_torque", "peak_power", "peak_shaking", "peak_force:theta_3"):
         assert abs(found[name].slopes @ masses - found[name].value) < 1e-9 * found[name].value
 
 

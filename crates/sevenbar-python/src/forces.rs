@@ -92,8 +92,8 @@ impl Acting {
 
 /// At closed poses (n, columns), with speed and acceleration of the input (n, 2) and the factors of the loads (n, loads), in seats
 /// (joint, frame (4, 4)): torque (n,), what holds idle freedoms (n, held), energies and supplied power (n, 3), wrenches (n, seats, 6),
-/// seats (n, seats, 12), shaking (n, 6), undetermined wrenches (n, redundant, 6); and by the numbers torque (n, numbers) and
-/// wrenches (n, numbers, seats, 6), for no numbers unless wanted. NaN at dead centres of the input.
+/// seats (n, seats, 12), shaking (n, 6), undetermined wrenches (n, redundant, 6); and by the numbers torque (n, numbers),
+/// wrenches (n, numbers, seats, 6) and shaking (n, numbers, 6), for no numbers unless wanted. NaN at dead centres of the input.
 #[pyfunction]
 #[expect(clippy::too_many_arguments)]
 pub(crate) fn reactions<'py>(
@@ -145,5 +145,6 @@ pub(crate) fn reactions<'py>(
         shaped(py, found.free, &[rows, found.redundant, 6])?,
         shaped(py, found.torque_by_number, &[rows, all])?,
         shaped(py, found.wrenches_by_number, &[rows, all, count, 6])?,
+        shaped(py, found.shaking_by_number, &[rows, all, 6])?,
     ])
 }

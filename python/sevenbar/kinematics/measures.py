@@ -319,7 +319,7 @@ def gradient(motion: Motion, circuit: int = 0, *, also: Sequence[str] = ()) -> d
 
 
 def mass_gradient(motion: Motion, circuit: int = 0) -> dict[str, MeasureSlopes]:
-    """Peak and RMS torque and the peak force of each joint, with derivatives by each link's mass [1/kg].
+    """Peaks of torque, power, shaking and joint forces, RMS torque, with derivatives by each mass [1/kg].
 
     In the order of the links that have a body; a body's inertia grows along with its mass. Nothing where no
     link has a body, or the circuit does not go round at constant speed.

@@ -12,10 +12,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.curves.curve import Peak
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.shaking import shaking_along
@@ -24,6 +26,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.dynamics.forces import ForceSolver
 from sevenbar.kinematics.numbers.gradients import MeasureSlopes, poses_at
 from sevenbar.kinematics.numbers.sensitivity import Numbers
+from sevenbar.text.units import LENGTHS
 
 #: A pose found is the peak's own where it gives its value to this share of it.
 SAME_VALUE = 1e-6
@@ -52,16 +55,19 @@ def peak_shaking(circuit: Circuit) -> float | None:
 
 @dataclass(frozen=True, eq=False)
 class _Slopes:
-    """Torque (n,) and reactions (n, joints, 6) at poses, with derivatives (n, k) and (n, k, joints, 6)."""
+    """Torque (n,), joint forces (n, joints, 3) and shaking force (n, 3), with derivatives by k numbers."""
 
     torque: Floats
-    torque_by: Floats
     forces: Floats
+    shaking: Floats
+    #: (n, k), (n, k, joints, 3), (n, k, 3)
+    torque_by: Floats
     forces_by: Floats
+    shaking_by: Floats
 
 
 def force_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> Iterator[MeasureSlopes]:
-    """Peak and RMS torque and the peak force of each joint, by the description's numbers.
+    """Peaks of torque, power, shaking and joint forces, and the RMS torque, by the description's numbers.
 
     Nothing where nothing acts, or the circuit does not go round at constant speed.
     """
@@ -70,10 +76,7 @@ def force_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> Iterator[M
         return
     solver = ForceSolver(numbers.linkage, loading, circuit.input_column, by_numbers=True)
 
-    def slopes(inputs: Floats, q: Floats) -> _Slopes:
-        return _by_dimensions(solver, inputs, q, speed)
-
-    yield from _measured(solver, circuit, slopes)
+    yield from _measured(solver, circuit, lambda inputs, q: _solved(solver, inputs, q, speed))
 
 
 def mass_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> Iterator[MeasureSlopes]:
@@ -88,31 +91,33 @@ def mass_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> Iterator[Me
     ]
 
     def slopes(inputs: Floats, q: Floats) -> _Slopes:
-        torque, forces, *_ = _solved(solver, inputs, q, speed)
+        whole = _solved(solver, inputs, q, speed)
         parts = []
         for one in alone:
             (body,) = one.bodies.values()
             own = _solved(one, inputs, q, speed)
-            parts.append((own[0] / body.mass, own[1] / body.mass))
-        return _Slopes(
-            torque, np.stack([p[0] for p in parts], axis=1), forces, np.stack([p[1] for p in parts], axis=1)
-        )
+            parts.append([part / body.mass for part in (own.torque, own.forces, own.shaking)])
+        torque_by, forces_by, shaking_by = (np.stack(part, axis=1) for part in zip(*parts, strict=True))
+        return replace(whole, torque_by=torque_by, forces_by=forces_by, shaking_by=shaking_by)
 
     yield from _measured(solver, circuit, slopes)
 
 
-def _solved(solver: ForceSolver, inputs: Floats, q: Floats, speed: float) -> list[Floats]:
-    """Torque [N m, or N] and forces (n, joints, 3) [N], then their derivatives where the solver has them."""
+def _solved(solver: ForceSolver, inputs: Floats, q: Floats, speed: float) -> _Slopes:
+    """Torque [N m, or N] and forces [N] at constant speed; derivatives where the solver has them."""
     rates = np.broadcast_to([speed, 0.0], (len(q), 2))
-    torque, _, _, wrenches, _, _, _, torque_by, wrenches_by = solver.solved(inputs, q, rates)
+    found = solver.solved(inputs, q, rates)
+    torque, _, _, wrenches, _, shaking, _, torque_by, wrenches_by, shaking_by = found
     size = solver.size
     unit = size**2 if solver.linkage.turns(solver.input) else size
-    return [unit * torque, size * wrenches[:, :, 3:], unit * torque_by, size * wrenches_by[..., 3:]]
-
-
-def _by_dimensions(solver: ForceSolver, inputs: Floats, q: Floats, speed: float) -> _Slopes:
-    torque, forces, torque_by, forces_by = _solved(solver, inputs, q, speed)
-    return _Slopes(torque, torque_by, forces, forces_by)
+    return _Slopes(
+        unit * torque,
+        size * wrenches[..., 3:],
+        size * shaking[:, 3:],
+        unit * torque_by,
+        size * wrenches_by[..., 3:],
+        size * shaking_by[..., 3:],
+    )
 
 
 def _measured(
@@ -125,39 +130,53 @@ def _measured(
     if sizing is None:
         return
     names = list(found.reactions)
-    unit = found.unit
-    peak = sizing.peak_torque
 
-    def at(value: float, of: Callable[[_Slopes], tuple[Floats, Floats]]) -> Floats | None:
-        """The derivatives where the quantity has its value, at an input."""
-        q = poses_at(solver.loop, circuit, place)
-        here = slopes(q[:, solver.input], q)
-        values, by = of(here)
-        apart = np.abs(values - value)
+    def peak_of(
+        name: str, unit: str, peak: Peak, of: Callable[[_Slopes], tuple[Floats, Floats]]
+    ) -> Iterator[MeasureSlopes]:
+        """A peak and its derivatives where the quantity has its value; nothing where it has it nowhere."""
+        q = poses_at(solver.loop, circuit, peak.input)
+        values, by = of(slopes(q[:, solver.input], q))
+        apart = np.abs(values - peak.value)
         if not np.isfinite(apart).any():
-            return None
+            return
         best = int(np.nanargmin(apart))
-        return by[best].copy() if apart[best] <= SAME_VALUE * (abs(value) or 1.0) else None
+        if apart[best] <= SAME_VALUE * (abs(peak.value) or 1.0):
+            yield MeasureSlopes(name, unit, peak.value, by[best].copy())
 
-    place = peak.input
-    by = at(peak.value, lambda here: (here.torque, here.torque_by))
-    if by is not None:
-        yield MeasureSlopes("peak_torque", unit, abs(peak.value), math.copysign(1.0, peak.value) * by)
-    q = solver.numbers.poses(circuit.q)
-    rows = slopes(circuit.input, q)
+    top = sizing.peak_torque
+    sign = math.copysign(1.0, top.value)
+    yield from peak_of(
+        "peak_torque",
+        found.unit,
+        replace(top, value=abs(top.value)),
+        lambda here: (sign * here.torque, sign * here.torque_by),
+    )
+    rows = slopes(circuit.input, solver.numbers.poses(circuit.q))
     if sizing.found == "series" and sizing.rms_torque > 0 and np.isfinite(rows.torque).all():
         mean = (rows.torque[:, None] * rows.torque_by).mean(axis=0)
-        yield MeasureSlopes("rms_torque", unit, sizing.rms_torque, mean / sizing.rms_torque)
+        yield MeasureSlopes("rms_torque", found.unit, sizing.rms_torque, mean / sizing.rms_torque)
+    # no number changes the speed
+    rate = circuit.speed * (LENGTHS[found.length_unit] if found.slides else 1.0)
+    yield from peak_of(
+        "peak_power", "W", sizing.peak_power, lambda here: (rate * here.torque, rate * here.torque_by)
+    )
+    shaken = shaking_along(found)
+    if shaken is not None and shaken.force.value > 0:
+        yield from peak_of(
+            "peak_shaking", "N", shaken.force, lambda here: _sizes(here.shaking, here.shaking_by)
+        )
     for name, bearing in sizing.bearings.items():
-        number, top = names.index(name), bearing.force.peak
-        place = top.input
+        joint = names.index(name)
+        yield from peak_of(f"peak_force:{name}", "N", bearing.force.peak, partial(_of_joint, joint))
 
-        def size_of(here: _Slopes, number: int = number) -> tuple[Floats, Floats]:
-            force = here.forces[:, number]
-            sizes = np.linalg.norm(force, axis=1)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                return sizes, np.einsum("nj,nkj->nk", force, here.forces_by[:, :, number]) / sizes[:, None]
 
-        by = at(top.value, size_of)
-        if by is not None:
-            yield MeasureSlopes(f"peak_force:{name}", "N", top.value, by)
+def _of_joint(joint: int, here: _Slopes) -> tuple[Floats, Floats]:
+    return _sizes(here.forces[:, joint], here.forces_by[:, :, joint])
+
+
+def _sizes(force: Floats, by: Floats) -> tuple[Floats, Floats]:
+    """The sizes (n,) of forces (n, 3), and their derivatives (n, k) by those of the forces (n, k, 3)."""
+    sizes = np.linalg.norm(force, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return sizes, np.einsum("nj,nkj->nk", force, by) / sizes[:, None]

@@ -54,6 +54,8 @@ pub struct Reactions {
     pub torque_by_number: Vec<f64>,
     /// Of the wrenches, their frames moving along.
     pub wrenches_by_number: Vec<f64>,
+    /// Of the shaking (rows, numbers, 6).
+    pub shaking_by_number: Vec<f64>,
 }
 
 /// Corrections of the wrench by what it leaves over.
@@ -131,6 +133,7 @@ pub fn reactions(
         redundant,
         torque_by_number: nan(numbers),
         wrenches_by_number: nan(numbers * seats.len() * 6),
+        shaking_by_number: nan(numbers * 6),
     };
     for (row, at) in values.chunks(width).enumerate() {
         let (speed, acceleration) = (speeds[2 * row], speeds[2 * row + 1]);
@@ -381,7 +384,9 @@ impl Driven<'_> {
             };
             let input = numbered.input;
             let torque = power(&screw(input), &before(self.joint_of(input))) - acts.in_joints[input];
-            out.torque_by_number[row * numbered.numbers + number] = torque.0[1];
+            let place = row * numbered.numbers + number;
+            out.torque_by_number[place] = torque.0[1];
+            out.shaking_by_number[6 * place..][..6].copy_from_slice(&acts.shaking.map(|x| x.0[1]));
             for (i, seat) in seats.iter().enumerate() {
                 let frame = moving.around.before[seat.joint].then(&seat.frame);
                 let (spin, slide) = parts(&changes.before[seat.joint]);
@@ -393,7 +398,7 @@ impl Driven<'_> {
                 let carried = add(cross(&spin, &moment), cross(&slide, &force));
                 let own: Twist =
                     std::array::from_fn(|k| slope[k] - if k < 3 { carried[k] } else { turned[k - 3] });
-                let place = (row * numbered.numbers + number) * seats.len() + i;
+                let place = place * seats.len() + i;
                 out.wrenches_by_number[6 * place..][..6].copy_from_slice(&seen(&frame, &own));
             }
         }
