@@ -191,7 +191,9 @@ class Polish:
         z = self.packed()
         if z is None:
             return self.numbers
-        return self.unpacked(self.exact(lowered(self.values, z, worth=self.worth, mended=self.exact)))
+        # the ends of a swing bend away from a step, a travel hardly does
+        mended = self.exact if isinstance(self.task.want, SwingWish) else np.copy
+        return self.unpacked(self.exact(lowered(self.values, z, worth=self.worth, mended=mended)))
 
     def _wide(self, slopes: Floats, z: Floats) -> Floats:
         """Slopes by the unknowns (.., z), of those by the numbers (.., 8)."""
