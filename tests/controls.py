@@ -67,9 +67,9 @@ def slider(where, label):
 def drag(where, label, *fractions, steps=8):
     """Hold a slider's thumb and pull it to fractions of its way, one after another, then let go."""
     page = page_of(where)
+    # waits until the panel stands still: before it does, the boxes are where the slider was
+    slider(where, label).hover()
     track = row(where, label).locator(".mantine-Slider-track").bounding_box()
-    thumb = slider(where, label).bounding_box()
-    page.mouse.move(thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2)
     page.mouse.down()
     for fraction in fractions:
         page.mouse.move(track["x"] + fraction * track["width"], track["y"] + track["height"] / 2, steps=steps)

@@ -121,7 +121,7 @@ def commands_with_a_linkage():
         if hasattr(command, "list_commands"):
             for name in command.list_commands(context):
                 yield from within(command.get_command(context, name), (*words, name))
-        elif any(parameter.name == "linkage" for parameter in command.params):
+        elif any((one.name, one.param_type_name) == ("linkage", "argument") for one in command.params):
             yield " ".join(words), {option for parameter in command.params for option in parameter.opts}
 
     return dict(within(typer.main.get_command(app), ()))

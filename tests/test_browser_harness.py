@@ -1,11 +1,13 @@
 """The hands that the studio's tests lend to a browser, tried on controls whose values are known from the server."""
 
+import re
 import sys
 import time
 
 import numpy as np
 import pytest
 import viser
+from playwright.sync_api import expect
 
 from browser import PATIENCE, Pages, canvas_colours, chromium, differs, drawn, settled, tinted
 from controls import (
@@ -131,6 +133,10 @@ def test_what_a_hand_does_to_a_control_is_what_the_server_receives(desk, page):
 def test_a_slider_pulled_to_a_part_of_its_way_stands_there(desk, page):
     open_tab(page, "Plain")
     drag(page, "A slider", 0.9, 0.25)
+    # a page that lags shows it some time after the hand has let go
+    expect(slider(page, "A slider")).to_have_attribute(
+        "aria-valuenow", re.compile("^2[3-6]"), timeout=PATIENCE * 1e3
+    )
     assert float(slider(page, "A slider").get_attribute("aria-valuenow")) == pytest.approx(25, abs=1.5)
     assert desk.gets("slider", float(shown(page, "A slider")))
 

@@ -33,6 +33,7 @@ PAGES = {
     "design swing": "synthesis.md",
     "design task": "design-task.md",
     "design survey": "synthesis.md",
+    "design exact": "synthesis.md",
     "design path": "path.md",
     "design point": "points.md",
     "design inertia": "points.md",

@@ -87,6 +87,10 @@ EXAMPLES = {
         "sevenbar design task examples/design/steering_task.toml -o steering",
         "sevenbar design task examples/design/nozzle_task.toml --designs 3 --json",
     ),
+    "exact": (
+        "sevenbar design exact poses.csv -o dyads",
+        "sevenbar design exact pairs.csv --twist 90deg --zeros 30deg,90deg --json",
+    ),
     "function": ("sevenbar design function --y 'x^2' --x 0:1 -o parabola",),
 }
 
