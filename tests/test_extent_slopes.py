@@ -24,7 +24,7 @@ def test_derivatives_of_ranges_bends_and_distances_are_those_of_differences(name
     # where two pairs of rods, or both ways of one without length, are as near the distance has a kink
     names += ["clearance"] if linkage.kind in ("RSSR", "RSUR") else []
     motion, measures = linkage.motion(), measures_named(names)
-    found, values = gradient(motion, also=names), rows_of(motion, measures)[0]
+    found, values = gradient(motion, only=names), rows_of(motion, measures)[0]
     draft = Draft.of_linkage(linkage)
     sensitivity = motion.circuits[0].sensitivity()
     for one in names:
@@ -64,7 +64,7 @@ def test_a_given_seat_has_the_derivatives_of_its_greatest_angle():
 
 
 def test_a_stud_that_runs_on_a_circular_cone_has_a_kink_there():
-    found = gradient(sb.load("rssr").motion(), also=["ball_angle:ball_a"])["ball_angle:ball_a"]
+    found = gradient(sb.load("rssr").motion(), only=["ball_angle:ball_a"])["ball_angle:ball_a"]
     assert np.isnan(found.slopes).all()
 
 

@@ -76,6 +76,24 @@ def test_derivatives_by_dimensions_are_those_of_differences(name: str) -> None:
     assert checked > 5
 
 
+def test_only_the_measures_that_are_asked_for_have_derivatives_and_the_same() -> None:
+    linkage, _ = loaded_circuit("rssr")
+    motion = linkage.motion(72)
+    every, masses = gradient(motion), mass_gradient(motion)
+    for names in (["rms_torque"], ["peak_shaking", "swing"], ["transmission_lowest", "peak_force:crank"]):
+        found = gradient(motion, only=names)
+        assert set(found) == set(names)
+        for name, one in found.items():
+            assert one.value == pytest.approx(every[name].value, rel=1e-12)
+            assert one.slopes == pytest.approx(every[name].slopes, rel=1e-9, nan_ok=True)
+        by_masses = mass_gradient(motion, only=names)
+        assert set(by_masses) == set(names) & set(masses)
+        assert all(one.slopes == pytest.approx(masses[n].slopes, rel=1e-9) for n, one in by_masses.items())
+    assert gradient(motion, only=["motion_type", "usable"]) == {}
+    with pytest.raises(sb.errors.RequestError, match="'swign' is not a measure; did you mean 'swing'"):
+        gradient(motion, only=["swign"])
+
+
 def test_derivatives_by_masses_add_up_to_what_masses_do_alone() -> None:
     linkage, _ = loaded_circuit("seven_r")
     alone = linkage.loaded(loads=[], springs=[])

@@ -221,6 +221,16 @@ JOINT_MEASURES: dict[str, tuple[Quantity, Callable[[Bearing], float], str]] = {
 OF_JOINTS = (*JOINT_MEASURES, *JOINT_EXTENTS)
 
 
+def is_of_forces(name: str) -> bool:
+    """Whether a measure is of what acts on the linkage."""
+    return name in FORCE_MEASURES or name.partition(":")[0] in JOINT_MEASURES
+
+
+def is_extent(name: str) -> bool:
+    """Whether a measure is of ranges, balls, distances or stops."""
+    return name in EXTENT_MEASURES or name.partition(":")[0] in JOINT_EXTENTS
+
+
 def _of_joint(name: str) -> Measure | None:
     """The measure of a joint by its name; `None` where the name is of none."""
     kind, colon, joint = name.partition(":")
@@ -294,14 +304,17 @@ def rows_of(motion: Motion, measures: Sequence[Measure]) -> list[dict[str, float
     return [{"circuit": c.index} | shared | {m.name: m.value(c) for m in own} for c in motion.circuits]
 
 
-def gradient(motion: Motion, circuit: int = 0, *, also: Sequence[str] = ()) -> dict[str, MeasureSlopes]:
+def gradient(
+    motion: Motion, circuit: int = 0, *, only: Sequence[str] | None = None
+) -> dict[str, MeasureSlopes]:
     """The measures of a circuit that are numbers, by name, with derivatives by the description's numbers.
 
     Those of `MEASURES` that vary smoothly, and angle_lowest, angle_highest of the output and limit_1 .. of
-    the input besides; those of ranges, balls and distances that the linkage's stops are about, and `also` by
-    their names; angles in degrees. Derivatives (k,) are exact, in the order of the names that
+    the input besides; those of forces where anything acts; those of ranges, balls and distances that the
+    linkage's stops are about. With `only` measures of these names, of any joint and ball, and nothing else is
+    worked out. Angles are in degrees. Derivatives (k,) are exact, in the order of the names that
     `Circuit.sensitivity` has, by their units; NaN where a measure has none, as at a kink. Raises
-    `RequestError` for a circuit that does not exist and a linkage made without a description.
+    `RequestError` for a circuit or a measure that does not exist and a linkage made without a description.
 
         >>> import sevenbar as sb
         >>> found = gradient(sb.load("rssr").motion())["transmission_lowest"]
@@ -312,17 +325,23 @@ def gradient(motion: Motion, circuit: int = 0, *, also: Sequence[str] = ()) -> d
     """
     chosen = chosen_circuit(motion, circuit)
     numbers = Numbers(motion.linkage)
-    found = [*measure_slopes(numbers, chosen, motion.speed), *force_slopes(numbers, chosen, motion.speed)]
-    wanted = [one.name for one in measures_named(also)] if also else []
-    found += extent_slopes(numbers, chosen, list(dict.fromkeys([*stopped_measures(numbers), *wanted])))
-    return {one.name: one for one in found}
+    names = None if only is None else [one.name for one in measures_named(only)]
+    extents = stopped_measures(numbers) if names is None else list(filter(is_extent, names))
+    found: list[MeasureSlopes] = []
+    if names is None or not all(is_extent(name) or is_of_forces(name) for name in names):
+        found += measure_slopes(numbers, chosen, motion.speed)
+    found += force_slopes(numbers, chosen, motion.speed, names)
+    found += extent_slopes(numbers, chosen, extents)
+    return {one.name: one for one in found if names is None or one.name in names}
 
 
-def mass_gradient(motion: Motion, circuit: int = 0) -> dict[str, MeasureSlopes]:
+def mass_gradient(
+    motion: Motion, circuit: int = 0, *, only: Sequence[str] | None = None
+) -> dict[str, MeasureSlopes]:
     """Peaks of torque, power, shaking and joint forces, RMS torque, with derivatives by each mass [1/kg].
 
     In the order of the links that have a body; a body's inertia grows along with its mass. Nothing where no
-    link has a body, or the circuit does not go round at constant speed.
+    link has a body, or the circuit does not go round at constant speed. `only` is as for `gradient`.
 
         >>> import sevenbar as sb
         >>> rod = sb.load("rssr").loaded(bodies={2: sb.Body(1.3, solid="rod")})
@@ -333,4 +352,6 @@ def mass_gradient(motion: Motion, circuit: int = 0) -> dict[str, MeasureSlopes]:
     Source: docs/theory_forces.md, (9).
     """
     numbers = Numbers(motion.linkage)
-    return {one.name: one for one in mass_slopes(numbers, chosen_circuit(motion, circuit), motion.speed)}
+    names = None if only is None else [one.name for one in measures_named(only)]
+    found = mass_slopes(numbers, chosen_circuit(motion, circuit), motion.speed, names)
+    return {one.name: one for one in found}

@@ -33,7 +33,7 @@ from sevenbar.errors import NotCoveredError, Problem, RequestError, shown, sugge
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.rigid import flaw_of_rotation
-from sevenbar.kinematics.measures import FORCE_MEASURES, JOINT_MEASURES
+from sevenbar.kinematics.measures import is_of_forces
 from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 from sevenbar.kinematics.ranges.ball_angle import ball_angle
 
@@ -204,7 +204,7 @@ def _free(task: DesignTask) -> Iterator[Problem]:
                 f"begins at {d.value:g}{unit}, outside {low:g}:{high:g}; "
                 "give bounds that hold it, or another start",
             )
-        if d.kind == "mass" and not any(_of_forces(name) for name in _figure_names(task)):
+        if d.kind == "mass" and not any(is_of_forces(name) for name in _figure_names(task)):
             yield Problem(
                 place, "no measure of forces is wanted or must hold, so this changes nothing; leave it out"
             )
@@ -224,10 +224,6 @@ def _owner(task: DesignTask, place: tuple[object, ...]) -> str | None:
 
 def _figure_names(task: DesignTask) -> list[str]:
     return [one.name for one in (*task.wants, *task.musts) if isinstance(one, (FigureWant, FigureMust))]
-
-
-def _of_forces(name: str) -> bool:
-    return name in FORCE_MEASURES or name.partition(":")[0] in JOINT_MEASURES
 
 
 def _used_points(task: DesignTask) -> set[str]:

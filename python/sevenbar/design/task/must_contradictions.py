@@ -30,6 +30,7 @@ from sevenbar.kinematics.measures import (
     JOINT_MEASURES,
     MEASURES,
     OF_JOINTS,
+    is_of_forces,
     measures_named,
 )
 from sevenbar.kinematics.ranges.circuit_extents import chosen
@@ -73,7 +74,7 @@ def figure_flaw(linkage: Linkage, name: str) -> str:
     names = [known.name for known in linkage.joints]
     if kind in JOINT_MEASURES and joint not in names:
         return no_joint(joint, names)
-    if (name in FORCE_MEASURES or kind in JOINT_MEASURES) and linkage.loading.is_empty:
+    if is_of_forces(name) and linkage.loading.is_empty:
         return "nothing acts on the linkage: no body, load or spring; write them into its file"
     if name.startswith("transmission") and linkage.form != "rssr" and not _transmits(linkage):
         return "this linkage has no transmission angle; leave it out"

@@ -66,23 +66,32 @@ class _Slopes:
     shaking_by: Floats
 
 
-def force_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> Iterator[MeasureSlopes]:
+#: The measures that have derivatives, those of a joint by their kind.
+WITH_SLOPES = ("peak_torque", "rms_torque", "peak_power", "peak_shaking", "peak_force")
+
+
+def force_slopes(
+    numbers: Numbers, circuit: Circuit, speed: float, only: Sequence[str] | None = None
+) -> Iterator[MeasureSlopes]:
     """Peaks of torque, power, shaking and joint forces, and the RMS torque, by the description's numbers.
 
-    Nothing where nothing acts, or the circuit does not go round at constant speed.
+    Nothing where nothing acts, or the circuit does not go round at constant speed. `only` measures of these
+    names, of all that there are.
     """
     loading = numbers.linkage.loading
-    if loading.is_empty or not circuit.goes_round:
+    if loading.is_empty or not _are_wanted(circuit, only):
         return
     solver = ForceSolver(numbers.linkage, loading, circuit.input_column, by_numbers=True)
 
-    yield from _measured(solver, circuit, lambda inputs, q: _solved(solver, inputs, q, speed))
+    yield from _measured(solver, circuit, lambda inputs, q: _solved(solver, inputs, q, speed), only)
 
 
-def mass_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> Iterator[MeasureSlopes]:
+def mass_slopes(
+    numbers: Numbers, circuit: Circuit, speed: float, only: Sequence[str] | None = None
+) -> Iterator[MeasureSlopes]:
     """The same by the mass of each link's body [kg], by their numbers rising; inertia grows along with it."""
     linkage = numbers.linkage
-    if not any(linkage.loading.bodies.values()) or not circuit.goes_round:
+    if not any(linkage.loading.bodies.values()) or not _are_wanted(circuit, only):
         return
     solver = ForceSolver(linkage, linkage.loading, circuit.input_column)
     alone = [
@@ -100,7 +109,14 @@ def mass_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> Iterator[Me
         torque_by, forces_by, shaking_by = (np.stack(part, axis=1) for part in zip(*parts, strict=True))
         return replace(whole, torque_by=torque_by, forces_by=forces_by, shaking_by=shaking_by)
 
-    yield from _measured(solver, circuit, slopes)
+    yield from _measured(solver, circuit, slopes, only)
+
+
+def _are_wanted(circuit: Circuit, only: Sequence[str] | None) -> bool:
+    """Whether a circuit has any measure of those wanted."""
+    return circuit.goes_round and (
+        only is None or any(name.partition(":")[0] in WITH_SLOPES for name in only)
+    )
 
 
 def _solved(solver: ForceSolver, inputs: Floats, q: Floats, speed: float) -> _Slopes:
@@ -121,11 +137,22 @@ def _solved(solver: ForceSolver, inputs: Floats, q: Floats, speed: float) -> _Sl
 
 
 def _measured(
-    solver: ForceSolver, circuit: Circuit, slopes: Callable[[Floats, Floats], _Slopes]
+    solver: ForceSolver,
+    circuit: Circuit,
+    slopes: Callable[[Floats, Floats], _Slopes],
+    only: Sequence[str] | None,
 ) -> Iterator[MeasureSlopes]:
-    """Each measure at its own place, or over all rows."""
+    """Each measure that is wanted at its own place, or over all rows."""
+
+    def wanted(name: str) -> bool:
+        return only is None or name in only
+
     found = circuit.forces()
-    joints = {name: one for name, one in found.reactions.items() if one.determinate[3:].all()}
+    joints = {
+        name: one
+        for name, one in found.reactions.items()
+        if one.determinate[3:].all() and wanted(f"peak_force:{name}")
+    }
     sizing = replace(found, reactions=joints).sizing()
     if sizing is None:
         return
@@ -144,24 +171,27 @@ def _measured(
         if apart[best] <= SAME_VALUE * (abs(peak.value) or 1.0):
             yield MeasureSlopes(name, unit, peak.value, by[best].copy())
 
-    top = sizing.peak_torque
-    sign = math.copysign(1.0, top.value)
-    yield from peak_of(
-        "peak_torque",
-        found.unit,
-        replace(top, value=abs(top.value)),
-        lambda here: (sign * here.torque, sign * here.torque_by),
-    )
-    rows = slopes(circuit.input, solver.numbers.poses(circuit.q))
-    if sizing.found == "series" and sizing.rms_torque > 0 and np.isfinite(rows.torque).all():
-        mean = (rows.torque[:, None] * rows.torque_by).mean(axis=0)
-        yield MeasureSlopes("rms_torque", found.unit, sizing.rms_torque, mean / sizing.rms_torque)
-    # no number changes the speed
-    rate = circuit.speed * (LENGTHS[found.length_unit] if found.slides else 1.0)
-    yield from peak_of(
-        "peak_power", "W", sizing.peak_power, lambda here: (rate * here.torque, rate * here.torque_by)
-    )
-    shaken = shaking_along(found)
+    if wanted("peak_torque"):
+        top = sizing.peak_torque
+        sign = math.copysign(1.0, top.value)
+        yield from peak_of(
+            "peak_torque",
+            found.unit,
+            replace(top, value=abs(top.value)),
+            lambda here: (sign * here.torque, sign * here.torque_by),
+        )
+    if wanted("rms_torque") and sizing.found == "series" and sizing.rms_torque > 0:
+        rows = slopes(circuit.input, solver.numbers.poses(circuit.q))
+        if np.isfinite(rows.torque).all():
+            mean = (rows.torque[:, None] * rows.torque_by).mean(axis=0)
+            yield MeasureSlopes("rms_torque", found.unit, sizing.rms_torque, mean / sizing.rms_torque)
+    if wanted("peak_power"):
+        # no number changes the speed
+        rate = circuit.speed * (LENGTHS[found.length_unit] if found.slides else 1.0)
+        yield from peak_of(
+            "peak_power", "W", sizing.peak_power, lambda here: (rate * here.torque, rate * here.torque_by)
+        )
+    shaken = shaking_along(found) if wanted("peak_shaking") else None
     if shaken is not None and shaken.force.value > 0:
         yield from peak_of(
             "peak_shaking", "N", shaken.force, lambda here: _sizes(here.shaking, here.shaking_by)

@@ -20,7 +20,6 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
 from sevenbar.curves.least_cone import angles, least_cone
-from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.rods import distance_slopes
 from sevenbar.kinematics.loop.stops import Cone
@@ -46,7 +45,7 @@ def extent_slopes(
 ) -> Iterator[MeasureSlopes]:
     """The measures `range:JOINT`, `ball_angle:JOINT` and `clearance` that are `wanted`, with derivatives.
 
-    Without a word those of the linkage's stops.
+    Without a word those of the linkage's stops. How much of a circuit is usable has none.
     """
     linkage = numbers.linkage
     names = stopped_measures(numbers) if wanted is None else list(wanted)
@@ -59,12 +58,8 @@ def extent_slopes(
             found = _of_range(course, numbers, name, linkage.column(joint, "measure"))
         elif kind == "ball_angle":
             found = _of_bend(course, numbers, name, joint)
-        elif name == "clearance":
-            found = _of_clearance(course, numbers, name)
         else:
-            raise RequestError(
-                f"also: {name} has no derivatives here; give range:JOINT, ball_angle:JOINT, clearance"
-            )
+            found = _of_clearance(course, numbers, name) if name == "clearance" else None
         if found is not None:
             found.slopes[numbers.loop(circuit.input_column).opening(circuit)] = np.nan
             yield found

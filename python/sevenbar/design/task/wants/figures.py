@@ -43,10 +43,10 @@ class Figures:
             return None
         by = np.zeros((len(read), len(values)))
         if slopes:
-            known = gradient(motion, circuit.index)
+            known = gradient(motion, circuit.index, only=self.names)
             own = {name: self._loop.all_slopes(values, one.slopes) for name, one in known.items()}
             if self._loop.free_masses:
-                for name, one in mass_gradient(motion, circuit.index).items():
+                for name, one in mass_gradient(motion, circuit.index, only=self.names).items():
                     own[name] = own[name] + self._loop.mass_slopes(one.slopes)
             rest = [i for i, name in enumerate(self.names) if not np.isfinite(own.get(name, np.nan)).all()]
             for i, name in enumerate(self.names):
