@@ -275,12 +275,8 @@ def judged(task: SurveyTask, numbers: Floats, kept: Kept) -> Candidate | Refusal
         return Refusal("assembly", "cannot reach the whole range of the input")
     angles = kept.sense * (found.output - found.output[0])
     errors, reached = _errors(task, dense, angles)
-    greatest = float(np.abs(errors).max())
-    if greatest > task.tolerance + ROUNDING:
-        return Refusal(
-            "error",
-            f"greatest error {math.degrees(greatest):.3g} deg, {math.degrees(task.tolerance):g} deg allowed",
-        )
+    if flaw := _too_far(task, float(np.abs(errors).max())):
+        return flaw
     lowest = math.asin(math.sqrt(min(max(least_square(numbers, dense), 0.0), 1.0)))
     if lowest < task.transmission_lowest - ROUNDING:
         wish = math.degrees(task.transmission_lowest)
@@ -306,7 +302,20 @@ def judged(task: SurveyTask, numbers: Floats, kept: Kept) -> Candidate | Refusal
     if isinstance(result, Refusal):
         return result
     result = replace(result, transmission_lowest=lowest)
-    return swung(task.want, result) if isinstance(task.want, SwingWish) else result
+    if isinstance(task.want, SwingWish):
+        result = swung(task.want, result)
+        # of its strokes, too
+        return _too_far(task, result.error_greatest) or result
+    return result
+
+
+def _too_far(task: SurveyTask, error: float) -> Refusal | None:
+    """The refusal of a greatest error [rad]; `None` within the tolerance."""
+    if error <= task.tolerance + ROUNDING:
+        return None
+    return Refusal(
+        "error", f"greatest error {math.degrees(error):.3g} deg, {math.degrees(task.tolerance):g} deg allowed"
+    )
 
 
 def swung(want: SwingWish, found: Candidate) -> Candidate:

@@ -178,8 +178,12 @@ def _on_bound(design: TaskDesign, task: DesignTask) -> bool:
 
 
 def _bounded(design: TaskDesign, place: int, low: float, high: float) -> str:
+    """A value; on a bound the bound itself, with a star: a zero is no 6e-15."""
     value, gap = float(design.values[place]), ON_BOUND * (high - low)
-    return f"{value:.5g}{'*' if value <= low + gap or value >= high - gap else ''}"
+    for bound in (low, high):
+        if abs(value - bound) <= gap:
+            return f"{bound:.5g}*"
+    return f"{value:.5g}"
 
 
 def _tables(found: TaskDesigns) -> list[RenderableType]:

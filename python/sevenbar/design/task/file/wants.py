@@ -57,15 +57,22 @@ def want_of(form: WantForm, linkage: Linkage, folder: Path) -> Want:
         case PosesForm():
             return _poses(form, linkage, folder)
         case FigureForm():
-            word = form.value if form.value in ("small", "great") else None
-            value = 0.0 if word else figure_value("value", form.value, linkage, form.name)
-            return FigureWant(form.name, cast(Way, word) if word else value, form.unit, form.weight)
+            return FigureWant(form.name, _goal(form, linkage), form.unit, form.weight)
         case DwellForm():
             level = _zero("level", form.level, linkage, _output(linkage))
             return DwellWant(_of_input("range", form.range, linkage), level, form.samples, form.weight)
         case StraightForm():
             ends = _of_input("range", form.range, linkage)
             return StraightWant(form.point, ends, form.length, form.samples, form.weight)
+
+
+def _goal(form: FigureForm, linkage: Linkage) -> Way | float:
+    if form.value in ("small", "great"):
+        return cast(Way, form.value)
+    try:
+        return figure_value("value", form.value, linkage, form.name)
+    except RequestError as error:
+        raise RequestError(f"{error}, or 'small' or 'great'") from None
 
 
 def _function(form: FunctionForm, linkage: Linkage, folder: Path) -> FunctionWant:
