@@ -19,7 +19,9 @@ from sevenbar.description.files import load, loads
 from sevenbar.description.forms import from_axes, from_dh, rssr
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Trace
-from sevenbar.kinematics.circuits.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
+from sevenbar.kinematics.circuits.modes import Modes, Output
+from sevenbar.kinematics.circuits.motion import ChangePoint, Motion
+from sevenbar.kinematics.circuits.search import Count, OpenRange, Search
 from sevenbar.kinematics.dynamics.link_bodies import DRAWN_IN
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Drive, Joint, Point

@@ -31,7 +31,8 @@ from sevenbar.drawing.style import letters, page_size, styled
 from sevenbar.drawing.view import Asked, view_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.motion import Modes, Motion, chosen_circuit
+from sevenbar.kinematics.circuits.modes import Modes
+from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
 from sevenbar.kinematics.circuits.poses import frames_of, walk
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.words import say

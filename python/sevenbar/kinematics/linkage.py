@@ -16,7 +16,8 @@ from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.motion import LEAST_AGREE, MOST_AGREE, Modes, Motion, Output, Solvable
+from sevenbar.kinematics.circuits.modes import Modes, Output
+from sevenbar.kinematics.circuits.motion import LEAST_AGREE, MOST_AGREE, Motion, Solvable
 from sevenbar.kinematics.dynamics.loaded import loaded
 from sevenbar.kinematics.loop.grashof import FourBar
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits.motion import Motion, Search
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.circuits.search import Search
 from sevenbar.kinematics.solvers.general import AGREE
 from sevenbar.text.words import say
 

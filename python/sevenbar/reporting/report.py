@@ -18,7 +18,8 @@ from rich.text import Text
 
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
-from sevenbar.kinematics.circuits.motion import Modes, Motion
+from sevenbar.kinematics.circuits.modes import Modes
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.extents import extents_dict

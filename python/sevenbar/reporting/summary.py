@@ -9,7 +9,8 @@ import numpy as np
 from rich.cells import cell_len
 
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.motion import Modes, Motion
+from sevenbar.kinematics.circuits.modes import Modes
+from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.reporting.circuit_quantities import Reported, Texts, cells_of, nothing
 from sevenbar.reporting.extents import extent_rows, span_rows

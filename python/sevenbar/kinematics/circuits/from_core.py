@@ -19,7 +19,8 @@ from sevenbar.kinematics.circuits.circuit_values import (
     Tally,
     Trace,
 )
-from sevenbar.kinematics.circuits.motion import ChangePoint, Count, OpenRange, Search, Solvable
+from sevenbar.kinematics.circuits.motion import ChangePoint, Solvable
+from sevenbar.kinematics.circuits.search import Count, OpenRange, Search
 from sevenbar.kinematics.loop.law import Law
 
 _STATUS_WORDS = np.array(STATUSES)

@@ -1,27 +1,28 @@
-"""What a linkage does: assembly modes, change points, every circuit and how they were found."""
+"""What a linkage does: its motion of every circuit and change point, and what answers for it."""
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Words
+from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Answers, Circuit
 from sevenbar.kinematics.circuits.extents import JointRange
-from sevenbar.kinematics.loop.columns import joint_columns, point_column
+from sevenbar.kinematics.circuits.modes import Modes
+from sevenbar.kinematics.circuits.search import Search
+from sevenbar.kinematics.circuits.table import circuit_columns
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.grashof import FourBar
 from sevenbar.kinematics.loop.law import Law
-from sevenbar.text.printing import Drawable, Printed
-from sevenbar.text.units import LENGTHS
+from sevenbar.text.printing import Drawable
 
 #: The least and the greatest closure error [rad, or relative to the size] up to which redundant constraints
 #: may be taken to agree: rounding is near the one, and another linkage near the other.
@@ -64,110 +65,6 @@ class ChangePoint:
     def isolated(self) -> bool:
         """Whether no motion leads out of it."""
         return self.ways == 0
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Output(Printed):
-    """Both branches of the closed form on n inputs; arrays (2, n), `None` above the order asked for.
-
-    `position` [rad], `velocity` [rad/s], `acceleration` [rad/s^2], `jerk` [rad/s^3]. An input without
-    solution keeps its place as NaN; so do the rates at an input dead centre. `status` says which.
-    """
-
-    position: Floats
-    velocity: Floats | None = None
-    acceleration: Floats | None = None
-    jerk: Floats | None = None
-
-    @property
-    def status(self) -> Words:
-        """The status of each value, (2, n): "ok", "dead-centre" (from order 1 on), "no-solution"."""
-        status = np.full(self.position.shape, "ok", dtype="<U15")
-        if self.velocity is not None:
-            status[np.isnan(self.velocity)] = "dead-centre"
-        status[np.isnan(self.position)] = "no-solution"
-        return status
-
-
-def _none() -> Floats:
-    return np.array([])
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Modes(Printed):
-    """All assembly modes at one input: joint values (m, columns), angles in (-pi, pi].
-
-    Turns of a ball that have no direction are NaN; `status` says which.
-    """
-
-    q: Floats
-    residual: Floats
-    completeness: Literal["closed-form", "algebraic", "searched"]
-    columns: tuple[str, ...]
-    input: float
-    #: Other poses that redundant constraints alone keep open: how much [rad, relative to the size], rising.
-    open_by: Floats = field(default_factory=_none)
-    #: The closure error [rad, relative to the size] up to which they agree; NaN where nothing is redundant.
-    agree: float = math.nan
-
-    @property
-    def status(self) -> Words:
-        """The status of each mode, (m,): "ok", or "turns-undefined" where those of a ball are."""
-        return np.where(np.isnan(self.q).any(axis=1), "turns-undefined", "ok")
-
-    def __len__(self) -> int:
-        return len(self.q)
-
-
-@dataclass(frozen=True)
-class OpenRange:
-    """A range of a joint [rad] in which its branch points are not all accounted for."""
-
-    start: float
-    end: float
-    #: Dead centres counted there and not known; `None` where solutions run to infinity, or were lost.
-    missing: int | None
-
-
-@dataclass(frozen=True)
-class Count:
-    """The account of a joint's branch points: all of them, and the modes at one value, mean all circuits.
-
-    The joint is the input, or the first that turns where the input slides.
-    """
-
-    joint: str
-    #: Real branch points, where this joint turns back on a circuit, or farther out than these are followed.
-    dead_centres: int
-    #: Complex ones near the real values, located and counted off.
-    complex_branch_points: int
-    #: Joints, of those watched, that become infinite near the real values; kept out of the count.
-    poles: int
-    #: Ranges that do not balance; none where circuits are `counted`.
-    open: tuple[OpenRange, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Search:
-    """What a search for the circuits found; of the closed form no more than that.
-
-    All modes were found at so many `values` of each of the `columns`; from `unfollowed` of them no motion
-    could be followed. `rank` is that of the joints' screws in these poses and `freedoms` those of the
-    motions out of them, `None` where there are none.
-    """
-
-    completeness: Literal["closed-form", "counted", "algebraic", "searched"]
-    columns: tuple[str, ...] = ()
-    values: int = 0
-    unfollowed: int = 0
-    rank: int | None = None
-    freedoms: int | None = None
-    #: Poses that redundant constraints alone keep open: by how much [rad, or relative to the size], rising.
-    open_by: Floats = field(default_factory=_none)
-    #: How the circuits were counted; `None` where they were not.
-    count: Count | None = None
-    #: Why they were not: modes were "searched", a solution was "lost", or with the input "still" others move.
-    uncounted: Literal["searched", "lost", "still"] | None = None
 
 
 @dataclass(frozen=True)
@@ -411,7 +308,7 @@ class Motion(Drawable):
         [36, 36]
         """
         for circuit in self.circuits:
-            yield _circuit_columns(circuit.fleeting(), self.linkage, si)
+            yield circuit_columns(circuit.fleeting(), self.linkage, si=si)
 
     def to_frame(self) -> pd.DataFrame:
         """`columns` as a pandas table (extra `[frame]`)."""
@@ -422,50 +319,6 @@ class Motion(Drawable):
                 "to_frame needs pandas; install it with: pip install 'sevenbar[frame]'"
             ) from None
         return pd.DataFrame(self.columns())
-
-
-def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt.NDArray[Any]]:
-    count = len(circuit.time)
-    length, angle = ("m", "rad") if si else (linkage.length_unit, "deg")
-    scale = LENGTHS[linkage.length_unit] if si else 1.0
-    columns: dict[str, npt.NDArray[Any]] = {
-        "circuit": np.full(count, circuit.index),
-        "branch": circuit.branch,
-        "sample": np.arange(count),
-        "status": circuit.status,
-        "time_s": circuit.time,
-    }
-    rates = (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)
-    columns |= joint_columns(linkage, rates, length=length, angle=angle, scale=scale)
-    for point in linkage.points:
-        trace = circuit.point(point.link, point.at)
-        for order, values in enumerate((trace.position, trace.velocity, trace.acceleration)):
-            for axis, letter in enumerate("xyz"):
-                head = point_column(point.name, letter, order=order, length=length)
-                columns[head] = values[:, axis] * scale
-    if circuit.transmission_angle is not None:
-        transmission = circuit.transmission_angle
-        columns[f"transmission_{angle}"] = transmission if si else np.degrees(transmission)
-    if not linkage.stops.is_empty:
-        for name, bend in circuit.bends.items():
-            columns[f"{name}_bend_{angle}"] = bend if si else np.degrees(bend)
-    if linkage.stops.stops:
-        columns["within_stops"] = circuit.allowed.within.astype(np.int64)
-    head, factor = _advantage_column(circuit, length, scale)
-    columns[head] = circuit.mechanical_advantage * factor
-    columns[f"residual_{length}"] = circuit.residual * scale
-    return columns
-
-
-def _advantage_column(circuit: Circuit, length: str, scale: float) -> tuple[str, float]:
-    """The column of the mechanical advantage, and a factor: torque over force is a length, and backwards."""
-    match circuit.input_turns, circuit.output_turns:
-        case True, False:
-            return f"mechanical_advantage_1_{length}", 1.0 / scale
-        case False, True:
-            return f"mechanical_advantage_{length}", scale
-        case _:
-            return "mechanical_advantage", 1.0
 
 
 def chosen_circuit(motion: Motion, index: int) -> Circuit:

@@ -13,7 +13,9 @@ from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import SPIN_UNDEFINED, Trace
 from sevenbar.kinematics.circuits.from_core import change_points_from, circuit_from
-from sevenbar.kinematics.circuits.motion import Modes, Motion, Output, Search, Solvable
+from sevenbar.kinematics.circuits.modes import Modes, Output
+from sevenbar.kinematics.circuits.motion import Motion, Solvable
+from sevenbar.kinematics.circuits.search import Search
 from sevenbar.kinematics.loop.law import Law
 from sevenbar.kinematics.numbers.sensitivity import sensitivity_of
 

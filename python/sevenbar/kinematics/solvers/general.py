@@ -17,7 +17,8 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.circuits.from_core import change_points_from, circuit_from, search_from, tally_from
 from sevenbar.kinematics.circuits.long_circuit import LONG, LongCircuit
-from sevenbar.kinematics.circuits.motion import Modes, Motion, Solvable
+from sevenbar.kinematics.circuits.modes import Modes
+from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
 from sevenbar.kinematics.loop.law import Law

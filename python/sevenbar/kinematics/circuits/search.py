@@ -1,0 +1,61 @@
+"""How the circuits of a linkage were found and counted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+
+
+@dataclass(frozen=True)
+class OpenRange:
+    """A range of a joint [rad] in which its branch points are not all accounted for."""
+
+    start: float
+    end: float
+    #: Dead centres counted there and not known; `None` where solutions run to infinity, or were lost.
+    missing: int | None
+
+
+@dataclass(frozen=True)
+class Count:
+    """The account of a joint's branch points: all of them, and the modes at one value, mean all circuits.
+
+    The joint is the input, or the first that turns where the input slides.
+    """
+
+    joint: str
+    #: Real branch points, where this joint turns back on a circuit, or farther out than these are followed.
+    dead_centres: int
+    #: Complex ones near the real values, located and counted off.
+    complex_branch_points: int
+    #: Joints, of those watched, that become infinite near the real values; kept out of the count.
+    poles: int
+    #: Ranges that do not balance; none where circuits are `counted`.
+    open: tuple[OpenRange, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What a search for the circuits found; of the closed form no more than that.
+
+    All modes were found at so many `values` of each of the `columns`; from `unfollowed` of them no motion
+    could be followed. `rank` is that of the joints' screws in these poses and `freedoms` those of the
+    motions out of them, `None` where there are none.
+    """
+
+    completeness: Literal["closed-form", "counted", "algebraic", "searched"]
+    columns: tuple[str, ...] = ()
+    values: int = 0
+    unfollowed: int = 0
+    rank: int | None = None
+    freedoms: int | None = None
+    #: Poses that redundant constraints alone keep open: by how much [rad, or relative to the size], rising.
+    open_by: Floats = field(default_factory=lambda: np.empty(0))
+    #: How the circuits were counted; `None` where they were not.
+    count: Count | None = None
+    #: Why they were not: modes were "searched", a solution was "lost", or with the input "still" others move.
+    uncounted: Literal["searched", "lost", "still"] | None = None

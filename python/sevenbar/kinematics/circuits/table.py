@@ -1,0 +1,58 @@
+"""The rows of a circuit as the columns of a table, each with its unit in its name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.loop.columns import joint_columns, point_column
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.text.units import LENGTHS
+
+
+def circuit_columns(circuit: Circuit, linkage: Loop, *, si: bool) -> dict[str, npt.NDArray[Any]]:
+    """Every row of a circuit by column: degrees and the linkage's unit of length, or radians and metres."""
+    count = len(circuit.time)
+    length, angle = ("m", "rad") if si else (linkage.length_unit, "deg")
+    scale = LENGTHS[linkage.length_unit] if si else 1.0
+    columns: dict[str, npt.NDArray[Any]] = {
+        "circuit": np.full(count, circuit.index),
+        "branch": circuit.branch,
+        "sample": np.arange(count),
+        "status": circuit.status,
+        "time_s": circuit.time,
+    }
+    rates = (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)
+    columns |= joint_columns(linkage, rates, length=length, angle=angle, scale=scale)
+    for point in linkage.points:
+        trace = circuit.point(point.link, point.at)
+        for order, values in enumerate((trace.position, trace.velocity, trace.acceleration)):
+            for axis, letter in enumerate("xyz"):
+                head = point_column(point.name, letter, order=order, length=length)
+                columns[head] = values[:, axis] * scale
+    if circuit.transmission_angle is not None:
+        transmission = circuit.transmission_angle
+        columns[f"transmission_{angle}"] = transmission if si else np.degrees(transmission)
+    if not linkage.stops.is_empty:
+        for name, bend in circuit.bends.items():
+            columns[f"{name}_bend_{angle}"] = bend if si else np.degrees(bend)
+    if linkage.stops.stops:
+        columns["within_stops"] = circuit.allowed.within.astype(np.int64)
+    head, factor = _advantage_column(circuit, length, scale)
+    columns[head] = circuit.mechanical_advantage * factor
+    columns[f"residual_{length}"] = circuit.residual * scale
+    return columns
+
+
+def _advantage_column(circuit: Circuit, length: str, scale: float) -> tuple[str, float]:
+    """The column of the mechanical advantage, and a factor: torque over force is a length, and backwards."""
+    match circuit.input_turns, circuit.output_turns:
+        case True, False:
+            return f"mechanical_advantage_1_{length}", 1.0 / scale
+        case False, True:
+            return f"mechanical_advantage_{length}", scale
+        case _:
+            return "mechanical_advantage", 1.0
