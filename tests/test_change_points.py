@@ -1,6 +1,7 @@
 """Where branches meet: every way out of a change point is followed, each arc once, and smooth ones are one circuit."""
 
 import itertools
+import math
 from collections.abc import Sequence
 from math import pi, radians
 from typing import Any
@@ -384,3 +385,19 @@ def test_axes_on_one_regulus_are_shaky() -> None:
         )
         mobility = loop.mobility()
         assert (mobility.finite, mobility.rank, loop.motion(24).motion_type) == (0, 3, "rigid")
+
+
+@pytest.mark.parametrize(
+    ("linkage", "stroke"),
+    [
+        # stretched at the angles of the triangles 3 3 4 and 7 5 6; folded they pass the change point
+        (planar_rows(1, 2, 3, 4), 2 * (pi - math.acos(2 / 3))),
+        (planar_rows(3, 4, 5, 6), 2 * (pi - math.acos(5 / 7))),
+        # the crank is as much longer than the rod as the slider is off
+        (sb.slider_crank(crank=40, rod=100, offset=60), pi + 2 * math.asin(3 / 7)),
+    ],
+)
+def test_the_time_ratio_of_a_circuit_of_two_turns_is_that_of_its_strokes(linkage, stroke):
+    circuit = linkage.motion(72).circuits[0]
+    assert circuit.turns == 2
+    assert circuit.time_ratio == pytest.approx((4 * pi - stroke) / stroke, rel=1e-12)

@@ -90,10 +90,16 @@ def test_the_null_vector_in_40_digits_is_the_same_linkage():
             left = mpmath.matrix([row[:8] for row in rows])
             null = [*mpmath.lu_solve(left, mpmath.matrix([-row[8] for row in rows])), mpmath.mpf(1)]
             exact = rssr_of(np.array([float(x) for x in null]).reshape(3, 3))
-        figures = function_pairs(a, b).answers[0].claim.figures
+        answer = function_pairs(a, b).answers[0]
+        figures = answer.claim.figures
         assert figures["twist_deg"] == pytest.approx(math.degrees(exact.twist), abs=1e-6)
-        zeros = np.radians([figures["input_zero_deg"], figures["output_zero_deg"]])
-        assert np.abs(short_way(zeros - exact.zeros)).max() < 1e-7
+        # drawn in the pose of the first pair, in which its joints are at zero
+        first = int(np.argmin(a))
+        zeros = [figures["input_zero_deg"], figures["output_zero_deg"]]
+        assert zeros == pytest.approx([-math.degrees(a[first]), -math.degrees(b[first])], abs=1e-12)
+        balls = np.array([joint["at"] for joint in answer.draft.raw["joint"]])[[1, 2]]
+        there = np.array([exact.ball_a(exact.zeros[0] + a[first]), exact.ball_b(exact.zeros[1] + b[first])])
+        assert balls / np.linalg.norm(balls) == pytest.approx(there / np.linalg.norm(there), abs=1e-6)
 
 
 def test_a_known_linkage_is_found_again_from_eight_of_its_pairs():

@@ -178,13 +178,14 @@ impl CircuitMeasures {
     }
 
     /// Time of the slower stroke of the output over that of the quicker, for an input that turns fully and never back; `None` also
-    /// where both ends of the output are at one input: a stroke without time.
+    /// where both ends of the output are at one input: a stroke without time. A circuit may take several turns of the input.
     pub fn time_ratio(&self) -> Option<f64> {
         let [low, high] = self
             .angle()
             .filter(|_| self.input.is_none() && !self.turns_back())?;
-        let stroke = (high[1] - low[1]).rem_euclid(TAU);
-        let (slower, quicker) = (stroke.max(TAU - stroke), stroke.min(TAU - stroke));
+        let round = TAU * self.turns.max(1) as f64;
+        let stroke = (high[1] - low[1]).rem_euclid(round);
+        let (slower, quicker) = (stroke.max(round - stroke), stroke.min(round - stroke));
         (quicker > 0.0).then_some(slower / quicker)
     }
 }

@@ -20,8 +20,8 @@ def exact(
         Path,
         typer.Argument(
             metavar="TABLE",
-            help="CSV of pairs of angles (input [deg], output [deg]), or of poses of a link: x [mm], y [mm], "
-            "z [mm] with turn_x, turn_y, turn_z [deg], an axis times its angle; what is left out is 0.",
+            help="CSV of pairs of angles (input_deg, output_deg), or of poses of a link: x_mm, y_mm, z_mm "
+            "with turn_x_deg, turn_y_deg, turn_z_deg, an axis times its angle; what is left out is 0.",
         ),
     ],
     linkage: Annotated[

@@ -31,6 +31,9 @@ DENSE_SAMPLES = 361
 #: Most pairs of readings that a fit takes.
 MOST_PAIRS = 100_000
 
+#: Greatest reading [rad]: beyond it less than nine digits are left within a turn.
+MOST_READING = 1e7
+
 
 @dataclass(frozen=True)
 class Dials:
@@ -202,6 +205,10 @@ def wish_of_pairs(
     if (np.diff(a) <= 0).any():
         twice = math.degrees(a[int(np.flatnonzero(np.diff(a) <= 0)[0])])
         raise RequestError(f"points: input {twice:g} deg is given twice; give each once")
+    if (wild := np.abs(np.concatenate([a, b])).max()) > MOST_READING:
+        raise RequestError(
+            f"points: {math.degrees(wild):g} deg has too few digits left within a turn; give smaller angles"
+        )
     if a[-1] - a[0] >= math.tau:
         raise RequestError("points: the inputs reach over a full turn; give a part of one")
     most = FREE_ZEROS_MOST if zeros is None else FREE_ZEROS_MOST - 2
@@ -212,13 +219,15 @@ def wish_of_pairs(
 def read_pairs(path: Path) -> tuple[Floats, Floats]:
     """The pairs of readings [rad] in a CSV or text table: two columns, whose header names their units.
 
-    Raises `TableError`.
+    The input comes first, unless the header names both as input and output. Raises `TableError`.
     """
     table = read_table(path, "pairs of angles")
     if len(table.names) != 2:
         raise table.wrong(f"{len(table.names)} columns; give two: readings of the input and of the output")
+    named = table.column("input"), table.column("output")
     columns = []
-    for column in (0, 1):
+    for column in (0, 1) if None in named else named:
+        assert column is not None
         size = table.size(column, ("turn", 0), "m", what="angle", example="deg")
         columns.append(table.numbers(column) * size)
     table.refuse_gaps(dict(enumerate(columns)), "leave the row out")

@@ -259,7 +259,9 @@ def _answer(
         draft, inputs, outputs = draft_of(rows[0], name, length_unit=length_unit), u + a, v + b
     else:
         draft = _drawn(rssr, angles[0], scale, name, length_unit)
-        inputs, outputs = a - a[0], b - b[0]
+        # as drawn its joints are at zero
+        u, v = 0.0 - a[0], 0.0 - b[0]
+        inputs, outputs = u + a, v + b
     figures |= {"input_zero_deg": math.degrees(u), "output_zero_deg": math.degrees(v)}
     return judged(draft, Claim(inputs, outputs, errors, length_unit, figures))
 

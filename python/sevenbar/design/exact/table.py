@@ -105,9 +105,9 @@ def read_exact_task(path: Path) -> ExactTask:
         return ExactTask("orientations", (rotations(turns),))
     unit = _length_unit(table, placed[0])
     places = {letter: _places(table, letter, unit) for letter in placed}
-    if placed == ["x", "y"] and turned == ["turn_z"]:
-        return ExactTask("poses in a plane", (np.column_stack([*places.values(), turns[:, 2]]),), unit)
     at = np.column_stack([places.get(letter, np.zeros(len(turns))) for letter in "xyz"])
+    if "z" not in placed and turned == ["turn_z"]:
+        return ExactTask("poses in a plane", (np.column_stack([at[:, :2], turns[:, 2]]),), unit)
     return ExactTask("poses in space", (pose(rotations(turns), at),), unit)
 
 

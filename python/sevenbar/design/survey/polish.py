@@ -233,7 +233,7 @@ class Polish:
 
 
 def draft_of(numbers: Floats, branch: int, sense: float, name: str) -> Draft:
-    """A description of a linkage in the pose where its readings start: both dials read zero there."""
+    """A description of a linkage in the pose where its readings start: both joints are at zero there."""
     first = poses(numbers, np.zeros(1), branch)
     assert first is not None
     lengths = numbers[:6] * scale_of(numbers)
@@ -349,7 +349,9 @@ def _errors(task: SurveyTask, dense: Floats, angles: Floats) -> tuple[Floats, di
     else:
         off = angles - np.asarray(want.function(want.input[0] + dense))
     zero = float(off.max() + off.min()) / 2
-    return off - zero, {"output_zero_deg": math.degrees(zero)}
+    # as drawn the joints are at zero where the readings start
+    zeros = {"input_zero_deg": 0.0 - math.degrees(want.input[0]), "output_zero_deg": math.degrees(zero)}
+    return off - zero, zeros
 
 
 def designs(

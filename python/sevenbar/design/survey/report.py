@@ -15,6 +15,7 @@ from sevenbar.design.files import design_files
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.task import SurveyTask
 from sevenbar.design.task.report import TaskDesigns
+from sevenbar.design.wish import Wish
 from sevenbar.kinematics.solvers.surveys import NUMBERS
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table
@@ -128,9 +129,11 @@ def _cell(value: object) -> str:
 
 def _head(command: str, found: SurveyResult) -> list[str]:
     assert isinstance(found.task, SurveyTask)
+    zeros = isinstance(found.task.want, Wish)
     return [
         f"wanted: {found.task.want.title}",
         f"must hold: {found.task.text()}",
         f"made by: {command}",
-        "drawn where the readings start: both dials read zero there",
+        "drawn where the readings start"
+        + ("; each dial reads zero with its joint at input_zero, output_zero" if zeros else ""),
     ]

@@ -96,10 +96,11 @@ def _extremes(loop: NumberedLoop, circuit: Circuit, speed: float) -> Iterator[Me
         )
         ratio = circuit.time_ratio
         if ratio is not None and circuit.angle is not None:
-            stroke = (circuit.angle.highest_at - circuit.angle.lowest_at) % math.tau
+            whole = math.tau * max(circuit.turns, 1)
+            stroke = (circuit.angle.highest_at - circuit.angle.lowest_at) % whole
             moves = high.place_slopes - low.place_slopes
-            # the ratio is that of the stroke to the rest of the turn, or the other way round
-            slope = math.tau / (math.tau - stroke) ** 2 if stroke > math.pi else -math.tau / stroke**2
+            # the ratio is that of the stroke to the rest of the round, or the other way round
+            slope = whole / (whole - stroke) ** 2 if 2 * stroke > whole else -whole / stroke**2
             if ratio - 1 < EQUAL_STROKES:
                 slope = math.nan
             yield MeasureSlopes("time_ratio", "", ratio, slope * moves)
