@@ -401,3 +401,18 @@ def test_the_time_ratio_of_a_circuit_of_two_turns_is_that_of_its_strokes(linkage
     circuit = linkage.motion(72).circuits[0]
     assert circuit.turns == 2
     assert circuit.time_ratio == pytest.approx((4 * pi - stroke) / stroke, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "value"), [((1, 1, 1, 1), 0.0), ((40, 100, 40, 100), 0.0), ((40, 100, 40, 100), pi)]
+)
+def test_a_pose_in_which_two_modes_are_one_is_listed_once(lengths, value):
+    assert len(planar_rows(*lengths).assembly_modes(value)) == 1
+
+
+def test_modes_at_the_limit_of_an_input_are_one_pose_and_beside_it_two():
+    linkage = planar_rows(70, 30, 50, 60)
+    (limit, *_) = linkage.motion(72).limits
+    counts = [len(linkage.assembly_modes(limit + by)) for by in (-1e-3, -1e-15, 0.0, 1e-15, 1e-3)]
+    assert sorted(counts[::4]) == [0, 2]
+    assert max(counts[1:4]) <= 1

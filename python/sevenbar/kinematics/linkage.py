@@ -206,9 +206,11 @@ class Linkage(Solvable):
         value = joint_number("theta", theta, self, column)
         general = self.agreeing(agree)._general
         if self._has_closed_form(method):
-            return self._closed_form.modes(column, value)
-        self._refuse_unheld()
-        return general.modes(column, value)
+            found = self._closed_form.modes(column, value)
+        else:
+            self._refuse_unheld()
+            found = general.modes(column, value)
+        return found.each_once(self, general.size)
 
     def mobility(self, *, agree: float | None = None) -> Mobility:
         """How freely the loop moves: the count of freedoms, idle ones and redundant constraints by name.

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats, Words
+from sevenbar.arrays import Floats, Words, short_way
+from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.printing import Printed
+
+#: Modes nearer to each other in every joint [rad, or relative to the size] are one pose.
+ONE_POSE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -59,3 +63,20 @@ class Modes(Printed):
 
     def __len__(self) -> int:
         return len(self.q)
+
+    def each_once(self, loop: Loop, size: float) -> Modes:
+        """The same without poses that rounding alone keeps apart; slides count relative to the `size`.
+
+        At a dead centre two modes are one, which a solver finds twice, apart by the root of its rounding.
+        """
+        # no two poses are near whose sums are not: most often that is all there is to compute
+        sums = np.sort(np.cos(self.q).sum(axis=1))
+        if (sums[1:] - sums[:-1] > ONE_POSE * len(self.columns) * max(size, 1.0)).all():
+            return self
+        turns = np.array([loop.turns(name) for name in self.columns])
+        apart = self.q[:, None] - self.q
+        apart = np.abs(np.where(turns, short_way(apart), apart / size))
+        # turns without a direction are those of one pose, too
+        near = (np.isnan(apart) | (apart < ONE_POSE)).all(axis=2)
+        first = ~np.tril(near, -1).any(axis=1)
+        return replace(self, q=self.q[first], residual=self.residual[first])
