@@ -26,7 +26,7 @@ from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.dynamics.energy_path import EnergyBuilder
-from sevenbar.kinematics.dynamics.forces import ForceSolver
+from sevenbar.kinematics.dynamics.forces import STILL, ForceSolver
 from sevenbar.kinematics.dynamics.free_rows import CourseRows
 from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_speed
@@ -41,9 +41,6 @@ Torque = float | tuple[npt.ArrayLike, npt.ArrayLike] | Callable[[float], float]
 
 #: Damping below this part of the mass in a second is none.
 UNDAMPED = 1e-15
-
-#: Bodies that move by less than this part of the size, as a radian passes along the circuit, stand still.
-STILL = 1e-9
 
 #: A start is a dead centre of the input where that moves by less than this along the circuit.
 AT_DEAD_CENTRE = 1e-9
@@ -76,17 +73,12 @@ class FreeCourse:
     def energy(self) -> EnergyCourse:
         """Mass, potential and damping along it."""
         course = self.builder.built()
-        if not course.quantities.reach[MASS] > STILL**2 * self._inertia:
+        if not course.quantities.reach[MASS] > STILL**2 * self.solver.inertia:
             raise RequestError(
                 "bodies: nothing that moves on this circuit has a mass; give a body to a link that moves, as "
                 "[[body]], or take another circuit"
             )
         return course
-
-    @property
-    def _inertia(self) -> float:
-        """The inertia of all bodies at a distance of the size [kg m^2]."""
-        return sum(body.mass for body in self.solver.bodies.values()) * self.solver.size**2
 
     @cached_property
     def rows(self) -> CourseRows:
