@@ -164,3 +164,16 @@ def test_a_coupler_that_comes_near_the_axis_of_the_crank_has_the_same_forces_by_
     own = circuit.forces()
     assert np.abs(again.forces().torque - own.torque).max() < 1e-10 * np.abs(own.torque).max()
     assert own.sizing().tail < 1e-10
+
+
+def test_a_linkage_whose_mass_stands_still_takes_nothing():
+    # with crank and rod alike the slider, which alone has a mass, stays where it is on one circuit
+    joints = [{"kind": "R", "at": [x, 0, 0], "axis": [0, 0, 1]} for x in (0, 50, 100)]
+    joints.append({"kind": "P", "at": [100, 0, 0], "axis": [1, 0, 0]})
+    linkage = sb.from_axes(joints).loaded(bodies={3: sb.Body(2.0, (100, 0, 0))})
+    still, moving = sorted(linkage.motion(), key=lambda circuit: np.ptp(circuit.q[:, 3]))[:2]
+    forces = still.forces()
+    assert not np.nanmax(np.abs(forces.torque))
+    size = forces.sizing()
+    assert (size.peak_torque.value, size.peak_power.value, size.mean_torque) == (0.0, 0.0, 0.0)
+    assert np.nanmax(np.abs(moving.forces().torque)) > 1e-3

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import re
 from functools import cache
 from pathlib import Path
@@ -317,3 +318,64 @@ def test_the_force_in_the_plane_is_in_the_table_the_json_and_the_csv(tmp_path: P
         rows = list(csv.DictReader(file))
     sizes = [float(row["piston_F_in_plane_N"]) for row in rows]
     assert max(sizes) == pytest.approx(piston.peak.value, rel=1e-3)
+
+
+PARALLELOGRAM = """format = 1
+layout = "planar"
+length_unit = "m"
+
+[forces]
+gravity = [0, -9.81, 0]
+
+[[link]]
+length = 1
+
+[[link]]
+length = 2
+
+[[link]]
+length = 1
+
+[[link]]
+length = 2
+
+[[body]]
+link = 2
+mass = 3
+solid = "rod"
+"""
+
+
+def test_a_parallelogram_is_sized_through_its_change_points(tmp_path: Path) -> None:
+    file = tmp_path / "parallelogram.toml"
+    file.write_text(PARALLELOGRAM)
+    # the coupler rises and falls by a metre to each side; the rows at change points have no rates
+    page = told(file, "--circuit", 1, "--speed", "60rpm", "--unevenness", 0.02)
+    assert "nan" not in page
+    assert "peak 184.9 W @ 0.000°, braking -184.9 W @ 180.000° mean 0 W" in page
+    assert "flywheel 74.55 kg m^2" in page
+
+
+def test_counterweights_say_that_change_points_are_in_their_way(tmp_path: Path) -> None:
+    file = tmp_path / "parallelogram.toml"
+    file.write_text(PARALLELOGRAM)
+    message = mistake("forces", file, "--circuit", 0, "--counterweights", "1,3", "--radius", 1)
+    assert "the rows at change points, where branches meet, have no shaking of their own" in message
+    assert "dead centre" not in message
+
+
+def test_mean_power_at_constant_speed_is_that_of_the_mean_torque() -> None:
+    # a load that sets in between rows is not seen by their mean
+    found = sb.load("rssr_press").motion().circuits[0].forces().sizing()
+    assert found is not None
+    assert f"mean {math.tau * found.mean_torque:.4g} W" in told("rssr_press")
+
+
+def test_a_start_without_a_unit_is_in_degrees(tmp_path: Path) -> None:
+    file = tmp_path / "parallelogram.toml"
+    file.write_text(PARALLELOGRAM)
+    free = ("free", str(file), "--circuit", "1", "--time", "1s", "--json", "--from")
+    plain, degrees = (sevenbar(*free, start) for start in ("30", "30deg"))
+    assert plain.returncode == 0, plain.stderr
+    assert plain.stdout == degrees.stdout
+    assert "--from: 'wide' is no value of theta_1, which turns; give" in mistake(*free, "wide")

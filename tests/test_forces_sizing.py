@@ -214,3 +214,13 @@ def test_the_peak_torque_of_a_7r_lies_between_its_rows():
     kinetic = many.kinetic
     assert found.fluctuation == pytest.approx(kinetic.max() - kinetic.min(), rel=1e-6)
     assert found.mean_torque == pytest.approx(0.0, abs=1e-12 * scale)
+
+
+def test_a_sizing_without_joints_goes_across_change_points():
+    # as tolerances ask it, for a circuit none of whose reactions is determined
+    torque = np.sin(grid())
+    gaps = np.zeros(90, dtype=bool)
+    gaps[[0, 45]] = True
+    drive = Drive(grid(), np.where(gaps, np.nan, torque))
+    found = sizing(drive, period=math.tau, speed=1.0, gaps=gaps)
+    assert found.peak_torque.value == pytest.approx(1.0, rel=1e-9)

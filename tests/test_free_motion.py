@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import math
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
+from rich.console import Console
 
 import sevenbar as sb
 from evidence.accuracy.chain_dynamics import HingedChain
+from sevenbar.reporting.free_motion import free_report
 
 G = 9.81
 DOWN = (0.0, -G, 0.0)
@@ -426,6 +429,104 @@ def test_a_load_that_sets_in_can_hold_a_linkage() -> None:
     edges = [p for p in circuit.equilibria(**(given | {"loads": [back]})) if p.kind == "edge"]
     assert "edge" in held
     assert abs(edges[0].input % math.tau - 3.5) < 1e-9
+
+
+def heavy_rocker(**more: Any) -> sb.Circuit:
+    """A crank-rocker in which the rocker alone has a mass, with what else acts."""
+    linkage = sb.four_bar(crank=30, coupler=90, rocker=60, ground=100)
+    return linkage.loaded(bodies={3: sb.Body(1.0, solid="rod")}, **more).motion().circuits[0]
+
+
+def test_where_nothing_with_a_mass_moves_there_is_no_vibration() -> None:
+    # a spring of the rocker rests where the rocker turns back
+    found = heavy_rocker(springs=[sb.Spring(stiffness=1.0, joint="theta_4")]).equilibria()
+    assert sorted(place.kind for place in found) == ["stable", "unstable"]
+    assert all(math.isnan(place.frequency) and math.isnan(place.rate) for place in found)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {},
+        {"start": 1.5, "speed": 3.0},
+        {"start": 1.5, "energy": 1.0},
+        {"torque": 100.0},
+        {"torque": ([0.0, 1000.0], [100.0, 0.0])},
+    ],
+)
+def test_a_motion_through_a_pose_without_moving_mass_is_refused(more: dict[str, Any]) -> None:
+    circuit = heavy_rocker(springs=[sb.Spring(stiffness=1.0, joint="theta_2")])
+    with pytest.raises(sb.errors.RequestError, match="nothing that has a mass moves, so its speed there has"):
+        circuit.free_motion(1.0, **more)
+
+
+def test_a_motion_that_stays_off_the_pose_without_moving_mass_is_found() -> None:
+    # from about the middle of its swing the rocker is held by a stiff spring of the crank
+    circuit = heavy_rocker(springs=[sb.Spring(stiffness=100.0, joint="theta_1", length=1.5)])
+    fall = circuit.free_motion(1.0, start=1.4, samples=11)
+    assert fall.kind == "oscillation"
+    assert fall.energy_error < 1e-10
+
+
+def slider_crank(crank: float, rod: float, **more: Any) -> sb.Circuit:
+    """A slider-crank along x with 2 kg on the slider alone, circuit 0."""
+    places = (0.0, crank, crank + rod)
+    joints: list[dict[str, Any]] = [{"kind": "R", "at": [x, 0, 0], "axis": [0, 0, 1]} for x in places]
+    joints.append({"kind": "P", "at": [places[-1], 0, 0], "axis": [1, 0, 0]})
+    body = sb.Body(2.0, (places[-1], 0.0, 0.0))
+    return sb.from_axes(joints).loaded(bodies={3: body}, **more).motion().circuits[0]
+
+
+def test_a_piston_at_its_dead_centre_has_no_frequency() -> None:
+    circuit = slider_crank(40.0, 100.0, gravity=(-G, 0.0, 0.0))
+    found = {place.kind: place for place in circuit.equilibria()}
+    assert math.isnan(found["stable"].frequency)
+    assert math.isnan(found["unstable"].rate)
+    still = circuit.free_motion(1.0, start=math.pi, samples=3)
+    assert still.kind == "rest"
+    assert not still.ddq.any()
+    page = Console(width=100, file=io.StringIO())
+    page.print(free_report(()).text((still, circuit.equilibria())))
+    assert "none" in page.file.getvalue()  # type: ignore[attr-defined]
+
+
+def test_a_circuit_on_which_no_mass_moves_is_refused() -> None:
+    # with crank and rod alike the slider stays where it is on one circuit
+    circuit = slider_crank(50.0, 50.0)
+    assert np.nanmax(np.abs(circuit.dq[:, 3])) < 1e-9
+    with pytest.raises(sb.errors.RequestError, match="nothing that moves on this circuit has a mass"):
+        circuit.free_motion(3.0, start="30deg", speed=1.0)
+
+
+def test_a_spring_that_winds_up_has_no_equilibrium_at_the_seam_of_laps() -> None:
+    linkage = sb.four_bar(crank=30, coupler=90, rocker=60, ground=100)
+    rods = {link: sb.Body(1.0, solid="rod") for link in (1, 2, 3)}
+    circuit = linkage.loaded(bodies=rods).motion().circuits[0]
+    for length in (0.5, 3.0, 6.0):
+        spring = sb.Spring(stiffness=1.0, joint="theta_1", length=length)
+        (place,) = circuit.equilibria(springs=[spring])
+        assert place.kind == "stable"
+        assert abs(place.input - length) < 1e-12
+        fall = circuit.free_motion(1.0, start=length, springs=[spring], samples=3)
+        assert np.abs(fall.input - length).max() < 1e-9
+
+
+def test_equilibria_of_a_spring_that_winds_up_are_those_on_the_lap_of_the_rows() -> None:
+    # the path of this circuit begins at a change point, at 270 degrees
+    linkage = sb.four_bar(crank=1, coupler=2, rocker=1, ground=2, length_unit="m")
+    spring = sb.Spring(stiffness=12.0, joint="theta_1", length=math.pi / 2)
+    linkage = linkage.loaded(bodies={2: sb.Body(3.0, solid="rod")}, springs=[spring])
+    for circuit in linkage.motion():
+        if np.nanmax(np.abs(circuit.dq[:, 3] - circuit.dq[:, 0])) > 1e-6:
+            continue
+        (place,) = circuit.equilibria()
+        assert place.kind == "stable"
+        assert abs(place.input - math.pi / 2) < 1e-12
+        # 3 kg on a circle of 1 m
+        assert abs(place.frequency - 2.0) < 1e-9
+        break
+    else:
+        pytest.fail("no circuit of the parallelogram")
 
 
 @pytest.mark.parametrize(

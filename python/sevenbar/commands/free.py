@@ -9,7 +9,7 @@ import typer
 
 import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
-from sevenbar.commands.given import agreed
+from sevenbar.commands.given import agreed, input_value
 from sevenbar.commands.options import (
     Agree,
     Figures,
@@ -34,7 +34,9 @@ def free(
     start: Annotated[
         str | None,
         typer.Option(
-            "--from", help="Value of the input at the start, as in '30deg'; the first row by default."
+            "--from",
+            help="Value of the input at the start: '30deg', '12mm'; a plain number is in degrees or lengths; "
+            "the first row by default.",
         ),
     ] = None,
     speed: Annotated[
@@ -74,8 +76,9 @@ def free(
         check_targets([film], force=force)
     loaded = sb.load(linkage, agree=agreed(agree))
     chosen = chosen_circuit(loaded.motion(input=input_joint), circuit)
+    place = None if start is None else input_value("--from", start, loaded, input_joint)
     found = chosen.free_motion(
-        seconds, start=start, speed=speed, energy=energy, branch=branch, torque=torque, samples=rows
+        seconds, start=place, speed=speed, energy=energy, branch=branch, torque=torque, samples=rows
     )
     places = chosen.equilibria(torque=torque or 0.0)
     also = {}

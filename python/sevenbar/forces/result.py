@@ -124,6 +124,13 @@ class Forces(Drawable):
         """The way of the input [rad] round a periodic cycle, negative where it falls from row to row."""
         return float(self.input[1] - self.input[0]) * len(self.input) if self.periodic else None
 
+    @property
+    def even_speed(self) -> float:
+        """The one speed [rad/s] of a periodic cycle; NaN where no row has one."""
+        # a row at a change point has no rates
+        known = self.speed[np.isfinite(self.speed)]
+        return float(known[0]) if known.size else math.nan
+
     def on(self, rows: Rows) -> Forces:
         """The same on some rows, as `forces.on(forces.branch == 1)`: a mask, numbers of rows or a slice."""
         arrays = ("input", "time", "speed", "status", "branch", "torque", "power", "kinetic", "potential")
@@ -169,7 +176,7 @@ class Forces(Drawable):
         return sizing(
             self,
             period=period,
-            speed=float(self.speed[0]) if period is not None else None,
+            speed=self.even_speed if period is not None else None,
             evaluate=None if self.through_change_points else self.between,
             breaks=breaks,
             gaps=self.status == "change-point" if self.through_change_points else None,

@@ -185,7 +185,8 @@ def sizing(
         table = filled(table, gaps)
     if gaps is not None and np.isfinite(table[:, 0]).all():
         # what grows without bound at a change point has no series that ends
-        known[1:] &= np.repeat([_bounded(part) for part in _wrench_parts(table, known)], 3)
+        bounded = [_bounded(part) for part in _wrench_parts(table, known)]
+        known[1:] &= np.repeat(np.array(bounded, dtype=bool), 3)
     if not len(table) or not np.isfinite(table[:, known]).all():
         return None
     if len(breaks) and period is not None and evaluate is None:

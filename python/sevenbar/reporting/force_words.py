@@ -223,7 +223,7 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
         braking = say("braking {value}", value=place.at(found.braking_power, "W"))
     peak = say("peak {value}", value=place.at(found.peak_power, "W"))
     facts.append((say("power"), say(", ").join([peak, braking])))
-    average = _mean_power(forces)
+    average = _mean_power(forces, found)
     mean = say("mean {power} W", power=number(average))
     facts.append(("", say("{mean}: the linkage drives its input", mean=mean) if average < 0 else mean))
     steady = say("torque") if forces.periodic else say("power")
@@ -246,11 +246,14 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     return facts
 
 
-def _mean_power(forces: Forces) -> float:
+def _mean_power(forces: Forces, found: Sizing) -> float:
     """The mean power [W] by time, 0 where it is rounding."""
-    shares = np.full(len(forces.power), 1 / len(forces.power)) if forces.periodic else shares_of(forces.time)
-    mean = float(shares @ forces.power)
-    return 0.0 if abs(mean) < 1e-12 * np.abs(forces.power).max() else mean
+    if forces.periodic:
+        # at one speed that of the mean torque, which sees change points and jumps between the rows
+        mean, most = forces.even_speed * found.mean_torque, abs(forces.even_speed * found.peak_torque.value)
+    else:
+        mean, most = float(shares_of(forces.time) @ forces.power), float(np.abs(forces.power).max())
+    return 0.0 if abs(mean) < 1e-12 * most else mean
 
 
 def _mean(mean: float, found: Sizing) -> str:

@@ -98,7 +98,7 @@ def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
             [
                 say(place.kind),
                 _angle(place.input, turns=fall.input_turns, unit=fall.length_unit),
-                "" if math.isnan(place.frequency) else f"{place.frequency:.9g}",
+                _vibration(place),
                 f"{place.potential:.9g}",
             ]
             for place in places
@@ -106,6 +106,13 @@ def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
         head = ["equilibrium", fall.columns[fall.input_column], "vibration [rad/s]", "potential [J]"]
         parts += [Text(), number_table(head, rows, words=[0])]
     return Group(*parts)
+
+
+def _vibration(place: Equilibrium) -> str:
+    """The frequency [rad/s] of a stable equilibrium, "none" where nothing with a mass moves."""
+    if math.isfinite(place.frequency):
+        return f"{place.frequency:.9g}"
+    return say("none") if place.kind == "stable" else ""
 
 
 def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]:

@@ -166,6 +166,7 @@ def _to_the_top(
     before: tuple[Leg, ...],
     turned: float | None = None,
 ) -> Conservative:
+    course.refuse_massless(min(place, top), max(place, top))
     off = NEAR_TOP * course.length
     # seen from the top, little energy loses no digits
     reference = (top, 0.0)

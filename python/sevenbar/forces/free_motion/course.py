@@ -20,6 +20,7 @@ from numpy.polynomial import legendre
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
 from sevenbar.curves.stationary import nodes
+from sevenbar.errors import RequestError
 
 #: Points of Gauss's rule for the rise of U over a short way, and how short, in pieces.
 GAUSS = 20
@@ -27,6 +28,18 @@ SHORT = 0.5
 
 #: Nodes of a piece for integrals over it.
 TERMS = 20
+
+#: A mass below this part of its greatest is zero: a link that stands still leaves no more than rounding.
+MASSLESS = 1e-12
+
+#: Places nearer than this part of the circuit are one.
+SAME = 1e-10
+
+#: Why there is no motion through a place without mass, and what to do.
+MASSLESS_WAY = (
+    "bodies: the motion reaches a pose in which nothing that has a mass moves, so its speed there has no "
+    "bound; give a mass to a link that moves in this pose, as [[body]] of the crank or the coupler"
+)
 
 #: The columns of `EnergyCourse.quantities`.
 MASS, SLOPE, DAMPING, INPUT, WINDING = range(5)
@@ -172,6 +185,31 @@ class EnergyCourse:
         points, weights = _GAUSS
         where = a[:, None] + (b - a)[:, None] * (points + 1) / 2
         return np.asarray(self.slope(where.ravel()).reshape(where.shape) @ weights / 2)
+
+    @cached_property
+    def massless(self) -> Floats:
+        """Places (j,) on the first lap where nothing with a mass moves, in order."""
+        own = self.quantities.part(MASS)
+        places = np.union1d(own.edges, own.stationary(0))
+        return places[self.is_massless(own.at(places)[:, 0])]
+
+    def is_massless(self, mass: Floats) -> npt.NDArray[np.bool_]:
+        """Whether masses m (j,) are zero."""
+        return np.asarray(mass <= MASSLESS * self.quantities.reach[MASS])
+
+    def refuse_massless(self, low: float, high: float) -> None:
+        """Raises `RequestError` where a motion from `low` to `high` reaches a place without mass.
+
+        There s' of any energy has no bound: links without mass would turn what moves back at once.
+        """
+        if not self.massless.size:
+            return
+        off = SAME * self.length
+        first, last = self.laps(np.array([low, high]))
+        laps = np.arange(first - 1, last + 2)
+        places = (self.massless + laps[:, None] * self.length).ravel() if self.closed else self.massless
+        if np.any((places >= low - off) & (places <= high + off)):
+            raise RequestError(MASSLESS_WAY)
 
     @cached_property
     def steepest(self) -> float:

@@ -19,14 +19,11 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
-from sevenbar.forces.free_motion.course import MASS, SLOPE, EnergyCourse
+from sevenbar.forces.free_motion.course import MASS, SAME, SLOPE, WINDING, EnergyCourse
 from sevenbar.text.printing import Printed
 
 #: A curvature of U below this part of its greatest is zero: neither stable nor unstable to the first order.
 FLAT = 1e-9
-
-#: Two equilibria nearer than this part of the circuit are one.
-SAME = 1e-10
 
 Kind = Literal["stable", "unstable", "flat", "edge"]
 
@@ -38,7 +35,8 @@ class Equilibrium(Printed):
     `input` [rad, or length]; `q` (columns,) all joint values; `kind` is "stable", "unstable", "flat"
     where the curvature of the potential vanishes, "edge" where a load that sets in or ends there holds it.
     `frequency` [rad/s] is that of small vibrations about a stable one, `rate` [1/s] that of leaving an
-    unstable one; NaN where there is none. `potential` [J] is that of weights, springs and loads.
+    unstable one; NaN where there is none, as where nothing with a mass moves. `potential` [J] is that of
+    weights, springs and loads.
     """
 
     input: float
@@ -51,17 +49,45 @@ class Equilibrium(Printed):
     place: float
 
 
-def resting_places(course: EnergyCourse) -> list[tuple[float, Kind, float, float]]:
-    """Places, kinds, frequencies and rates of all equilibria on the first lap; none where U is constant."""
+#: Place, kind, frequency and rate.
+Resting = tuple[float, Kind, float, float]
+
+
+def resting_places(course: EnergyCourse, first: float = 0.0) -> list[Resting]:
+    """Places, kinds, frequencies and rates of all equilibria on a lap; none where U is constant.
+
+    The first lap, where each has the same; with a spring that winds up the lap that begins at `first`.
+    """
+    if not course.winds:
+        return _on_lap(course, 0)
+    length = course.length
+    begin = first - SAME * length
+    lap = math.floor(begin / length)
+    found = [
+        (s + k * length, kind, frequency, rate)
+        for k in (lap, lap + 1)
+        for s, kind, frequency, rate in _on_lap(course, k)
+    ]
+    return [one for one in found if begin <= one[0] < begin + length]
+
+
+def _slope_on(course: EnergyCourse, lap: int) -> Along:
+    """U' on a lap, by places on the first one."""
+    series = course.quantities.series
+    return Along(course.quantities.edges, series[:, :, [SLOPE]] + lap * series[:, :, [WINDING]])
+
+
+def _on_lap(course: EnergyCourse, lap: int) -> list[Resting]:
+    """The equilibria on a lap, by places on the first one."""
     quantities = course.quantities
     edges = quantities.edges
-    series = quantities.series[:, :, SLOPE]
-    if not series.any():
+    own = _slope_on(course, lap)
+    if not own.series.any():
         return []
-    own = quantities.part(SLOPE)
     turning = own.stationary(0)
     found: list[float] = []
-    jumps: list[float] = []
+    # what U' is just before a place where it changes its sign at once
+    jumps: dict[float, float] = {}
     last = len(edges) - 2
     for i in range(last + 1):
         a, b = edges[i], edges[i + 1]
@@ -70,11 +96,13 @@ def resting_places(course: EnergyCourse) -> list[tuple[float, Kind, float, float
         found += _zeros(own, i, marks, heights)
         before = i - 1 if i else last
         if i or course.closed:
-            left = float(own.on(np.array([before]), edges[before + 1 : before + 2])[0, 0])
+            # the first piece goes on from the lap before, on which a spring is wound up less
+            there = own if i else _slope_on(course, lap - 1)
+            left = float(there.on(np.array([before]), edges[before + 1 : before + 2])[0, 0])
             if left * heights[0] < 0:
-                jumps.append(float(a))
+                jumps[float(a)] = left
     flat = FLAT * float(own.slope.reach[0])
-    out: list[tuple[float, Kind, float, float]] = []
+    out: list[Resting] = []
     for s in sorted({*found, *jumps}):
         near = abs(s - out[-1][0]) if out else math.inf
         if near < SAME * course.length or (
@@ -83,17 +111,17 @@ def resting_places(course: EnergyCourse) -> list[tuple[float, Kind, float, float
             continue
         here = np.array([s])
         curvature = float(own.slope.at(here)[0, 0])
-        mass = float(quantities.at(here)[0, MASS])
+        mass = quantities.at(here)[:, MASS]
+        squared = math.nan if course.is_massless(mass)[0] else abs(curvature) / float(mass[0])
         is_break = bool(np.any(np.abs(course.breaks - s) < SAME * course.length))
         if s in jumps and is_break:
-            left = own.at(np.array([s - 1e-9 * course.length]))[0, 0]
-            out.append((s, "edge" if left < 0 else "unstable", math.nan, math.nan))
+            out.append((s, "edge" if jumps[s] < 0 else "unstable", math.nan, math.nan))
         elif abs(curvature) <= flat:
             out.append((s, "flat", math.nan, math.nan))
         elif curvature > 0:
-            out.append((s, "stable", math.sqrt(curvature / mass), math.nan))
+            out.append((s, "stable", math.sqrt(squared), math.nan))
         else:
-            out.append((s, "unstable", math.nan, math.sqrt(-curvature / mass)))
+            out.append((s, "unstable", math.nan, math.sqrt(squared)))
     return out
 
 

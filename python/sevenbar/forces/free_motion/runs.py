@@ -129,6 +129,7 @@ def run_between(
     course: EnergyCourse, low: float, high: float, turns: tuple[bool, bool], reference: tuple[float, float]
 ) -> Run:
     """The run from `low` to `high`, which may be turning points; `reference` is a place and T there [J]."""
+    course.refuse_massless(low, high)
     marks = _inner_marks(course, low, high)
     turns_low, turns_high = turns
     reach = (high - low) / 2 if turns_low and turns_high else high - low

@@ -442,7 +442,8 @@ class Circuit(Printed, WithExtents):
         """All poses of this circuit in which the linkage can rest, along the circuit.
 
         Under a constant `torque` [N m, of a slide N] at the input; the rest is as for `forces`. None where
-        the potential is constant, as without gravity and springs: then it rests anywhere.
+        the potential is constant, as without gravity and springs: then it rests anywhere. Where a spring in a
+        joint winds up from lap to lap they are those on the lap of the rows.
 
             >>> import sevenbar as sb
             >>> crank = sb.Body(mass=2.0, centre=(125, 0, 0))

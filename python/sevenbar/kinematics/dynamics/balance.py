@@ -39,7 +39,13 @@ def balance_of(
     rows = np.concatenate(
         [forces.shaking, *(mount.unit.reshape(len(forces.time), -1) for mount in mounts)], axis=1
     )
-    if not np.isfinite(rows).all():
+    lost = circuit.status[~np.isfinite(rows).all(axis=1)]
+    if "change-point" in lost:
+        raise RequestError(
+            "counterweights: the rows at change points, where branches meet, have no shaking of their own; "
+            "take a circuit without change points, or drive it by a law whose rows stay off them"
+        )
+    if lost.size:
         raise RequestError(
             "counterweights: the shaking grows without bound at dead centres of the input; drive the circuit "
             "by a law that stays off them, or take one whose input goes round"

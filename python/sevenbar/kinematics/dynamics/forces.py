@@ -30,6 +30,9 @@ from sevenbar.kinematics.loop.rigid import half_turn, inverse, placed
 from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
 from sevenbar.text.units import LENGTHS
 
+#: Bodies that move by less than this part of the size for a radian stand still.
+STILL = 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class ForceSolver:
@@ -61,6 +64,11 @@ class ForceSolver:
     def bodies(self) -> dict[int, Body]:
         """The bodies of the links, one each; where a link spins idly, as balls without friction move them."""
         return as_moved(self.linkage, resolved(self.loading, self.linkage))
+
+    @property
+    def inertia(self) -> float:
+        """That of all bodies at a distance of the size [kg m^2]."""
+        return sum(body.mass for body in self.bodies.values()) * self.size**2
 
     def _carrier(self, link: int) -> tuple[int, _core.Product]:
         """The steps before a link, and the frame there in which its points are written."""
@@ -180,6 +188,9 @@ def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -
         speeds = np.where(np.isfinite(speeds), 0.0, np.nan)
     torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, poses, speeds)
     size, metre = solver.size, LENGTHS[linkage.length_unit]
+    if _nothing_pulls(solver, speeds, energies[:, 0] * size**2, shaking[:, 3:] * size):
+        # not the rounding of a linkage that takes nothing; rows without values keep none
+        torque, wrenches, shaking = 0.0 * torque, 0.0 * wrenches, 0.0 * shaking
     slides = not linkage.turns(circuit.input_column)
     torque = torque * (size if slides else size**2)
     speed = speeds[:, 0]
@@ -211,6 +222,21 @@ def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -
         through_change_points=circuit.motion_type == "change-point",
         between=partial(_between, solver, circuit, at_rest),
     )
+
+
+def _nothing_pulls(solver: ForceSolver, speeds: Floats, kinetic: Floats, shaking: Floats) -> bool:
+    """Whether all that acts is the inertia of bodies, which stand still while others move.
+
+    From speeds and accelerations of the input (n, 2), kinetic energy (n,) [J] and shaking force (n, 3) [N].
+    """
+    loading = solver.loading
+    if any(loading.gravity) or loading.loads or loading.springs:
+        return False
+    rates = speeds / solver.numbers.scales[solver.input]
+    squared = float(np.nanmax(rates[:, 0] ** 2 + np.abs(rates[:, 1]), initial=0.0))
+    moves = float(np.nanmax(kinetic, initial=0.0)) > STILL**2 * solver.inertia * squared
+    pulls = float(np.nanmax(np.abs(shaking), initial=0.0)) > STILL * solver.inertia / solver.size * squared
+    return not (moves or pulls)
 
 
 def _poses(solver: ForceSolver, circuit: Circuit) -> Floats:

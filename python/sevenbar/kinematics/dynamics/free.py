@@ -18,7 +18,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, Words, finite_array, finite_number
 from sevenbar.errors import RequestError, shown
 from sevenbar.forces.free_motion.conservative import conservative
-from sevenbar.forces.free_motion.course import DAMPING, INPUT, MASS, EnergyCourse
+from sevenbar.forces.free_motion.course import DAMPING, INPUT, MASS, MASSLESS_WAY, EnergyCourse
 from sevenbar.forces.free_motion.driven import COARSE, TOLERANCE, Motor, driven
 from sevenbar.forces.free_motion.equilibria import Equilibrium, resting_places
 from sevenbar.forces.free_motion.result import FreeMotion, FreeStates, TurningPoint
@@ -26,7 +26,7 @@ from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.dynamics.energy_path import EnergyBuilder
-from sevenbar.kinematics.dynamics.forces import ForceSolver
+from sevenbar.kinematics.dynamics.forces import STILL, ForceSolver
 from sevenbar.kinematics.dynamics.free_rows import CourseRows
 from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_speed
@@ -73,8 +73,11 @@ class FreeCourse:
     def energy(self) -> EnergyCourse:
         """Mass, potential and damping along it."""
         course = self.builder.built()
-        if not course.quantities.reach[MASS] > 0:
-            raise RequestError("bodies: nothing that moves has a mass; give bodies, or write [[body]]")
+        if not course.quantities.reach[MASS] > STILL**2 * self.solver.inertia:
+            raise RequestError(
+                "bodies: nothing that moves on this circuit has a mass; give a body to a link that moves, as "
+                "[[body]], or take another circuit"
+            )
         return course
 
     @cached_property
@@ -97,7 +100,9 @@ class FreeCourse:
         number = joint_number("start", value, self.linkage, self.path.input)
         places = self.path.places(number, turns=self.turns)
         if not places.size:
-            raise RequestError(f"start: the circuit has no pose at {shown(value)}; see its input_range")
+            unit = self.linkage.length_unit
+            place = f"{math.degrees(number):.9g} deg" if self.turns else f"{number:.9g} {unit}"
+            raise RequestError(f"start: the circuit has no pose at {place}; see its input_range")
         first = self._first
         ordered = places[np.argsort((places - first + 1e-9 * self.path.length) % self.path.length)]
         if branch is None:
@@ -143,6 +148,8 @@ class FreeCourse:
             raise RequestError("energy: speed and energy are both given; give one of them")
         inside = np.array([place % self.path.length if self.path.closed else place])
         quantities = self.energy.quantities.at(inside)[0]
+        if (speed is not None or energy) and self.energy.is_massless(quantities[:1])[0]:
+            raise RequestError(MASSLESS_WAY)
         by_s = float(self.path.poses.slope.at(inside)[0, self.path.input])
         if energy is not None:
             joule = finite_number("energy", energy)
@@ -189,11 +196,12 @@ def equilibria_of(
     course = course_of(linkage, circuit, loading)
     energy = course.energy.driven_by(finite_number("torque", torque))
     found = []
+    begin = course.start(None, None) if energy.winds else 0.0
     row = int(np.flatnonzero(np.isfinite(circuit.q).all(axis=1))[0])
     gain, first = course.path.gain[course.path.input], float(circuit.q[row, course.path.input])
-    for inside, kind, frequency, rate in resting_places(energy):
+    for inside, kind, frequency, rate in resting_places(energy, begin):
         place = inside
-        if gain:
+        if gain and not energy.winds:
             # on the lap of the circuit's rows
             own = float(course.path.poses.at(np.array([inside]))[0, course.path.input])
             place -= math.floor((own - first) / gain + 1e-12) * course.path.length
@@ -340,11 +348,15 @@ def _rates(
         if motor is not None:
             by_s = own.quantities.at(inside)[:, INPUT]
             force = force + motor.at(times, by_s * v) * by_s
-        a = force / mass
+        # at a place without mass nothing is but at rest
+        massless = own.is_massless(mass)
+        a = np.where(massless, 0.0, force / mass)
         curvature = by[:, 1] + lap * by[:, 4]
         by_place = -(curvature + by[:, DAMPING] * v + second[:, MASS] * v**2 / 2 + a * by[:, MASS]) / mass
         by_speed = -(damping + by[:, MASS] * v) / mass
-        j = by_place * v + by_speed * a if motor is None else np.full(v.shape, np.nan)
+        j = np.where(massless, 0.0, by_place * v + by_speed * a)
+        if motor is not None:
+            j = np.full(v.shape, np.nan)
     kinetic = mass * v**2 / 2
     for part in (kinetic, potential, a, j):
         part[~known] = np.nan
