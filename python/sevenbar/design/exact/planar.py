@@ -65,7 +65,7 @@ def planar_poses(
     """
     task = planar_given(poses, 3, 5)
     _refuse_special(task)
-    forms = np.array([_form(r, d) for r, d in zip(task.turns[:, :2, :2], task.shifts[:, :2], strict=True)])
+    forms = _forms(task)
     title, count = f"{len(task.motions)} poses in a plane", len(task.motions)
     if moving is not None and count != 3:
         raise RequestError(f"moving: with {count} poses the pivots are not free; leave them out")
@@ -96,6 +96,35 @@ def planar_poses(
     dyads = _dyads(pairs, task)
     answers = loops_of_pairs(dyads, task, "Planar four-bar", length_unit)
     return ExactAnswers(title, "dyads", None, None, len(dyads), answers, how, drawn(dyads, task))
+
+
+def planar_dyads(task: Displacements, samples: int, seed: int) -> list[Dyad]:
+    """The dyads that take planar poses: all real ones of five; of four or three `samples`, drawn by a seed.
+
+    None where poses are special, so that infinitely many take five.
+    """
+    forms, count = _forms(task), len(task.motions)
+    if count == 5:
+        found = solutions(forms)
+        pairs = (
+            []
+            if found is None
+            else [
+                (a.real, b.real)
+                for a, b, real in zip(found.a, found.b, found.real, strict=True)
+                if real and not _is_circular(b)
+            ]
+        )
+    elif count == 4:
+        pairs = on_curve(forms, samples, seed)
+    else:
+        pairs = anywhere(forms, directions(samples, 3, seed))
+    return _dyads(pairs, task)
+
+
+def _forms(task: Displacements) -> Floats:
+    """The forms (n - 1, 3, 3) of (1)."""
+    return np.array([_form(r, d) for r, d in zip(task.turns[:, :2, :2], task.shifts[:, :2], strict=True)])
 
 
 def _form(turn: Floats, shift: Floats) -> Floats:
