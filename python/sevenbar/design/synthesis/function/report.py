@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -11,7 +10,7 @@ from matplotlib.figure import Figure
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.candidates import Candidate
+from sevenbar.design.candidates import Candidate, tally_told
 from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
 from sevenbar.design.synthesis.function.generation import Synthesis
@@ -48,7 +47,7 @@ def text(found: Synthesis) -> RenderableType:
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
     if found.refusals:
-        facts.add("refused", _refused(found))
+        facts.add("refused", tally_told(found.refusals))
     rows = [candidate.columns for candidate in found.candidates]
     names = [name for name in PRINTED if name in rows[0] and not (found.wish is None and name in OF_SWING)]
     table = number_table(
@@ -71,14 +70,6 @@ def text(found: Synthesis) -> RenderableType:
         dimensions,
     ]
     return Group(*parts)
-
-
-def _refused(found: Synthesis) -> str:
-    """What was refused, the commonest first."""
-    counts = Counter(refusal.fault for refusal in found.refusals)
-    return say(", ").join(
-        say("{count} by {fault}", count=count, fault=say(fault)) for fault, count in counts.most_common()
-    )
 
 
 def _searched(found: Synthesis) -> str:
