@@ -374,7 +374,7 @@ def tally(refusals: Iterable[Refusal]) -> str:
     return ", ".join(f"{count} by {fault}" for fault, count in counts.most_common())
 
 
-def tally_told(refusals: Iterable[Refusal]) -> str:
+def spoken_tally(refusals: Iterable[Refusal]) -> str:
     """The same in the language that is spoken."""
     counts = Counter(refusal.fault for refusal in refusals)
     return say(", ").join(

@@ -10,7 +10,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.candidates import tally_told
+from sevenbar.design.candidates import spoken_tally
 from sevenbar.design.files import design_files
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.task import SurveyTask
@@ -59,10 +59,10 @@ def text(count: int, found: SurveyResult) -> RenderableType:
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
     for label, words in tally_facts(found):
-        facts.add(label, _told(words), "bold" if label == "answer" else "")
+        facts.add(label, _spoken(words), "bold" if label == "answer" else "")
     facts.add("polished", say("{count} of the best", count=found.polished))
     if found.refusals:
-        reasons = tally_told(found.refusals)
+        reasons = spoken_tally(found.refusals)
         facts.add("of the best", say("{reasons} refused after polishing", reasons=reasons))
     parts: list[RenderableType] = [Text(say("Survey of RSSRs"), style="bold underline"), facts.grid]
     rows = [candidate.columns for candidate in found.candidates[:count]]
@@ -120,8 +120,8 @@ def as_dict(found: SurveyResult) -> dict[str, Any]:
     }
 
 
-def _told(words: str) -> str:
-    """A fact of the tally in the language that is spoken: the verdict, and what is told of it."""
+def _spoken(words: str) -> str:
+    """A fact of the tally in the language that is spoken: the verdict, then its figures."""
     before, colon, after = words.partition(": ")
     return f"{say(before)}{say(': ')}{retold_parts(after, ': ')}" if colon else retold(words)
 

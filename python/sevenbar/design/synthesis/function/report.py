@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.candidates import Candidate, tally_told
+from sevenbar.design.candidates import Candidate, spoken_tally
 from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
 from sevenbar.design.synthesis.function.generation import Synthesis
@@ -47,7 +47,7 @@ def text(found: Synthesis) -> RenderableType:
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
     if found.refusals:
-        facts.add("refused", tally_told(found.refusals))
+        facts.add("refused", spoken_tally(found.refusals))
     rows = [candidate.columns for candidate in found.candidates]
     names = [name for name in PRINTED if name in rows[0] and not (found.wish is None and name in OF_SWING)]
     table = number_table(
