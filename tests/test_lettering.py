@@ -113,6 +113,7 @@ def cases() -> list[Any]:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("fonts_of_matplotlib")
 @pytest.mark.parametrize(("name", "kind"), cases())
 def test_no_text_of_a_figure_lies_on_another_or_leaves_the_page(
     motions: dict[str, sb.Motion], name: str, kind: str, monkeypatch: pytest.MonkeyPatch

@@ -17,7 +17,7 @@ from sevenbar.design.task.front import ParetoFront
 from sevenbar.design.task.report import TaskDesigns, as_dict, task_report
 from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
 from sevenbar.design.task.words import task_facts, want_words
-from sevenbar.drawing.figure import page_figure
+from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, styled
 from sevenbar.kinematics.measures import measures_named
@@ -138,5 +138,5 @@ def front_figure(found: FrontFound) -> Any:
         axes.set_ylabel(labels[1])
         axes.xaxis.set_major_locator(MaxNLocator(7))
         axes.grid(lw=0.6)
-        figure.suptitle(f"{short(found.name, 60)}\n{say('none is better in both')}")
+        headline(figure, f"{short(found.name, 60)}\n{say('none is better in both')}")
     return figure
