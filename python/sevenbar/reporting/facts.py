@@ -29,6 +29,12 @@ COMPLETE = {
     "searched": "the modes that a search from many starts found; there may be others",
 }
 
+#: The same of modes at an input at which a curve of poses closes.
+COMPLETE_WITH_CURVE = {
+    "algebraic": "all isolated modes are found; a curve of poses closes here, too",
+    "searched": "one pose that a search found; a curve of poses closes here",
+}
+
 
 def side_lengths(linkage: Solvable) -> dict[str, float]:
     """Crank, coupler and rocker of an RSSR."""
@@ -100,9 +106,10 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     return facts
 
 
-def completeness_text(word: str) -> str:
-    """The word for how it is known that nothing is missing, and what it means."""
-    return say("{word}: {meaning}", word=say(word), meaning=say(COMPLETE[word]))
+def completeness_text(word: str, *, curve: bool = False) -> str:
+    """The word for how it is known that nothing is missing, and its meaning; modes may have a `curve` too."""
+    meanings = COMPLETE_WITH_CURVE if curve else COMPLETE
+    return say("{word}: {meaning}", word=say(word), meaning=say(meanings[word]))
 
 
 def _limits_text(motion: Motion) -> str:

@@ -318,6 +318,7 @@ def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
         "completeness": modes.completeness,
         "open_by": modes.open_by.tolist(),
         "agree": modes.agree,
+        "on_curve": None if modes.on_curve is None else modes.on_curve.tolist(),
         "count": len(modes),
         "columns": [
             {"name": name, "kind": kind}
@@ -339,7 +340,7 @@ def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
                 "{count} assembly mode{s} at {joint} = {value}, {completeness}",
                 count=count or say("no"), s="s" * (count != 1), joint=linkage.columns[column],
                 value=value_text(linkage, column, modes.input),
-                completeness=completeness_text(modes.completeness),
+                completeness=completeness_text(modes.completeness, curve=modes.on_curve is not None),
             )
         )  # fmt: skip
         if modes.open_by.size:

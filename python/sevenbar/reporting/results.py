@@ -18,8 +18,8 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.screw_axes import ScrewAxes
 from sevenbar.reporting.circuit_quantities import way_round
 from sevenbar.reporting.facts import (
-    COMPLETE,
     closure_error,
+    completeness_text,
     dimensions_text,
     facts_of,
     joints_text,
@@ -80,7 +80,7 @@ def _(modes: Modes) -> str:
             ("q", f"{modes.q.shape}: {', '.join(modes.columns)}"),
             ("status", rows_text(modes.status)),
             ("residual", worst),
-            ("completeness", f"{modes.completeness}: {COMPLETE[modes.completeness]}"),
+            ("completeness", completeness_text(modes.completeness, curve=modes.on_curve is not None)),
         ],
     )
 

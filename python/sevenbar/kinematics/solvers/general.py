@@ -148,11 +148,14 @@ class GeneralLoop:
 
     def modes(self, column: int, value: float) -> Modes:
         """Every assembly mode at one value of a column."""
-        q, residual, completeness, open_by = self._solve(
+        q, residual, completeness, open_by, on_curve = self._solve(
             column, partial(self._core.assembly_modes, column, value)
         )
         columns = self._linkage.columns
-        return Modes(q, residual * self.size, completeness, columns, value, np.array(open_by), self._agree)
+        return Modes(
+            q, residual * self.size, completeness, columns, value, np.array(open_by), self._agree,
+            None if on_curve is None else np.array(on_curve),
+        )  # fmt: skip
 
     def mobility(self, column: int) -> Mobility:
         """How freely the loop moves; poses are looked for over the values of a column."""

@@ -224,10 +224,11 @@ impl<'a> ModeFinder<'a> {
         Some(Algebraic { finder: self, generic: self.generic(closure), parameters, zeros })
     }
 
-    /// All modes at the one value that is asked for [rad, or relative to the size].
-    pub fn once(&self, value: f64) -> Polished {
+    /// All modes at the one value that is asked for [rad, or relative to the size], and whether fewer solutions stand alone there than at
+    /// a general one.
+    pub fn once(&self, value: f64) -> (Polished, bool) {
         let Some(closure) = &self.closure else {
-            return self.polished(&searched(self.chain, self.input, value));
+            return (self.polished(&searched(self.chain, self.input, value)), false);
         };
         // straight there: where as many arrive as there can be, none is missing
         let (to, shift) = closure.parameters(self.input_at(value));
@@ -235,10 +236,11 @@ impl<'a> ModeFinder<'a> {
         let found = carried(&self.slides, &start.parameters, &to, &start.solutions, BRISK);
         let ends = distinct(&self.slides, found.into_iter().flatten(), SAME_MODE);
         if ends.len() == closure.class.count() {
-            self.polished(&self.real_ones(&ends, &shift, value, REAL))
-        } else {
-            self.at(value)
+            return (self.polished(&self.real_ones(&ends, &shift, value, REAL)), false);
         }
+        let ends = self.ends_at(closure, value);
+        let fewer = ends.len() < self.generic(closure).solutions.len() || self.is_degenerate();
+        (self.polished(&self.real_ones(&ends, &shift, value, REAL)), fewer)
     }
 
     /// All modes with the input at this value [rad, or relative to the size].
@@ -251,9 +253,15 @@ impl<'a> ModeFinder<'a> {
         let Some(closure) = &self.closure else {
             return searched(self.chain, self.input, value);
         };
+        let (_, shift) = closure.parameters(self.input_at(value));
+        self.real_ones(&self.ends_at(closure, value), &shift, value, real)
+    }
+
+    /// The solutions that stand alone with the input at this value [rad, or relative to the size].
+    fn ends_at(&self, closure: &Closure, value: f64) -> Vec<Solution> {
         let generic = self.generic(closure);
         let (from, _) = closure.parameters(generic.input);
-        let (to, shift) = closure.parameters(self.input_at(value));
+        let (to, _) = closure.parameters(self.input_at(value));
         let mut ends: Vec<Solution> = Vec::new();
         let mut random = Random(0xde70);
         for attempt in 0..3 {
@@ -278,7 +286,7 @@ impl<'a> ModeFinder<'a> {
                 break;
             }
         }
-        self.real_ones(&ends, &shift, value, real)
+        ends
     }
 
     /// All modes at the values `2 pi k / count` of an input that turns, some of them rough to [`POLISHED_MOVE`], and the paths by
