@@ -59,6 +59,12 @@ class Draft:
         """The draft of a linkage's own description, which has no text with comments."""
         return Draft("", description_of(linkage), linkage.name, agree=linkage.agree)
 
+    @staticmethod
+    def made(name: str, length_unit: str, **tables: Any) -> Draft:
+        """The draft of tables that no file has; its angles are in degrees."""
+        head = {"format": 1, "name": name, "length_unit": length_unit, "angle_unit": "deg"}
+        return Draft("", {**head, **tables}, name)
+
     def as_opened(self) -> Draft:
         """The draft as its text has it."""
         return replace(self, raw=_opened(tomllib.loads(self.text), self.source))

@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Literal, Protocol, TypeVar
 
 import numpy as np
 
@@ -57,6 +57,18 @@ Fault = Literal[
     "distance",
     "figure",
 ]
+
+
+class Drafted(Protocol):
+    """What has a description."""
+
+    @property
+    def draft(self) -> Draft:
+        """Its description."""
+        ...
+
+
+T = TypeVar("T", bound=Drafted)
 
 
 @dataclass(frozen=True, eq=False)
@@ -390,17 +402,17 @@ def likeness(draft: Draft, *, scale_free: bool, mirrored: bool = False) -> Float
 
 
 def distinct(
-    candidates: Iterable[Candidate], *, scale_free: bool, mirrored: bool = False, count: int | None = None
-) -> list[Candidate]:
-    """The candidates that differ, the first of those that are alike by `likeness`; at most `count`."""
-    kept: list[Candidate] = []
+    designs: Iterable[T], *, scale_free: bool, mirrored: bool = False, count: int | None = None
+) -> list[T]:
+    """The designs that differ, the first of those that are alike by `likeness`; at most `count`."""
+    kept: list[T] = []
     seen: list[Floats] = []
-    for candidate in candidates:
+    for design in designs:
         if count is not None and len(kept) >= count:
             break
-        own = likeness(candidate.draft, scale_free=scale_free, mirrored=mirrored)
+        own = likeness(design.draft, scale_free=scale_free, mirrored=mirrored)
         if all(len(own) != len(other) or np.abs(own - other).max() > SAME for other in seen):
-            kept.append(candidate)
+            kept.append(design)
             seen.append(own)
     return kept
 
@@ -412,10 +424,10 @@ def ranked(
     return sorted(candidates, key=key or (lambda candidate: candidate.error_greatest))
 
 
-def renamed(candidates: Sequence[Candidate], title: str) -> list[Candidate]:
+def renamed(candidates: Iterable[Candidate], title: str, word: str = "design") -> list[Candidate]:
     """The candidates with the names `title, design 1`, .. in their order."""
     return [
-        replace(c, draft=c.draft.with_value(("name",), f"{title}, design {i}"))
+        replace(c, draft=c.draft.with_value(("name",), f"{title}, {word} {i}"))
         for i, c in enumerate(candidates, 1)
     ]
 

@@ -71,6 +71,12 @@ def number_table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: 
     return table
 
 
+def page(title: str, facts: Facts, *parts: RenderableType) -> Group:
+    """A page: its title, its facts, and tables or other parts with a free line above each."""
+    free = (own for part in parts for own in (Text(), part))
+    return Group(Text(title, style="bold underline"), facts.grid, *free)
+
+
 def opening(kind: str, page: RenderableType) -> str:
     """What a result of this kind prints of itself: the title of its page, and the facts below it."""
     parts = page.renderables[:2] if isinstance(page, Group) else [page]

@@ -94,7 +94,7 @@ def generated(
     found = designed(task.design, count=count, starts=starts, seed=seed, progress=progress)
     found.required(starts)
     best = sorted(found.designs, key=lambda design: design.candidate.error_greatest)
-    return replace(found, designs=tuple(named(task.design, best)))
+    return replace(found, designs=named(task.design, best))
 
 
 def check_counts(count: object, starts: object, seed: object) -> None:
