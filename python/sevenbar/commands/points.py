@@ -23,7 +23,7 @@ from sevenbar.commands.options import (
     figure_formats,
 )
 from sevenbar.commands.progress import progress_bar
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_word, shown
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.ranges import split_list, split_named, split_range, three_numbers
 from sevenbar.text.units import amount
@@ -188,6 +188,5 @@ def _motion(
 
 def _least(least: str) -> tuple[Rate, Literal["greatest", "rms"]]:
     """The rate of a word of --least, and whether its greatest or its mean counts."""
-    if least not in LEAST:
-        raise RequestError(f"--least: {shown(least)} is not offered; give one of {', '.join(LEAST)}")
+    check_word("--least", least, LEAST)
     return ("acceleration", "rms") if least == "rms" else (cast("Rate", least), "greatest")

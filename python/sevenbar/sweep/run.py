@@ -21,12 +21,13 @@ from itertools import islice
 from multiprocessing import get_context, parent_process
 from pathlib import Path
 
+from sevenbar.arrays import whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.errors import EngineError, RequestError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import Measure
-from sevenbar.sweep.axes import Given, whole_number
+from sevenbar.sweep.axes import Given
 from sevenbar.sweep.parts import PartsFolder, other_maker
 from sevenbar.sweep.plan import SweepPlan, maker
 from sevenbar.sweep.result import Sweep

@@ -24,7 +24,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, finite_number
+from sevenbar.arrays import Floats, finite_array, finite_number, positive_length
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Claim
 from sevenbar.design.closure import draft_of
@@ -103,9 +103,7 @@ def function_pairs(
         )
     if np.ptp(b) < STILL:
         raise RequestError("outputs: all are the same; give pairs whose output moves")
-    scale = finite_number("longest", longest)
-    if scale <= 0:
-        raise RequestError(f"longest: {scale:g} is not a length; give a number > 0")
+    scale = positive_length("longest", longest)
     own = None if zeros is None else _own_zeros(zeros, cosine)
     spaces, theory, known, how = _closures(a, b, cosine, own, samples, seed)
     found = [rssr for rssr in (_linkage(space, cosine, own) for space in spaces) if rssr is not None]

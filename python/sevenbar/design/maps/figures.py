@@ -23,7 +23,7 @@ from sevenbar.drawing.asked import asked_style
 from sevenbar.drawing.figure import new_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import STYLES, letters, styled
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import check_word
 from sevenbar.text.words import say
 
 #: Sheets of paper, width and height [inch].
@@ -74,12 +74,9 @@ LABEL = (0.03, 0.02)
 
 def sheet(size: str) -> tuple[float, float]:
     """Width and height [inch] of a sheet of this name; raises `RequestError` for another."""
-    known = SIZES.get(size.strip().upper())
-    if known is None:
-        raise RequestError(
-            f"size: {shown(size)} is not a sheet; {suggestion(size, SIZES)}give one of {', '.join(SIZES)}"
-        )
-    return known
+    name = size.strip().upper()
+    check_word("size", name, SIZES, "a sheet")
+    return SIZES[name]
 
 
 def draw(

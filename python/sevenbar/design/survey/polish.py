@@ -319,7 +319,7 @@ def swung(want: SwingWish, found: Candidate) -> Candidate:
         "input_at_low_deg": math.degrees(circuit.angle.lowest_at % math.tau),
         "input_at_high_deg": math.degrees(circuit.angle.highest_at % math.tau),
     }
-    return replace(found, claim=replace(found.claim, figures=figures), error_greatest=error, error_rms=error)
+    return replace(found, claim=replace(found.claim, figures=figures, errors=np.array([error])))
 
 
 def _errors(task: SurveyTask, dense: Floats, angles: Floats) -> tuple[Floats, dict[str, float]]:

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Floats, finite_array, whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
@@ -180,15 +180,12 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
             raise
         raise RequestError(f"point: {shown(point)} is not a place; give a link and three numbers") from None
     count = len(linkage.joints)
-    if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link < count:
-        raise RequestError(
-            f"point: {shown(link)} is not a moving link; give 1 to {count - 1}, link {count} is the ground"
-        )
+    link = whole_number("point", link, 1, count - 1, "a moving link", f", link {count} is the ground")
     if place.size != 3:
         raise RequestError(f"at: {place.size} numbers; give three")
     taken = {known.name for known in linkage.points} | {joint.name for joint in linkage.joints}
     name = next(n for n in ("P", "path_point", *(f"P{i}" for i in range(1, 1000))) if n not in taken)
-    made = draft.with_point(name, int(link), tuple(map(float, place)))
+    made = draft.with_point(name, link, tuple(map(float, place)))
     return made, next(p for p in made.linkage.points if p.name == name)
 
 
