@@ -60,6 +60,12 @@ class Limits:
         if self.motion_type is not None:
             check_word("motion type", self.motion_type, MOTION_TYPES)
 
+    def flaw(self, form: str) -> str:
+        """What is wrong with the transmission angle for linkages of a form; empty where nothing is."""
+        if self.transmission_lowest == 0.0 or form == "rssr":
+            return ""
+        return "its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out"
+
     @property
     def ratio(self) -> float:
         """The most that the longest dimension may be of the shortest link."""

@@ -128,10 +128,8 @@ def path_task(
         raise RequestError("phase: the path has no inputs whose start could be free; give timing, too")
     wanted = wanted[:-1] if closed else wanted
     limits = Limits() if limits is None else limits
-    if limits.transmission_lowest and draft.linkage.form != "rssr":
-        raise RequestError(
-            "transmission: its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out"
-        )
+    if flaw := limits.flaw(draft.linkage.form):
+        raise RequestError(f"transmission: {flaw}")
     refuse_idle_link(draft.linkage, own.link, "a path on it")
     varied = _varied(draft, own, vary)
     low, high = _bounds(draft, varied, limits, float(np.ptp(wanted, axis=0).max()), bounds or {})
