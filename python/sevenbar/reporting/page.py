@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from io import StringIO
 
 from rich.box import SIMPLE_HEAD
@@ -26,6 +26,11 @@ class Facts:
     def add(self, label: str, text: str, style: str = "") -> None:
         """Adds a line, its label in the language that is spoken; without one it belongs to the line above."""
         self.grid.add_row(say(label) if label else "", Text(text, style=style))
+
+    def add_all(self, facts: Iterable[tuple[str, str]], *, bold: Collection[str] = ()) -> None:
+        """Adds a line for each label and text, those with some labels bold."""
+        for label, text in facts:
+            self.add(label, text, "bold" if label in bold else "")
 
 
 def drive_text(input: str, speed: float | None, unit: str, output: str = "", *, written: str = "") -> str:

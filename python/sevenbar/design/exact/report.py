@@ -47,8 +47,7 @@ def text(count: int, designs: ExactDesigns) -> RenderableType:
     """The answers for people, with the first `count` linkages."""
     found, facts = designs.found, Facts()
     facts.add("task", f"{found.task} of {designs.source}", "bold")
-    for label, words in answer_facts(found):
-        facts.add(label, words)
+    facts.add_all(answer_facts(found))
     parts: list[RenderableType] = []
     if found.dyads:
         unit = designs.length_unit

@@ -57,8 +57,7 @@ def text(count: int, found: SurveyResult) -> RenderableType:
     facts.add("axes", _axes(found.task))
     if found.unfinished:
         facts.add("unfinished", found.unfinished, "bold yellow")
-    for label, words in tally_facts(found):
-        facts.add(label, words, "bold" if label == "answer" else "")
+    facts.add_all(tally_facts(found), bold=["answer"])
     facts.add("polished", f"{found.polished} of the best")
     if found.refusals:
         facts.add("of the best", f"{tally(found.refusals)} refused after polishing")

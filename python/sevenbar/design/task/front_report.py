@@ -80,8 +80,7 @@ def _write_table(found: FrontFound, path: Path) -> None:
 def _text(found: FrontFound) -> RenderableType:
     front = found.front
     facts = Facts()
-    for label, words in task_facts(found.task):
-        facts.add(label, words, "bold" if label == "wanted" else "")
+    facts.add_all(task_facts(found.task), bold=["wanted"])
     both = " and ".join(str(place + 1) for place in front.wants)
     facts.add(
         "front", f"of wants {both}: {len(front.points)} points of {front.solved} searches, seed {found.seed}"

@@ -148,8 +148,7 @@ def _head(command: str, found: TaskDesigns) -> list[str]:
 def text(found: TaskDesigns) -> RenderableType:
     """The designs for people."""
     facts = Facts()
-    for label, words in _facts(found):
-        facts.add(label, words, "bold" if label in ("wanted", "answer") else "")
+    facts.add_all(_facts(found), bold=("wanted", "answer"))
     if found.unfinished:
         facts.add("unfinished", found.unfinished, "bold yellow")
     tables = _tables(found) if found.found.designs else []

@@ -53,22 +53,25 @@ def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
     count = len(task.dimensions)
     names = ", ".join(dimension.name for dimension in task.dimensions)
     size = f"{task.extent:.4g} {unit}"
-    places = {"source": source, "count": len(task.wanted), "size": size}
+    want = task.want
+    places = {"source": source, "count": len(want.places), "size": size}
     wanted = (
         say("{source}: {count} points of a closed path, {size} across", **places)
-        if task.closed
+        if want.closed
         else say("{source}: {count} points of an open path, {size} across", **places)
     )
-    if task.timing is not None:
+    if want.timing is not None:
         wanted = say("{path}, at given inputs", path=wanted)
-        wanted = say("{path} from a free start", path=wanted) if task.phase else wanted
+        wanted = say("{path} from a free start", path=wanted) if want.phase else wanted
+    fixed = task.design.placement == "fixed"
+    where = say("where the description has it") if fixed else say("anywhere in space")
     return [
         ("wanted", wanted),
         ("point", say("{point} on link {link}", point=task.point.name, link=task.point.link)),
         ("varied", say("{count} dimension{s}: {names}", count=count, s="s" * (count != 1), names=names)),
         *([("held", task.held.text)] if task.held.left_to_the_program else []),
-        ("ground", say("anywhere in space") if task.place else say("where the description has it")),
-        ("limits", retold_parts(task.limits.text(), "; ")),
+        ("ground", where),
+        ("limits", retold_parts(task.design.limits.text(), "; ")),
     ]
 
 
@@ -86,7 +89,7 @@ def _figure(found: PathDesigns, candidate: Candidate) -> Figure:
 def _head(command: str, found: PathDesigns) -> list[str]:
     task = found.task
     lines = [f"{label}: {text}" for label, text in _facts(task, found.source)]
-    if task.place and "joint" not in task.draft.raw:
+    if task.design.placement != "fixed" and "joint" not in task.draft.raw:
         lines.append(
             "placed: turned by turn_x, turn_y, turn_z (axis times angle), then shifted, it makes the path"
         )
@@ -101,8 +104,7 @@ def text(found: PathDesigns) -> RenderableType:
     linkage = task.draft.linkage
     unit = linkage.length_unit
     facts = Facts()
-    for label, text in _facts(task, found.source):
-        facts.add(label, text, "bold" if label == "wanted" else "")
+    facts.add_all(_facts(task, found.source), bold=["wanted"])
     facts.add("seed", str(found.seed))
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
