@@ -259,7 +259,7 @@ def test_the_example_of_the_page_prints_what_its_comments_say():
         ),
         (
             lambda: planar_poses([(0, 0, 0), (1, 0, 1), (3, 1, 2)], samples=2.5),
-            "samples: 2.5 is no number of members; give 1 to 1048576",
+            "samples: 2.5 is not a number of members; give 1 to 1048576",
         ),
         (
             lambda: spherical_orientations([np.eye(3), about(0, 1.0), about(1, 1.0)], radius=0),

@@ -137,7 +137,7 @@ def suggestion(word: str, known: Iterable[str]) -> str:
 
 
 def check_word(key: str, word: object, known: Iterable[str], what: str = "offered") -> None:
-    """Raises `RequestError` for a word that is none of those `known`, and so not `what` is asked for.
+    """Raises `RequestError` for a word that is none of those `known`: it is not `what`.
 
     >>> check_word("measure", "rms", ("greatest", "rms"))
     """

@@ -71,7 +71,7 @@ def map_(
     formats = figure_formats(figures, out)
     sheet(size or "A4")
     ranges = split_ranges(over or [])
-    at = None if levels is None else levels_of(words([levels]), "--levels")
+    at = None if levels is None else levels_of(levels, "--levels")
     which = cast("Take", int(take) if take.isdecimal() else take)
     check_take(which, "--take")
     names = words(measure, "--measure")

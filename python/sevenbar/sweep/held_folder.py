@@ -105,7 +105,7 @@ class HeldFolder:
             )
 
     def _refuse_unfinished(self, done: int) -> None:
-        """`OutputError` for parts that are there, where the others were not asked for."""
+        """`OutputError` for parts that are there, to which `--resume` would add the others."""
         if 0 < done < self._plan.parts:
             raise OutputError(
                 f"{self.path}: {done} of {self._plan.parts} parts are there; "

@@ -144,12 +144,13 @@ def look(of: Map, kind: Kind, *, faint: bool = False) -> dict[str, Any]:
     return {"facecolor": colour, "edgecolor": HATCH, "hatch": hatch, "lw": 0.0}
 
 
-def _shaded(colour: str | tuple[float, ...], by: float) -> tuple[float, ...]:
+def _shaded(colour: str | tuple[float, float, float], by: float) -> tuple[float, float, float]:
     """A colour moved towards white, or for a number below 0 towards black."""
     from matplotlib.colors import to_rgb
 
     rgb = np.array(to_rgb(colour))
-    return tuple(float(c) for c in (rgb + (1 - rgb) * by if by > 0 else rgb * max(0.35, 1 + by)))
+    red, green, blue = (rgb + (1 - rgb) * by if by > 0 else rgb * max(0.35, 1 + by)).tolist()
+    return red, green, blue
 
 
 def _fill(axes: Axes, of: Map, scale: float, *, faint: bool) -> None:

@@ -154,10 +154,11 @@ def refuse_missing_circuit(of: Map, take: int) -> None:
         )
 
 
-def levels_of(levels: Sequence[float | str], key: str = "levels") -> list[float]:
-    """Finite numbers, rising; raises `RequestError` for what are none."""
+def levels_of(levels: Sequence[float] | str, key: str = "levels") -> list[float]:
+    """Finite numbers, rising, of some or of a word as '20,40,60'; raises `RequestError` for what are none."""
+    given = [part for part in levels.split(",") if part.strip()] if isinstance(levels, str) else levels
     try:
-        values = sorted({float(level) for level in levels})
+        values = sorted({float(level) for level in given})
     except (TypeError, ValueError):
         values = []
     if not values or not all(map(math.isfinite, values)):
