@@ -67,7 +67,7 @@ def folder(tmp_path):
         ),
         (
             ["rssr", "--out", "out", "--figures", "svg,bmp"],
-            "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf, eps",
+            "--figures: 'bmp' is not a figure format; give png, svg, pdf or eps",
         ),
         (
             ["rssr", "--out", "taken"],

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sized
 from decimal import Decimal
 from numbers import Real
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 import numpy.typing as npt
@@ -46,6 +46,14 @@ def finite_number(name: str, value: npt.ArrayLike) -> float:
     return number
 
 
+def positive_length(name: str, value: npt.ArrayLike) -> float:
+    """One finite number greater than 0, or `RequestError`."""
+    number = finite_number(name, value)
+    if number <= 0:
+        raise RequestError(f"{name}: {number:g} is not a length; give a number > 0")
+    return number
+
+
 def real_array(name: str, values: npt.ArrayLike) -> Floats:
     """A one-dimensional array of real numbers, finite or not, or `RequestError`; a number is an array of one.
 
@@ -64,6 +72,24 @@ def real_array(name: str, values: npt.ArrayLike) -> Floats:
     if given.ndim > 1:
         raise RequestError(f"{name}: an array of shape {given.shape} does not fit; give one dimension")
     return array.reshape(-1)
+
+
+def whole_number(name: str, value: object, low: int, high: int | None, what: str, hint: str = "") -> int:
+    """A whole number within bounds, or `RequestError` saying that it is not `what`.
+
+    >>> whole_number("circuit", np.int64(1), 0, 3, "a circuit")
+    1
+    """
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not whole or not low <= value or not (high is None or value <= high):  # type: ignore[operator]
+        allowed = f"{low} or more" if high is None else f"{low} to {high}" if low < high else f"{low}"
+        raise RequestError(f"{name}: {shown(value)} is not {what}; give {allowed}{hint}")
+    return int(value)  # type: ignore[call-overload, no-any-return]
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether a value is one real number; truth values are none."""
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
 
 
 def counted(words: Words) -> dict[str, int]:

@@ -228,7 +228,6 @@ def read_pairs(path: Path) -> tuple[Floats, Floats]:
     columns = []
     for column in (0, 1) if None in named else named:
         assert column is not None
-        size = table.size(column, ("turn", 0), "m", what="angle", example="deg")
-        columns.append(table.numbers(column) * size)
+        columns.append(table.sized(column, ("turn", 0), "m", what="angle", example="deg"))
     table.refuse_gaps(dict(enumerate(columns)), "leave the row out")
     return columns[0], columns[1]

@@ -139,9 +139,9 @@ def page_of_one(
     return figure, ViewAxes(own_axes(figure, view), view), (0.0, foot, width, height - top - foot)
 
 
-def fit_picture(space: ViewAxes, box: Box, room: Rectangle, *, bare: bool = False) -> None:
-    """Places axes on the page so that their box and its labels fill a rectangle; `bare`: without labels."""
-    left, right, below, above = (0.1, 0.1, 0.1, 0.1) if bare else margins(space.view)
+def fit_picture(space: ViewAxes, box: Box, room: Rectangle) -> None:
+    """Places axes on the page so that their box and its labels fill a rectangle."""
+    left, right, below, above = margins(space.view)
     inner = (room[0] + left, room[1] + below, room[2] - left - right, room[3] - below - above)
     fit(space, box, inner)
     space.axes.apply_aspect()

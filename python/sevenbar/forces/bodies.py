@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array, finite_number
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_word, shown
 
 #: Where centre and inertia come from if they are not given.
 Solid = Literal["rod", "point", "drawn"]
@@ -45,8 +45,8 @@ class Body:
         mass = finite_number("mass", self.mass)
         if mass < 0 or (mass == 0 and self.solid != "drawn"):
             raise RequestError(f"mass: {shown(self.mass)} is not a mass; give kilograms > 0")
-        if self.solid is not None and self.solid not in SOLIDS:
-            raise RequestError(f"solid: {shown(self.solid)} is not offered; give {', '.join(SOLIDS)}")
+        if self.solid is not None:
+            check_word("solid", self.solid, SOLIDS)
         object.__setattr__(self, "mass", mass)
         made = self.solid in ("rod", "drawn")
         if made and (self.centre is not None or self.inertia is not None):

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array, finite_number
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_word, shown
 from sevenbar.forces.bodies import Body, triple
 
 Three = tuple[float, float, float]
@@ -40,8 +40,7 @@ class Load:
     def __post_init__(self) -> None:
         for key in ("force", "torque"):
             object.__setattr__(self, key, triple(key, getattr(self, key)))
-        if self.axes not in ("ground", "link"):
-            raise RequestError(f"axes: {shown(self.axes)} is not offered; give ground or link")
+        check_word("axes", self.axes, ("ground", "link"))
         if any(self.force) and self.at is None:
             raise RequestError("at: is missing; give the point at which the force acts")
         object.__setattr__(self, "at", triple("at", (0.0, 0.0, 0.0) if self.at is None else self.at))

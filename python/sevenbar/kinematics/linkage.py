@@ -10,8 +10,8 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
-from sevenbar.errors import NotCoveredError, RequestError, ends_here, shown
+from sevenbar.arrays import Floats, finite_array, is_number, whole_number
+from sevenbar.errors import NotCoveredError, RequestError, check_word, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.kinematics.answers import LinkageAnswers
@@ -165,8 +165,7 @@ class Linkage(Solvable):
         solver = self._rssr("output")
         column = self.input_column(input)
         array = joint_numbers("input", values, self, column)
-        if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= 3:
-            raise RequestError(f"order: {shown(order)} is not offered; give 0 to 3")
+        order = whole_number("order", order, 0, 3, "offered")
         law = None
         constant = 1.0
         plain = speed is None or isinstance(speed, str) or np.ndim(speed) == 0
@@ -401,18 +400,13 @@ class Linkage(Solvable):
         return column, output_column, sample_count("samples", samples), self._speed(speed, column)
 
     def _has_closed_form(self, method: str) -> bool:
-        if method not in ("auto", "general"):
-            raise RequestError(f"method: {shown(method)} is not offered; give auto or general")
+        check_word("method", method, ("auto", "general"))
         return method == "auto" and self.kind == "RSSR"
 
 
 def closure_tolerance(name: str, value: object) -> float:
     """A closure error up to which redundant constraints agree, or `RequestError` that names it."""
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, (int, float, np.number))
-        or not LEAST_AGREE <= value <= MOST_AGREE
-    ):
+    if not is_number(value) or not LEAST_AGREE <= value <= MOST_AGREE:
         raise RequestError(
             f"{name}: {shown(value)} is not a closure error; give {LEAST_AGREE:g} to {MOST_AGREE:g} "
             "(rad, or relative to the linkage size)"
@@ -422,9 +416,7 @@ def closure_tolerance(name: str, value: object) -> float:
 
 def sample_count(name: str, value: object) -> int:
     """A number of inputs in a turn, or `RequestError` naming what it was given for."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not 4 <= value <= MOST_SAMPLES:
-        raise RequestError(f"{name}: {shown(value)} is not a count; give 4 to {MOST_SAMPLES}")
-    return int(value)
+    return whole_number(name, value, 4, MOST_SAMPLES, "a count")
 
 
 def _rate(name: str, value: npt.ArrayLike, count: int) -> Floats:

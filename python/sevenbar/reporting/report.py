@@ -176,8 +176,7 @@ def text(motion: Motion, *, ranges: bool = False) -> RenderableType:
     def parts(width: int) -> Iterator[RenderableType]:
         page = summary(motion, width, ranges=ranges)
         facts = Facts()
-        for name, fact in page.facts:
-            facts.add(name, fact, style="bold" if name == say("motion type") else "")
+        facts.add_all(page.facts, bold=[say("motion type")])
         yield Text(page.title, style="bold underline")
         yield facts.grid
         for sheet in page.sheets:

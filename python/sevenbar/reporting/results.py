@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes, Sensitivity, Trace
 from sevenbar.kinematics.circuits.instant_centres import InstantCentre, InstantCentres
@@ -267,11 +267,7 @@ def _figure(motion: Motion, kind: str, options: dict[str, Any]) -> Figure:
     """The figure of a motion that a function of `sevenbar.plot` draws."""
     from sevenbar.drawing import plot
 
-    if kind not in OF_A_MOTION:
-        raise RequestError(
-            f"kind: {shown(kind)} is not a figure of a motion; {suggestion(kind, OF_A_MOTION)}"
-            f"give {', '.join(OF_A_MOTION)}"
-        )
+    check_word("kind", kind, OF_A_MOTION, "a figure of a motion")
     figure: Figure = getattr(plot, kind)(motion, **options)
     return figure
 

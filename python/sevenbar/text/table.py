@@ -130,6 +130,12 @@ class TextTable:
         """The numbers of a column (rows,); NaN where it holds none. Raises `TableError` for other text."""
         return np.array([self._number(row, column) for row in range(len(self.rows))])
 
+    def sized(
+        self, column: int, sort: tuple[str, int], length_unit: str, *, what: str, example: str
+    ) -> npt.NDArray[np.float64]:
+        """The numbers of a column (rows,) in s, rad or `length_unit`, as `size` has it."""
+        return self.numbers(column) * self.size(column, sort, length_unit, what=what, example=example)
+
     def _number(self, row: int, column: int) -> float:
         cell = self.rows[row][column]
         value = number(cell, decimal_comma=self.decimal_comma)

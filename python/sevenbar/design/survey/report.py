@@ -7,18 +7,18 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
 from sevenbar.design.candidates import tally
 from sevenbar.design.files import design_files
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.task import SurveyTask
+from sevenbar.design.tables import columns_table, plain_designs
 from sevenbar.design.task.report import TaskDesigns
 from sevenbar.design.wish import Wish
 from sevenbar.kinematics.solvers.surveys import NUMBERS
 from sevenbar.reporting.files import Report
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, page
 
 #: Columns of the printed table, by their names in `Candidate.columns`, those that a task has.
 PRINTED = {
@@ -57,23 +57,13 @@ def text(count: int, found: SurveyResult) -> RenderableType:
     facts.add("axes", _axes(found.task))
     if found.unfinished:
         facts.add("unfinished", found.unfinished, "bold yellow")
-    for label, words in tally_facts(found):
-        facts.add(label, words, "bold" if label == "answer" else "")
+    facts.add_all(tally_facts(found), bold=["answer"])
     facts.add("polished", f"{found.polished} of the best")
     if found.refusals:
         facts.add("of the best", f"{tally(found.refusals)} refused after polishing")
-    parts: list[RenderableType] = [Text("Survey of RSSRs", style="bold underline"), facts.grid]
-    rows = [candidate.columns for candidate in found.candidates[:count]]
-    if rows:
-        for names in (PRINTED, NUMBER_COLUMNS):
-            own = [name for name in names if name in rows[0]]
-            table = number_table(
-                ["design", *(names[name] for name in own)],
-                [[str(i), *(_cell(row[name]) for name in own)] for i, row in enumerate(rows, 1)],
-                words=[1 + own.index("motion_type")] if "motion_type" in own else [],
-            )
-            parts += [Text(), table]
-    return Group(*parts)
+    best = found.candidates[:count]
+    tables = (columns_table(best, heads) for heads in (PRINTED, NUMBER_COLUMNS)) if best else ()
+    return page("Survey of RSSRs", facts, *tables)
 
 
 def tally_facts(found: SurveyResult) -> list[tuple[str, str]]:
@@ -113,18 +103,14 @@ def as_dict(found: SurveyResult) -> dict[str, Any]:
     return {
         **tally_dict(found),
         "polished": found.polished,
-        "refused": [{"fault": r.fault, "detail": r.detail} for r in found.refusals],
-        "designs": [{"design": i, "name": c.name, **c.columns} for i, c in enumerate(found.candidates, 1)],
+        "refused": list(map(vars, found.refusals)),
+        "designs": plain_designs(found),
     }
 
 
 def _axes(task: SurveyTask) -> str:
     low, high = map(math.degrees, task.table["angle"])
     return f"at {low:g} deg" if low == high else f"at {low:g}..{high:g} deg"
-
-
-def _cell(value: object) -> str:
-    return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
 def _head(command: str, found: SurveyResult) -> list[str]:

@@ -23,7 +23,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.contradictions import refuse_contradictions
-from sevenbar.design.task.search import STARTS, DesignsFound, designed
+from sevenbar.design.task.search import STARTS, DesignsFound, designed, named
 from sevenbar.design.task.task import (
     DesignTask,
     FigureMust,
@@ -75,17 +75,7 @@ class ParetoFront:
     @property
     def found(self) -> DesignsFound:
         """The designs as those of a search."""
-        title = self.task.draft.linkage.name
-        designs = tuple(
-            replace(
-                point.design,
-                candidate=replace(
-                    point.design.candidate,
-                    draft=point.design.draft.with_value(("name",), f"{title}, front {i}"),
-                ),
-            )
-            for i, point in enumerate(self.points, 1)
-        )
+        designs = named(self.task, [point.design for point in self.points], "front")
         return DesignsFound(self.task, designs, (), self.solved, self.unfinished)
 
     @property

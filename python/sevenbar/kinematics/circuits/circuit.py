@@ -11,7 +11,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Integers, Words, counted, finite_array
+from sevenbar.arrays import Floats, Integers, Words, counted, finite_array, whole_number
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.counterweights import Balance
@@ -517,9 +517,6 @@ class Circuit(Printed, WithExtents):
 
     def _frame(self, link: object) -> Floats:
         count = len(self._frames)
-        if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
-            raise RequestError(
-                f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground"
-            )
-        frame: Floats = self._frames[int(link) - 1]
+        number = whole_number("link", link, 1, count, "a link", ", the last is the ground")
+        frame: Floats = self._frames[number - 1]
         return frame

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError, RequestError, shown
+from sevenbar.arrays import Floats, whole_number
+from sevenbar.errors import RequestError, of_extra
 from sevenbar.kinematics.circuits.circuit import Answers, Circuit
 from sevenbar.kinematics.circuits.extents import JointRange
 from sevenbar.kinematics.circuits.modes import Modes
@@ -312,12 +312,8 @@ class Motion(Drawable):
 
     def to_frame(self) -> pd.DataFrame:
         """`columns` as a pandas table (extra `[frame]`)."""
-        try:
+        with of_extra("frame", "to_frame needs pandas"):
             import pandas as pd
-        except ImportError:
-            raise MissingExtraError(
-                "to_frame needs pandas; install it with: pip install 'sevenbar[frame]'"
-            ) from None
         return pd.DataFrame(self.columns())
 
 
@@ -329,7 +325,4 @@ def chosen_circuit(motion: Motion, index: int) -> Circuit:
         raise RequestError(
             f"motion: {motion.motion_type}, the loop closes {closing}; 'sevenbar analyze' says why"
         )
-    if isinstance(index, bool) or not isinstance(index, (int, np.integer)) or not 0 <= index < count:
-        allowed = "0" if count == 1 else f"0 to {count - 1}"
-        raise RequestError(f"circuit: {shown(index)} is not a circuit of this motion; give {allowed}")
-    return motion.circuits[index]
+    return motion.circuits[whole_number("circuit", index, 0, count - 1, "a circuit of this motion")]

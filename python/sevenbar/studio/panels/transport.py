@@ -12,7 +12,7 @@ import viser
 from sevenbar.kinematics.circuits.poses import at_row
 from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.shown import value_text
-from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, put
+from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, offer, put
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import heading
 from sevenbar.studio.state.view import View
@@ -133,8 +133,7 @@ class Transport:
             self.pause()
             return
         options = tuple(f"{c.index}: {c.motion_type}" for c in view.motion)
-        if options != self._circuit.options:
-            self._circuit.options = options
+        offer(self._circuit, options)
         put(self._circuit, options[view.circuit.index])
         self._travel.max = view.period * abs(_shown_speed(view)) or 1.0
         self._travel.step = self._travel.max / 720
