@@ -11,7 +11,7 @@ pub struct Modes {
     pub modes: Vec<(Vec<f64>, f64)>,
     /// How complete they are.
     pub completeness: Completeness,
-    /// By how much redundant constraints keep other poses open, least first [rad, or relative to the size].
+    /// Closure errors of further poses that redundant constraints keep from closing, least first [rad, or relative to the size].
     pub open_by: Vec<f64>,
 }
 

@@ -10,7 +10,7 @@ use super::circle::{Circle, InputClosure};
 use super::continuation::{BRISK, CAREFUL, Pace};
 use super::many_starts::{SAME_MODE, anywhere, same, searched};
 use super::phases::Watch;
-use super::poles::{poles, untold_three};
+use super::poles::{poles, unwatched_three};
 use super::polish::{self, Settled, polish};
 use super::starts::{distinct, general_count};
 use super::straight::carried;
@@ -450,8 +450,8 @@ impl<'a> Algebraic<'a> {
     }
 
     /// The first of three passive joints in a row that need not be watched, if there are such.
-    pub fn untold_three(&self) -> Option<usize> {
-        untold_three(&self.parameters, &self.finder.slides)
+    pub fn unwatched_three(&self) -> Option<usize> {
+        unwatched_three(&self.parameters, &self.finder.slides)
     }
 
     /// All solutions followed round a circle and down to the real values beneath.
