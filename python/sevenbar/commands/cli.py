@@ -241,6 +241,10 @@ def _film(
         check_target(file)
     check_targets([file], force=force)
     check_film(file, **film)
+    if not motion.circuits:
+        raise RequestError(
+            f"--animate: {motion.motion_type}, there is no motion to draw; leave it out, the report says why"
+        )
     posed = posed_circuit(motion) or 0 if circuit is None else circuit
     drawn = chosen_circuit(motion, posed).index
 

@@ -186,7 +186,7 @@ def room_beside(space: ViewAxes) -> float:
     axis = space.axes.yaxis
     numbers = axis.get_tightbbox(measuring(space.figure))
     name = axis.labelpad + UPRIGHT * style.letters()
-    return (0.0 if numbers is None else numbers.width / space.figure.dpi) + name / POINTS
+    return (0.0 if numbers is None else float(numbers.width) / space.figure.dpi) + float(name) / POINTS
 
 
 def corners_of(low: Floats, high: Floats) -> Floats:
