@@ -20,12 +20,15 @@ from sevenbar.description.written import (
 from sevenbar.errors import Problem, shown
 from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, ROW_KINDS
 
+#: The keys of the three forms in which a linkage is described.
+FORMS = ("rssr", "joint", "link")
+
 FEWEST_JOINTS, MOST_JOINTS = 2, 12
 
 
 def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
     """All contradictions of a description, in the order of its keys."""
-    written = [key for key in ("rssr", "joint", "link") if key in raw]
+    written = [key for key in FORMS if key in raw]
     if len(written) != 1:
         what = f"{' and '.join(written)} are given together" if written else "no linkage is described"
         return [Problem("", f"{what}; give exactly one of [rssr], [[joint]] or [[link]]")]

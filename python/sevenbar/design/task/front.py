@@ -156,6 +156,8 @@ def _place(task: DesignTask, key: str, given: int | str) -> int:
         return names.index(given)
     number = int(given) if isinstance(given, int) or given.strip().isdecimal() else 0
     if not 1 <= number <= count:
+        if count == 1:
+            raise RequestError("pareto: this task has one want; a trade-off needs two")
         named = "".join(f", or {name}" for name in names if name)
         raise RequestError(f"{key}: {shown(given)} is no want of the task; give 1 to {count}{named}")
     return number - 1
