@@ -20,10 +20,19 @@ from sevenbar.description.written import (
 from sevenbar.errors import Problem, shown
 from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, ROW_KINDS
 
-#: The keys of the three forms in which a linkage is described.
+#: The keys of the three ways to write a linkage: a file has one of them.
 FORMS = ("rssr", "joint", "link")
 
 FEWEST_JOINTS, MOST_JOINTS = 2, 12
+
+
+def other_file(raw: Mapping[str, Any]) -> str:
+    """What to say of tables that describe no linkage at all: an empty file, a design task; else nothing."""
+    if not raw:
+        return "is empty; begin with a linkage of the gallery, as in 'sevenbar gallery rssr > mine.toml'"
+    if "want" in raw and not raw.keys() & set(FORMS):
+        return "is a design task and not a linkage; 'sevenbar design task' takes it"
+    return ""
 
 
 def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
