@@ -297,7 +297,10 @@ def plot_(
     linkage: Source,
     out: Annotated[Path, typer.Option(help="Folder for the figures.")],
     kind: Annotated[
-        list[str] | None, typer.Option(help=f"{', '.join(KINDS)} or all (the default); may be repeated.")
+        list[str] | None,
+        typer.Option(
+            help=f"{', '.join(KINDS)}, or all (the default), which leaves axodes out; may be repeated."
+        ),
     ] = None,
     point: PointName = None,
     link: PointLink = None,

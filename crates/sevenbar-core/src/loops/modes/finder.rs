@@ -147,7 +147,7 @@ impl<'a> ModeFinder<'a> {
         }
         algebraic &= finder.unknowns.len() == UNKNOWNS && general_count(&finder.slides) > 0;
         finder.transforms = before.clone();
-        // from the first unknown on; the last transform stands before it
+        // from the first unknown on; the last transform comes before it
         before.rotate_left(1);
         if let (true, Ok(transforms)) = (algebraic, <&[Pose; JOINTS]>::try_from(&before[..])) {
             finder.closure = Some(Closure::of(transforms, &finder.slides, chain.joints[input_joint]));
@@ -337,7 +337,7 @@ impl<'a> ModeFinder<'a> {
         }
     }
 
-    /// Where rough modes come to close as well as they can, each once.
+    /// The poses nearest to rough modes at which the loop closes as well as it can, each once.
     fn settled(&self, rough: &[Configuration]) -> Vec<Settled> {
         let mut out: Vec<Settled> = Vec::new();
         let reach = POLISHED_MOVE.max(FARTHER * self.chain.looseness());
