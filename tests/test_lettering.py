@@ -36,6 +36,8 @@ SPHERICAL = [
 ]
 DRAWN: dict[str, Callable[[], sb.Linkage]] = {
     "slider-crank": lambda: sb.from_axes(SLIDER_CRANK, name="Slider-crank"),
+    "planar, long numbers": lambda: sb.four_bar(1000, 2000, 1600, 1800),
+    "planar, small numbers": lambda: sb.four_bar(0.001, 0.002, 0.0016, 0.0018, length_unit="m"),
     "spherical, point far off": lambda: sb.from_axes(
         SPHERICAL, points=[{"name": "P", "link": 2, "at": (60, 40, 30)}]
     ),

@@ -26,6 +26,10 @@ Booleans = npt.NDArray[np.bool_]
 Words = npt.NDArray[np.str_]
 
 
+#: An angle [rad] short of a full turn by less is zero.
+ROUNDING = 1e-12
+
+
 def finite_array(name: str, values: npt.ArrayLike) -> Floats:
     """A one-dimensional array of finite numbers, or `RequestError` naming the first that is none."""
     array = real_array(name, values)
@@ -100,6 +104,16 @@ def counted(words: Words) -> dict[str, int]:
     """
     found, counts = np.unique(words, return_counts=True)
     return {str(word): int(count) for word, count in zip(found, counts, strict=True)}
+
+
+def within_turn(angles: npt.ArrayLike) -> Floats:
+    """Angles [rad] in [0, 2 pi); what is short of a full turn by rounding is 0.
+
+    >>> within_turn([-math.pi / 2, -1e-17]).round(4).tolist()
+    [4.7124, 0.0]
+    """
+    within = np.mod(np.asarray(angles, dtype=np.float64), math.tau)
+    return np.where(within > math.tau - ROUNDING, 0.0, within)
 
 
 def short_way(angles: npt.ArrayLike) -> Floats:

@@ -242,6 +242,10 @@ def _film(
         check_target(file)
     check_targets([file], force=force)
     check_film(file, **film)
+    if not motion.circuits:
+        raise RequestError(
+            f"--animate: {motion.motion_type}, there is no motion to draw; leave it out, the report says why"
+        )
     posed = posed_circuit(motion) or 0 if circuit is None else circuit
     drawn = chosen_circuit(motion, posed).index
 
@@ -294,7 +298,10 @@ def plot_(
     linkage: Source,
     out: Annotated[Path, typer.Option(help="Folder for the figures.")],
     kind: Annotated[
-        list[str] | None, typer.Option(help=f"{', '.join(KINDS)} or all (the default); may be repeated.")
+        list[str] | None,
+        typer.Option(
+            help=f"{', '.join(KINDS)}, or all (the default), which leaves axodes out; may be repeated."
+        ),
     ] = None,
     point: PointName = None,
     link: PointLink = None,

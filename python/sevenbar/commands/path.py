@@ -68,9 +68,11 @@ def path(
     from sevenbar.description.draft import Draft
     from sevenbar.description.files import toml_text
     from sevenbar.design.curve_table import read_curve
+    from sevenbar.design.extra import need_scipy
     from sevenbar.design.synthesis.path.generation import check_counts, generated, path_task
     from sevenbar.design.synthesis.path.report import PathDesigns, path_report
 
+    need_scipy()
     report = path_report(designs, command_line(), figure_formats(figures, out))
     draft = Draft.of(toml_text(linkage), linkage)
     check_out(report, out, force=force)

@@ -49,11 +49,13 @@ def task(
     json: Json = False,
 ) -> None:
     """Designs of any loop for what a task file asks (extra 'design')."""
+    from sevenbar.design.extra import need_scipy
     from sevenbar.design.synthesis.path.generation import check_counts
     from sevenbar.design.task.file.reader import task_file
     from sevenbar.design.task.report import TaskDesigns, task_report
     from sevenbar.design.task.search import designed
 
+    need_scipy()
     formats = figure_formats(figures, out)
     check_counts(designs, starts, seed)
     read = task_file(file, agree=agreed(agree))

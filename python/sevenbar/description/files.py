@@ -171,7 +171,7 @@ def _read(path: Path) -> bytes:
     except FileNotFoundError:
         raise DescriptionError.of_all(
             place,
-            f"no such file; {_offer(path)}"
+            f"no such file; {near_files(path)}"
             "give the path of a TOML file, or a name that 'sevenbar gallery' lists",
         ) from None
     except IsADirectoryError:
@@ -231,8 +231,8 @@ def _not_utf8(content: bytes, start: int) -> str:
     return f"line {number}: {shown(line)} is not UTF-8; save the file as UTF-8"
 
 
-def _offer(path: Path) -> str:
-    """`did you mean 'rssr' or 'rsur'? `: files of the folder and names of the gallery, or nothing."""
+def near_files(path: Path) -> str:
+    """`did you mean 'mine.toml'? `: files of the folder and names of the gallery like a path, or nothing."""
     try:
         known = (".toml", *TABLE_ENDINGS)
         files = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in known)

@@ -18,7 +18,7 @@ from pydantic import (
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
-from sevenbar.description.contradictions import contradictions, grounds
+from sevenbar.description.contradictions import FORMS, contradictions, grounds, other_file
 from sevenbar.description.load_contradictions import load_contradictions
 from sevenbar.description.load_schema import BodyForm, ForcesForm, LoadForm, SpringForm
 from sevenbar.description.load_tables import folder_of
@@ -225,10 +225,6 @@ class LinkageForm(TableForm):
         return driven([Written("", *joint) for joint in self.joints], drive)[:2]
 
 
-#: The three ways to write a linkage: a file has one of them.
-FORMS = ("rssr", "link", "joint")
-
-
 class TomlSchema(GenerateJsonSchema):
     """JSON schema of a TOML file, in which a key that is not given is left out: there is no null."""
 
@@ -258,6 +254,8 @@ def json_schema() -> dict[str, Any]:
 
 def check(raw: object, *, source: str = "") -> LinkageForm:
     """The checked form, or `DescriptionError` with every problem in it; `source` is the file it came from."""
+    if isinstance(raw, Mapping) and (other := other_file(raw)):
+        raise DescriptionError.of_all(source, other)
     ground_places = grounds(raw) if isinstance(raw, Mapping) else {}
     context = context_of(raw, source) if isinstance(raw, Mapping) else None
     try:

@@ -247,7 +247,7 @@ def _pictures(
         dot.set_data([angle], [output])
         time = float(np.interp(row, count, path.time))
         reading.set_text(
-            f"t = {time:.3f} s   {said[0]} {angle:.1f}{units[0]}   {said[1]} {output:.1f}{units[1]}"
+            f"t = {time:.3f} s   {said[0]} {_tenths(angle)}{units[0]}   {said[1]} {_tenths(output)}{units[1]}"
         )
         canvas.restore_region(still)
         for draw, artist in moving:
@@ -310,3 +310,8 @@ def _write_mp4(
             words.seek(0)
             last = words.read().decode(errors="replace").strip().splitlines()[-1:]
             raise OutputError(f"{target}: ffmpeg failed: {''.join(last) or process.returncode}")
+
+
+def _tenths(value: float) -> str:
+    """A number to one decimal, without a minus on 0."""
+    return f"{round(value, 1) + 0.0:.1f}"

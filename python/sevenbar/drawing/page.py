@@ -14,7 +14,17 @@ from sevenbar.drawing import style
 from sevenbar.drawing.figure import headline, new_figure
 from sevenbar.drawing.scene import draw_box, frame_box
 from sevenbar.drawing.skeleton import Skeleton
-from sevenbar.drawing.space import Box, ViewAxes, box_round, draw_frame, fit, measuring, seen_size, set_limits
+from sevenbar.drawing.space import (
+    Box,
+    ViewAxes,
+    box_round,
+    draw_frame,
+    fit,
+    measuring,
+    room_beside,
+    seen_size,
+    set_limits,
+)
 from sevenbar.drawing.view import Projection
 
 #: Room [inch], for letters of 9 points: round the page; at the sides of a picture, for numbers and names of
@@ -142,6 +152,9 @@ def page_of_one(
 def fit_picture(space: ViewAxes, box: Box, room: Rectangle) -> None:
     """Places axes on the page so that their box and its labels fill a rectangle."""
     left, right, below, above = margins(space.view)
+    if space.view.flat:
+        # long numbers need more
+        left = max(left, room_beside(space) + EDGE / 2)
     inner = (room[0] + left, room[1] + below, room[2] - left - right, room[3] - below - above)
     fit(space, box, inner)
     space.axes.apply_aspect()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable
 
 from sevenbar.description.angle_doubts import angle_doubt
@@ -94,7 +95,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.idle:
         idle = say("; ").join(map(retold, motion.idle))
         facts.append(("idle freedom", say("{freedoms}, held by convention", freedoms=idle)))
-    facts.append(("redundant", say("; ").join(map(retold, motion.redundant)) or say("no constraints")))
+    if motion.motion_type != "cannot-assemble":
+        facts.append(("redundant", say("; ").join(map(retold, motion.redundant)) or say("no constraints")))
     if not linkage.loading.is_empty:
         acting = acting_text(linkage.loading)
         facts.append(("forces", say("{acting}; 'sevenbar forces' reports all joints", acting=acting)))
@@ -138,7 +140,12 @@ def _change_points(motion: Motion) -> list[tuple[str, str]]:
     lines = []
     meeting = [point for point in motion.change_points if not point.isolated]
     if meeting:
-        where = "  ".join(show(x) for x in motion.change_point_inputs)
+        # several poses may share an input
+        poses = Counter(show(x, whole=True) for x in motion.change_point_inputs)
+        where = "  ".join(
+            say("{value} ({count} poses)", value=value, count=count) if count > 1 else value
+            for value, count in poses.items()
+        )
         what = say(
             "input {where}: branches meet there; the least change of a dimension decides how it goes on",
             where=where,
@@ -148,7 +155,7 @@ def _change_points(motion: Motion) -> list[tuple[str, str]]:
     if free > 1:
         more = say("there it can also move with {count} freedoms, which no circuit shows", count=free)
         lines.append(("", more))
-    alone = [show(point.input) for point in motion.change_points if point.isolated]
+    alone = [show(point.input, whole=True) for point in motion.change_points if point.isolated]
     if alone:
         where = "  ".join(alone)
         lines.append(("isolated pose", say("input {where}: no motion leads out of it", where=where)))

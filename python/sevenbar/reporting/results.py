@@ -92,6 +92,8 @@ def _(motion: Motion) -> str:
     for label, text in facts_of(motion):
         # a line without a name goes on with the one above
         kept = label in OF_MOTION if label else kept
+        # whether a four-bar can be put together at all is seen by its sum of links
+        kept = kept or (label == "Grashof" and not motion.circuits)
         if kept:
             facts.append((label, text))
         if label == "circuits":

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from sevenbar.design.candidates import Candidate, Refusal, distinct, least_error, likeness, renamed, tally
 from sevenbar.design.course import SearchCourse
+from sevenbar.design.extra import need_scipy
 from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.solve import LOOK, Solved, solved
@@ -128,6 +129,7 @@ def designed(
         >>> best.met[0].greatest < 1e-9
         True
     """
+    need_scipy()
     model = TaskModel(task)
     course = SearchCourse(starts + 1 + len(given) + (TRIED + TAKEN) * count, progress)
     kept: list[TaskDesign] = []

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, whole_number
+from sevenbar.arrays import Floats, whole_number, within_turn
 from sevenbar.errors import RequestError, of_extra
 from sevenbar.kinematics.circuits.circuit import Answers, Circuit
 from sevenbar.kinematics.circuits.extents import JointRange
@@ -203,7 +203,7 @@ class Motion(Drawable):
         """The input at the change points [rad in [0, 2 pi), or length], rising; isolated poses aside."""
         values = np.array([point.input for point in self.change_points if not point.isolated])
         turns = self.linkage.turns(self.input)
-        return np.sort(np.mod(values, math.tau) if turns else values)
+        return np.sort(within_turn(values) if turns else values)
 
     @property
     def idle(self) -> tuple[str, ...]:

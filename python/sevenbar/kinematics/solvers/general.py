@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats, Integers, Words
+from sevenbar.arrays import Floats, Integers, Words, within_turn
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Trace
@@ -37,8 +37,6 @@ MOST_FREEDOMS = 7
 #: The motion that leaves all where it is.
 STILL = np.eye(4)
 
-#: An angle [rad] short of a full turn by less is zero.
-ROUNDING = 1e-12
 
 #: Limits [rad, or relative to the size] nearer than this are one.
 SAME_LIMIT = 1e-6
@@ -356,8 +354,7 @@ def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
     values: Floats = np.asarray(limits, dtype=np.float64)
     same = SAME_LIMIT if turns else SAME_LIMIT * size
     if turns:
-        values = np.mod(values, math.tau)
-        values[values > math.tau - ROUNDING] = 0.0
+        values = within_turn(values)
     values = np.sort(values)
     if values.size == 0:
         return np.array([])

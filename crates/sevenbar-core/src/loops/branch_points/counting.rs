@@ -402,7 +402,7 @@ mod tests {
         assert_eq!(limits.len(), 4);
         let whole = count_of(&[a, b, c, d], &[0.0; 4], &limits);
         assert_eq!((whole.dead_centres, whole.open), (4, vec![]));
-        // one that is not told is asked for, in a range that holds it
+        // one that is not known is searched for, in a range that holds it
         let lacking = count_of(&[a, b, c, d], &[0.0; 4], &limits[1..]);
         assert!(!lacking.open.is_empty());
         assert!(

@@ -1,9 +1,10 @@
-//! Where curves of an overconstrained loop meet other curves of its filled-up closure.
+//! Where curves of an overconstrained loop meet curves on which added joints move.
 //!
-//! With joints added about general axes the loop closes in more ways, in which these move. Where such a curve runs through one of
-//! the loop's own the determinant of the screws is zero, although the input does not turn back: a zero that the count sees and that
-//! stands for no circuit. Along a real curve determinant and rate of the input change sign together at dead centres, and only the
-//! determinant where curves meet.
+//! An overconstrained loop has fewer than six passive freedoms, so joints about general axes are added for the count. With them the
+//! loop closes in more ways, in which the added joints move. Where such a curve crosses one of the loop's own, the determinant of the
+//! screws is zero although the input does not turn back: a zero that the count includes and that belongs to no dead centre. Signs
+//! distinguish the two: along a real curve, determinant and rate of the input change sign together at a dead centre, and the
+//! determinant alone at such a crossing.
 //!
 //! Source: docs/theory_many.md, (12).
 
@@ -38,7 +39,7 @@ impl LaneKernel for Determinants<'_> {
     }
 }
 
-/// The inputs at which a curve meets others of the filled-up closure [rad]; none where no joints were added, or balls turn.
+/// The inputs at which a curve meets those on which added joints move [rad]; none if no joints were added, or balls turn.
 pub(super) fn meetings(survey: &Survey, chain: &Chain, curve: &Curve) -> Vec<f64> {
     let unknowns = &survey.finder.unknowns;
     let added = unknowns.iter().any(|u| matches!(u, Unknown::Added));
@@ -63,7 +64,7 @@ pub(super) fn meetings(survey: &Survey, chain: &Chain, curve: &Curve) -> Vec<f64
     };
     let nodes = &curve.nodes;
     let places: Vec<Configuration> = nodes.iter().map(|n| n.at).collect();
-    // without the sign changes of dead centres
+    // the product has no sign change at a dead centre
     let signs: Vec<f64> = determinants(&places)
         .iter()
         .zip(nodes)
@@ -94,7 +95,7 @@ pub(super) fn meetings(survey: &Survey, chain: &Chain, curve: &Curve) -> Vec<f64
     found
 }
 
-/// A configuration as the closure has it, added joints at zero.
+/// A configuration in the closure's unknowns, added joints at zero.
 fn solution(survey: &Survey, at: &Configuration) -> Solution {
     let zeros = &survey.algebraic.zeros;
     std::array::from_fn(|i| match survey.finder.unknowns[i] {

@@ -35,7 +35,7 @@ const WIDE_RANGE: f64 = 1e-4;
 /// Imaginary parts [rad] that solutions which are real at one input may have beside it, as a part of the distance.
 const NEARLY_REAL: f64 = 20.0;
 
-/// Two branch points become one in a pose that stands alone, one on each side of the real inputs.
+/// Two branch points, one on each side of the real inputs, become one in an isolated pose.
 const BRANCH_POINTS_OF_POSE: i64 = 2;
 
 /// The columns whose values are seeds: the wished ones if they turn, else the first that do; screws where none turns and no
@@ -134,7 +134,7 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
     out
 }
 
-/// Searches where no mode stands alone but paths to others were lost.
+/// Searches where no mode is isolated but paths to others were lost.
 fn look_beside_paths(curves: &mut Curves, chain: &Chain) {
     let finder = ModeFinder::new(chain, curves.search.columns[0]);
     if !finder.is_degenerate() {
@@ -186,7 +186,7 @@ fn counted(
     })
 }
 
-/// Looks where solutions meet within ranges too narrow to be counted: in a pose that stands alone they are real at one input only.
+/// Searches ranges too narrow to be counted, where solutions meet: in an isolated pose they are real at one input only.
 fn look_into(curves: &mut Curves, chain: &Chain, finder: &ModeFinder, count: &mut Count) {
     count.open.retain(|open| {
         if open.to - open.from > WIDE_RANGE {

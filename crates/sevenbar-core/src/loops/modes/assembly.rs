@@ -12,7 +12,7 @@ pub struct Modes {
     pub modes: Vec<(Vec<f64>, f64)>,
     /// How complete they are.
     pub completeness: Completeness,
-    /// By how much redundant constraints keep other poses open, least first [rad, or relative to the size].
+    /// Closure errors of further poses that redundant constraints keep from closing, least first [rad, or relative to the size].
     pub open_by: Vec<f64>,
     /// The joint values of a pose on a curve of poses that all close at this input, if one was found.
     pub on_curve: Option<Vec<f64>>,

@@ -10,7 +10,7 @@ use super::circle::{Circle, InputClosure};
 use super::continuation::{BRISK, CAREFUL, Pace};
 use super::many_starts::{SAME_MODE, anywhere, same, searched};
 use super::phases::Watch;
-use super::poles::{poles, untold_three};
+use super::poles::{poles, unwatched_three};
 use super::polish::{self, Settled, polish};
 use super::starts::{distinct, general_count};
 use super::straight::carried;
@@ -147,7 +147,7 @@ impl<'a> ModeFinder<'a> {
         }
         algebraic &= finder.unknowns.len() == UNKNOWNS && general_count(&finder.slides) > 0;
         finder.transforms = before.clone();
-        // from the first unknown on; the last transform stands before it
+        // from the first unknown on; the last transform comes before it
         before.rotate_left(1);
         if let (true, Ok(transforms)) = (algebraic, <&[Pose; JOINTS]>::try_from(&before[..])) {
             finder.closure = Some(Closure::of(transforms, &finder.slides, chain.joints[input_joint]));
@@ -345,7 +345,7 @@ impl<'a> ModeFinder<'a> {
         }
     }
 
-    /// Where rough modes come to close as well as they can, each once.
+    /// The poses nearest to rough modes at which the loop closes as well as it can, each once.
     fn settled(&self, rough: &[Configuration]) -> Vec<Settled> {
         let mut out: Vec<Settled> = Vec::new();
         let reach = POLISHED_MOVE.max(FARTHER * self.chain.looseness());
@@ -458,8 +458,8 @@ impl<'a> Algebraic<'a> {
     }
 
     /// The first of three passive joints in a row that need not be watched, if there are such.
-    pub fn untold_three(&self) -> Option<usize> {
-        untold_three(&self.parameters, &self.finder.slides)
+    pub fn unwatched_three(&self) -> Option<usize> {
+        unwatched_three(&self.parameters, &self.finder.slides)
     }
 
     /// All solutions followed round a circle and down to the real values beneath.

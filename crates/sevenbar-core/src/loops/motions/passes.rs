@@ -329,7 +329,7 @@ impl<'a> Passes<'a> {
     /// Rows at the inputs of a law, once for each pass.
     ///
     /// An input that turns may be met a turn on or back; one that lies in the pass with `shift` taken off it, as the circuit's
-    /// rows are told, is met there, for a pass may be longer than a turn.
+    /// rows are given, is met there, for a pass may be longer than a turn.
     pub fn law_rows(&self, law: &[[f64; 4]], turns: bool, shift: f64) -> Vec<Row> {
         let mut rows = Vec::new();
         for (n, pass) in self.passes.iter().enumerate() {
