@@ -10,8 +10,9 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Peak
 from sevenbar.curves.timed_rows import shares_of
+from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body
-from sevenbar.forces.loading import Load, Loading, Spring
+from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking, shaking_along
 from sevenbar.forces.sizing import Bearing, Sizing
