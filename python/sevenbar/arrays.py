@@ -39,6 +39,14 @@ def finite_array(name: str, values: npt.ArrayLike) -> Floats:
     return array
 
 
+def triple(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
+    """Three finite numbers, or `RequestError`."""
+    array = finite_array(name, values)
+    if array.size != 3:
+        raise RequestError(f"{name}: {array.size} numbers; give three")
+    return float(array[0]), float(array[1]), float(array[2])
+
+
 def finite_number(name: str, value: npt.ArrayLike) -> float:
     """One finite number, or `RequestError`."""
     array = real_array(name, value)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import date, time
-from difflib import get_close_matches
 from functools import wraps
 from typing import ParamSpec, TypeVar
 
@@ -130,6 +129,9 @@ def bare(word: str) -> str:
 
 def suggestion(word: str, known: Iterable[str]) -> str:
     """`did you mean 'L1'? ` for a word near a known one, else nothing."""
+    # of words that are wrong only
+    from difflib import get_close_matches
+
     known = list(known)
     lowered = {k.lower(): k for k in known}
     near = get_close_matches(word[:100].lower(), lowered, n=1, cutoff=0.6)

@@ -15,8 +15,8 @@ from sevenbar.description.load_tables import with_rows
 from sevenbar.description.toml_text import is_tables
 from sevenbar.errors import RequestError, of_extra, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.numbers.dimensions import Dimension, Place, description_of, dimensions_of, masses_of
+from sevenbar.kinematics.loop.geometry import Loop, Place
+from sevenbar.kinematics.numbers.dimensions import Dimension, description_of, dimensions_of, masses_of
 
 #: Characters of a line from which rows of a load's table are written one below the other.
 LONGEST_ROWS = 110

@@ -10,7 +10,7 @@ from typing import Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, finite_number
+from sevenbar.arrays import Floats, finite_number, triple
 from sevenbar.errors import RequestError, check_word, shown
 
 #: Where centre and inertia come from if they are not given.
@@ -64,14 +64,6 @@ class Body:
     def tensor(self) -> Floats:
         """The inertia (3, 3) [kg m^2]."""
         return np.asarray(self.inertia, dtype=np.float64)
-
-
-def triple(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
-    """Three finite numbers, or `RequestError`."""
-    array = finite_array(name, values)
-    if array.size != 3:
-        raise RequestError(f"{name}: {array.size} numbers; give three")
-    return float(array[0]), float(array[1]), float(array[2])
 
 
 def flaw_of_inertia(tensor: Floats) -> str:

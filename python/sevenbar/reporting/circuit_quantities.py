@@ -15,8 +15,7 @@ from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting.facts import turns_text
 from sevenbar.reporting.force_peaks import peaks_of
-from sevenbar.reporting.force_words import number
-from sevenbar.reporting.shown import REST, Shown, degrees, six_digits
+from sevenbar.reporting.shown import REST, Shown, degrees, number, six_digits
 from sevenbar.text.words import say
 
 #: Dead centres listed in one cell; an output that rests has no end of them.

@@ -5,19 +5,21 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from sevenbar.description.angle_doubts import angle_doubt
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.mobility import Mobility
 from sevenbar.reporting.extents import usable_text
-from sevenbar.reporting.force_words import acting_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.page import drive_text
 from sevenbar.reporting.shown import Shown
 from sevenbar.text.words import retold, say
+
+if TYPE_CHECKING:
+    from sevenbar.kinematics.loop.mobility import Mobility
 
 #: Limits of the input that are listed.
 MOST_LIMITS = 8
@@ -98,6 +100,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.motion_type != "cannot-assemble":
         facts.append(("redundant", say("; ").join(map(retold, motion.redundant)) or say("no constraints")))
     if not linkage.loading.is_empty:
+        from sevenbar.reporting.force_words import acting_text
+
         acting = acting_text(linkage.loading)
         facts.append(("forces", say("{acting}; 'sevenbar forces' reports all joints", acting=acting)))
     if motion.circuits and linkage.stops.stops:

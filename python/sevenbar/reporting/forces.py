@@ -35,7 +35,6 @@ from sevenbar.reporting.force_words import (
     found_text,
     greatest,
     no_peak,
-    number,
     open_facts,
     shaking_facts,
     shaking_found,
@@ -43,7 +42,7 @@ from sevenbar.reporting.force_words import (
     unbounded_facts,
 )
 from sevenbar.reporting.page import Facts, drive_text, number_table, page
-from sevenbar.reporting.shown import rows_text
+from sevenbar.reporting.shown import number, rows_text
 from sevenbar.text.words import say
 
 if TYPE_CHECKING:

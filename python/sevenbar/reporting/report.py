@@ -61,7 +61,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         >>> found["motion_type"], len(found["circuits"])
         ('crank-rocker', 2)
     """
-    linkage = motion.linkage
+    linkage, four_bar, mobility = motion.linkage, motion.four_bar, motion.mobility
     with_extents = ranges or not linkage.stops.is_empty
     report = {
         "format": 1,
@@ -76,7 +76,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
             "dimensions": dict(linkage.dimensions),
             "lengths": side_lengths(linkage),
             "planar": linkage.is_planar,
-            "four_bar": None if motion.four_bar is None else vars(motion.four_bar),
+            "four_bar": None if four_bar is None else vars(four_bar),
         },
         "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
         "drive": {
@@ -99,10 +99,10 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
             for p in motion.change_points
         ],
         "mobility": {
-            "gruebler": motion.mobility.gruebler,
-            "freedoms": motion.mobility.freedoms,
-            "rank": motion.mobility.rank,
-            "finite": motion.mobility.finite,
+            "gruebler": mobility.gruebler,
+            "freedoms": mobility.freedoms,
+            "rank": mobility.rank,
+            "finite": mobility.finite,
         },
         "completeness": motion.completeness,
         "how_found": how_found(motion),

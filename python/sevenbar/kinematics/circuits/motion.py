@@ -15,13 +15,9 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, whole_number, within_turn
 from sevenbar.errors import RequestError, of_extra
 from sevenbar.kinematics.circuits.circuit import Answers, Circuit
-from sevenbar.kinematics.circuits.extents import JointRange
-from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.search import Search
 from sevenbar.kinematics.circuits.table import circuit_columns
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.grashof import FourBar
-from sevenbar.kinematics.loop.law import Law
 from sevenbar.text.printing import Drawable
 
 #: The least and the greatest closure error [rad, or relative to the size] up to which redundant constraints
@@ -40,6 +36,11 @@ SPARE_FREEDOMS = 7
 if TYPE_CHECKING:
     import pandas as pd
 
+    from sevenbar.kinematics.circuits.extents import JointRange
+    from sevenbar.kinematics.circuits.modes import Modes
+    from sevenbar.kinematics.circuits.near_motion import NearMotion
+    from sevenbar.kinematics.loop.grashof import FourBar
+    from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
 
 
@@ -65,20 +66,6 @@ class ChangePoint:
     def isolated(self) -> bool:
         """Whether no motion leads out of it."""
         return self.ways == 0
-
-
-@dataclass(frozen=True)
-class NearMotion:
-    """How a linkage without a circuit moves if its redundant constraints are taken to agree.
-
-    `miss` [length] is the greatest closure error on the way, `share` the same relative to the linkage size
-    (or in rad); with the closure error `agree` the motion is the one of `motion_type`.
-    """
-
-    motion_type: str
-    miss: float
-    share: float
-    agree: float
 
 
 class Solvable(Loop, ABC):
@@ -250,6 +237,8 @@ class Motion(Drawable):
         agree = min(MOST_AGREE, float(f"1e{math.ceil(math.log10(NEAR_ENOUGH * share))}"))
         if eased(agree).motion_type != widest.motion_type:
             agree = MOST_AGREE
+        from sevenbar.kinematics.circuits.near_motion import NearMotion
+
         return NearMotion(widest.motion_type, miss, share, agree)
 
     @property

@@ -24,6 +24,8 @@ from sevenbar.text.printing import Drawable
 #: layout of planar textbooks, joints as drawn.
 Form = Literal["rssr", "rows", "planar", "drawn"]
 
+#: A place in a description: keys of tables, and counts from 0 in lists.
+Place = tuple[str | int, ...]
 
 #: What a linkage is called that was made without a name.
 UNNAMED = "linkage"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -21,10 +21,11 @@ from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
-from sevenbar.kinematics.loop.law import Law
-from sevenbar.kinematics.loop.mobility import Mobility, redundant_constraints
 from sevenbar.kinematics.loop.rigid import axis_to_z, inverse
-from sevenbar.kinematics.numbers.sensitivity import sensitivity_of
+
+if TYPE_CHECKING:
+    from sevenbar.kinematics.loop.law import Law
+    from sevenbar.kinematics.loop.mobility import Mobility
 
 T = TypeVar("T")
 
@@ -243,6 +244,8 @@ class GeneralLoop:
             ) from None
 
     def _mobility(self, found: _core.RawFound | None) -> Mobility:
+        from sevenbar.kinematics.loop.mobility import Mobility, redundant_constraints
+
         linkage = self._linkage
         freedoms = len(linkage.columns)
         finite = None if found is None else found.finite
@@ -270,7 +273,6 @@ class GeneralLoop:
             speed=speed,
             law=law,
             size=self.size,
-            sensitivity=partial(sensitivity_of, self._linkage),
         )
         if raw.course is None:
             return known(point=partial(self._trace, raw.rows))

@@ -11,7 +11,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.force_panels import ROUNDING, greatest_of
 from sevenbar.drawing.style import REACTION
 from sevenbar.kinematics.circuits.poses import at_row
-from sevenbar.reporting.force_words import number
+from sevenbar.reporting.shown import number
 from sevenbar.studio.panels.controls import Asked, offer, put
 from sevenbar.studio.panels.scenery import arrow_unit
 from sevenbar.studio.pictures.stage import Arrow, Stage
