@@ -1,6 +1,6 @@
-"""`python -m evidence.certainty`: whether anything is lost, over families by the thousand; writes docs/certainty.md.
+"""`python -m evidence.certainty`: whether anything is lost, by the thousand; writes docs/certainty.md.
 
-With `--quick` a few of each, and no page but where `--out` says; `again FAMILY CASE` judges one case anew.
+With `--quick` a few of each family, and no page but where `--out` says.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def _reported(rows: dict[str, Row]) -> int:
 
 
 def _judged(counts: dict[str, int], seed: int, processes: int) -> Iterator[tuple[str, Row]]:
-    """Rows of parts of the families, all families side by side, so that a run that is stopped has met them all."""
+    """Rows of parts of the families, in turn, so that a run that is stopped has met them all."""
     parts = [
         (name, seed, first, min(first + AT_ONCE, count))
         for name, count in counts.items()

@@ -1,6 +1,7 @@
 """Change points and what lies next to them: the word, every mode on a circuit, no circuit twice.
 
-Where two limits are within 1e-6 rad is decided by `limits`, for a 7R with a node by the second-order form of the pose.
+Where two limits are within 1e-6 rad is decided by `limits`, for a 7R with a node by the second-order form
+of the pose.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ ROWS, FIRST, EVERY = 96, 3, 4
 #: A mode is on a circuit that is as near as this [rad, or relative to the size]: a fourth root of roundings.
 ON_CIRCUIT = 1e-4
 
-#: Two limits nearer than this [rad] make a change point, and from here on they make none; between it is left open.
+#: Two limits nearer than this [rad] make a change point, and from here on none; between it is left open.
 NEAR, APART = 1e-6, 1.3e-6
 
 #: A circuit narrower than this [rad] cannot be distinguished from an isolated pose.
@@ -55,7 +56,7 @@ def whole(motion: sb.Motion, seen: Counter[str]) -> None:
 
 
 def worded(motion: sb.Motion, limits: Limits, others: Limits, seen: Counter[str]) -> None:
-    """Whether the type is `change-point` where limits of the input are near; those of the output may make it so, too."""
+    """Whether the type is `change-point` where limits of the input are near; near the output's it may."""
     (real, every), other = nearest(limits), nearest(others)[1]
     changing = motion.motion_type == "change-point"
     seen["change-point"] += changing

@@ -1,4 +1,4 @@
-"""Whether the account of branch points closes, and whether a search at 720 inputs finds a mode on no circuit."""
+"""Whether the account of branch points closes, and a search at 720 inputs finds no mode off the circuits."""
 
 from __future__ import annotations
 

@@ -1,7 +1,9 @@
 """Limits of four-bars and of the RSSR in closed form, in 50 digits, and how near two of them are.
 
-A limit is a complex input: where it is real the linkage turns back there, and a pair off the real axis by little
-is a change that was missed by little. Source: the cosine laws of plane and sphere; Sun and Zhou, eq. (5).
+A limit is a complex input: where it is real the linkage turns back there, and a pair off the real axis by
+little is a change that was missed by little.
+
+Source: the cosine laws of plane and sphere; Sun and Zhou, eq. (5).
 """
 
 from __future__ import annotations
@@ -45,7 +47,7 @@ def rssr_limits(dimensions: Sequence[float]) -> tuple[Limits, Limits]:
     with mp.workdps(DIGITS):
         m, n, l1, l2, l3, d = map(mp.mpf, map(float, dimensions))
         squares = m * m + n * n + d * d + l1 * l1 + l3 * l3 - l2 * l2
-        # |A - B| = L2 is u cos + v sin = w in the other joint's angle, with a root of order two where u^2 + v^2 = w^2
+        # |A - B| = L2 is u cos + v sin = w in the other joint's angle, with one root where u^2 + v^2 = w^2
         crank = _roots(
             _trig(-2 * l3 * d, 0, 2 * l3 * l1), _trig(2 * l3 * n), _trig(squares, -2 * l1 * m, -2 * l1 * d)
         )

@@ -1,7 +1,7 @@
 """Loops that are shaky and do not move, and overconstrained ones that do, by what is proved of each.
 
-A pose with infinitesimal freedoms is rigid where no velocity makes all second-order forms zero. Source: the theory of
-second-order rigidity; the families that move are those of Bennett, Sarrus, Bricard and the planar and spherical ones.
+A pose with infinitesimal freedoms is rigid where no velocity makes all second-order forms zero. Source: the
+theory of second-order rigidity; loops that move are those of Bennett, Sarrus, Bricard, planar and spherical.
 """
 
 from __future__ import annotations

@@ -68,7 +68,7 @@ def moved(pose: SingularPose, epsilon: float) -> sb.Linkage:
 
 
 def reach(pose: SingularPose) -> float:
-    """The square of half the width in the input per epsilon, to the lowest order; negative on the other side."""
+    """Half the width in the input, squared, per epsilon, to the lowest order; negative on the other side."""
     return float(4 * pose.free[:, 0] @ np.linalg.solve(pose.form, pose.free[:, 0]))
 
 

@@ -1,8 +1,8 @@
-"""Loops of screws whose freedoms follow from the subgroups that their screws span, and whether an input moves them.
+"""Loops of screws whose freedoms follow from the subgroups that these span, and whether an input moves them.
 
-Screws of one pitch about parallel axes, and slides across, move as a planar linkage of turns does, each link rising
-by what it turns: so three and a slide are a slider-crank, four a four-bar, and two such sets in two directions leave
-the straight line of Sarrus.
+Screws of one pitch about parallel axes, and slides across, move as a planar linkage of turns does, each link
+rising by what it turns: so three and a slide are a slider-crank, four a four-bar, and two such sets in two
+directions leave the straight line of Sarrus.
 """
 
 from __future__ import annotations

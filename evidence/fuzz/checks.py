@@ -283,7 +283,7 @@ def modes_are_on_circuits(motion: sb.Motion, modes: sb.Modes) -> None:
 
 
 def off_circuits(motion: sb.Motion, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """How far poses (n, columns) are from the rows of circuits and the change points [rad, or relative to the size]."""
+    """How far poses (n, columns) are from circuits and change points [rad, or relative to the size]."""
     turns = _columns(motion.linkage, lambda owner, kind: owner != "S" and kind == "turn")
     slides = _columns(motion.linkage, lambda owner, kind: owner != "S" and kind == "slide")
     size = motion.circuits[0].size if motion.circuits else 1.0
