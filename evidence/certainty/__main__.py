@@ -42,7 +42,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         name, case = given.again
         if name not in FAMILIES or not case.isdigit():
             parser.error(f"--again: no case {case} of {name!r}; give a family of the table and a number")
-        return _reported({name: judged(FAMILIES[name], given.seed, int(case), int(case) + 1)})
+        row = judged(FAMILIES[name], given.seed, int(case), int(case) + 1)
+        _report(name, row)
+        return int(bool(row.differences))
     counts = {
         name: family.quick if given.quick else max(1, round(given.share * family.count))
         for name, family in FAMILIES.items()
@@ -52,6 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     start = time.monotonic()
     for name, row in _judged(counts, given.seed, given.processes):
         rows[name].merge(row)
+        _report(name, row)
         if rows[name].linkages == counts[name]:
             print(line(name, rows[name]), flush=True)
         if given.minutes is not None and time.monotonic() - start > 60 * given.minutes:
@@ -60,15 +63,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     place = given.out or (None if given.quick else ROOT / "docs" / "certainty.md")
     if place is not None:
         place.write_text(written(FAMILIES, rows, made), encoding="utf-8")
-    return _reported(rows)
+    return int(any(row.differences for row in rows.values()))
 
 
-def _reported(rows: dict[str, Row]) -> int:
-    """Prints what did not hold."""
-    different = [(name, *difference) for name, row in rows.items() for difference in row.differences]
-    for name, case, what in different:
-        print(f"{name}, case {case}: {what}")
-    return int(bool(different))
+def _report(name: str, row: Row) -> None:
+    for case, what in row.differences:
+        print(f"{name}, case {case}: {what}", flush=True)
 
 
 def _judged(counts: dict[str, int], seed: int, processes: int) -> Iterator[tuple[str, Row]]:
