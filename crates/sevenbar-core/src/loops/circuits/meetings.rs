@@ -9,6 +9,7 @@
 //! Source: docs/theory_many.md, (12).
 
 use super::curve::{self, Curve};
+use super::turnings::ROUNDED;
 use crate::loops::branch_points::survey::Survey;
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::closure::Solution;
@@ -17,6 +18,9 @@ use crate::loops::modes::continuation::Homotopy;
 use crate::loops::modes::finder::Unknown;
 use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 use num_complex::Complex64;
+
+/// A rate of the input below this, at a node in a dead centre, has the sign of a rounding, as the determinant has.
+const AT_REST: f64 = 1e-6;
 
 /// Halvings of a step, down to rounding.
 const HALVINGS: usize = 50;
@@ -65,10 +69,24 @@ pub(super) fn meetings(survey: &Survey, chain: &Chain, curve: &Curve) -> Vec<f64
     let nodes = &curve.nodes;
     let places: Vec<Configuration> = nodes.iter().map(|n| n.at).collect();
     // the product has no sign change at a dead centre
-    let signs: Vec<f64> = determinants(&places)
+    let signs: Vec<Option<f64>> = determinants(&places)
         .iter()
         .zip(nodes)
-        .map(|(d, n)| d.signum() * n.rates[0][column].signum())
+        .map(|(d, n)| {
+            let rate = n.rates[0][column];
+            (rate.abs() > AT_REST.max(ROUNDED * n.inverse_norm.powi(2))).then(|| d.signum() * rate.signum())
+        })
+        .collect();
+    // a node in a dead centre has the sign of the one before, the first of a closed curve that of the last
+    let mut sure = signs.iter().flatten();
+    let (first, last) = (sure.next().copied(), sure.next_back().copied());
+    let mut sign = if curve.is_closed() { last.or(first) } else { first }.unwrap_or(0.0);
+    let signs: Vec<f64> = signs
+        .into_iter()
+        .map(|sure| {
+            sign = sure.unwrap_or(sign);
+            sign
+        })
         .collect();
     let mut found = Vec::new();
     for (k, node) in nodes.iter().enumerate().take(nodes.len() - 1) {

@@ -28,8 +28,9 @@ const AHEAD: [(usize, usize); 2] = [(0, 4), (1, 1)];
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
 
-/// An open range narrower than this [rad] is that of one singular pose, and open with any joint. About solutions that run to infinity at
-/// one value of a joint ranges are wider, and another joint may have an account of them.
+/// An open range narrower than this [rad] in which two branch points are missing is that of one singular pose, and open with any
+/// joint. About solutions that run to infinity at one value of a joint ranges are wider, and of a circuit nearly as narrow the count
+/// fails: another joint may have an account of them.
 const WIDE_RANGE: f64 = 1e-4;
 
 /// Imaginary parts [rad] that solutions which are real at one input may have beside it, as a part of the distance.
@@ -152,10 +153,13 @@ fn look_beside_paths(curves: &mut Curves, chain: &Chain) {
     }
 }
 
-/// Whether nothing was counted yet, or so wide a range is left open that another joint may have an account of it.
+/// Whether nothing was counted yet, or a range is left open of which another joint may have an account.
 fn is_doubtful(curves: &Curves) -> bool {
     match &curves.search.count {
-        Ok(count) => count.open.iter().any(|o| o.to - o.from > WIDE_RANGE),
+        Ok(count) => count
+            .open
+            .iter()
+            .any(|o| o.to - o.from > WIDE_RANGE || o.missing != Some(BRANCH_POINTS_OF_POSE)),
         Err(why) => *why != Uncounted::Still,
     }
 }
