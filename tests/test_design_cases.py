@@ -68,3 +68,39 @@ def test_the_steering_is_as_near_to_ackermann_as_the_page_says():
         k = int(np.flatnonzero(np.sign(error[:-1]) != np.sign(error[1:]))[0])
         found.append(tried[k] - wanted)
     assert abs(np.degrees(np.abs(found).max()) - 0.459) < 3e-3
+
+
+#: The gripper's poses: place [mm] and angle [deg].
+POSES = ((0.0, 0.0, 0.0), (20.0, 45.0, -10.0), (90.0, 50.0, -28.0), (130.0, 5.0, -40.0))
+
+
+def cross(a, b):
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def test_the_pick_and_place_takes_its_poses_exactly_in_order_and_without_a_dead_centre():
+    (crank, rocker), (a, b) = places("pivots of crank and rocker"), places("joints A and B")
+    found = []
+    for x, y, angle in POSES:
+        c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        turn, shift = np.array([[c, -s], [s, c]]), np.array([x, y])
+        found.append((turn @ a + shift, turn @ b + shift))
+    # the page has six decimals
+    for one, other in found:
+        assert abs(np.linalg.norm(one - crank) - np.linalg.norm(a - crank)) < 1e-4
+        assert abs(np.linalg.norm(other - rocker) - np.linalg.norm(b - rocker)) < 1e-4
+    # the crank goes one way, by less than a turn, and rod and rocker are never in line
+    angles = np.unwrap([np.arctan2(*(one - crank)[::-1]) for one, _ in found])
+    assert (np.diff(angles) > 0).all() or (np.diff(angles) < 0).all()
+    arm, rod, lever = (np.linalg.norm(w) for w in (a - crank, b - a, b - rocker))
+    sides = []
+    for angle in np.linspace(angles[0], angles[-1], 721):
+        end = crank + arm * np.array([np.cos(angle), np.sin(angle)])
+        way = rocker - end
+        gap = np.linalg.norm(way)
+        assert abs(rod - lever) < gap < rod + lever
+        sides.append(gap)
+    signs = [np.sign(cross(other - one, rocker - other)) for one, other in found]
+    assert len(set(signs)) == 1
+    cosines = [(rod**2 + lever**2 - gap**2) / (2 * rod * lever) for gap in sides]
+    assert np.degrees(np.arccos(np.abs(cosines).max())) > 23.6

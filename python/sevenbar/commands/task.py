@@ -49,6 +49,7 @@ def task(
     json: Json = False,
 ) -> None:
     """Designs of any loop for what a task file asks (extra 'design')."""
+    from sevenbar.design.exact.starts import exact_starts
     from sevenbar.design.extra import need_scipy
     from sevenbar.design.synthesis.path.generation import check_counts
     from sevenbar.design.task.file.reader import task_file
@@ -76,8 +77,10 @@ def task(
         return
     single = task_report(read.task, designs, command_line(), formats)
     check_out(single, out, force=force)
+    given = exact_starts(read.task, starts // 2, seed)
     with progress_bar(f"searching designs of {read.name}") as progress:
-        search = designed(read.task, count=designs, starts=starts, seed=seed, progress=progress)
+        drawn = starts - len(given)
+        search = designed(read.task, count=designs, starts=drawn, seed=seed, given=given, progress=progress)
         # a search that found nothing says why
         search.required(starts)
     found = TaskDesigns(search, read.name, read.source, starts, seed)

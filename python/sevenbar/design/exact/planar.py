@@ -29,6 +29,9 @@ from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.loop.rigid import axial, pose, turns_about
 
+#: What a point is called, several, and the curve that four poses leave them.
+PIVOTS = ("pivot", "pivots", "curve")
+
 #: Dyads of five poses over the complex numbers.
 DYADS = 4
 
@@ -65,7 +68,7 @@ def planar_poses(
     """
     task = planar_given(poses, 3, 5)
     _refuse_special(task)
-    forms = np.array([_form(r, d) for r, d in zip(task.turns[:, :2, :2], task.shifts[:, :2], strict=True)])
+    forms = _forms(task)
     title, count = f"{len(task.motions)} poses in a plane", len(task.motions)
     if moving is not None and count != 3:
         raise RequestError(f"moving: with {count} poses the pivots are not free; leave them out")
@@ -86,10 +89,37 @@ def planar_poses(
         known = int(found.multiplicity[~circular].sum())
         return ExactAnswers(title, "dyads", DYADS, known, len(kept), answers, how, drawn(dyads, task))
     given = None if moving is None else _given_points(moving, task)
-    pairs, how = family(forms, given, samples, seed, ("pivot", "pivots", "curve"))
+    pairs, how = family(forms, given, samples, seed, PIVOTS)
     dyads = _dyads(pairs, task)
     answers = loops_of_pairs(dyads, task, "Planar four-bar", length_unit)
     return ExactAnswers(title, "dyads", None, None, len(dyads), answers, how, drawn(dyads, task))
+
+
+def planar_dyads(task: Displacements, samples: int, seed: int) -> list[Dyad]:
+    """The dyads that take planar poses: all real ones of five; of four or three `samples`, drawn by a seed.
+
+    None where poses are special, so that infinitely many take five.
+    """
+    forms = _forms(task)
+    if len(task.motions) == 5:
+        found = solutions(forms)
+        pairs = (
+            []
+            if found is None
+            else [
+                (a.real, b.real)
+                for a, b, real in zip(found.a, found.b, found.real, strict=True)
+                if real and not _is_circular(b)
+            ]
+        )
+    else:
+        pairs, _ = family(forms, None, samples, seed, PIVOTS)
+    return _dyads(pairs, task)
+
+
+def _forms(task: Displacements) -> Floats:
+    """The forms (n - 1, 3, 3) of (1)."""
+    return np.array([_form(r, d) for r, d in zip(task.turns[:, :2, :2], task.shifts[:, :2], strict=True)])
 
 
 def _form(turn: Floats, shift: Floats) -> Floats:

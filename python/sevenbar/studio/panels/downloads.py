@@ -16,6 +16,7 @@ from sevenbar.errors import RequestError
 from sevenbar.export import FORMATS, Bodies, export
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting import report
+from sevenbar.studio.state.reach import Reach
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
 
@@ -25,17 +26,18 @@ _DRAWING = threading.Lock()
 
 @dataclass(frozen=True)
 class Scene:
-    """What there is to take home: the description, and the circuit and the row on view."""
+    """What there is to take home: the description, circuit and row on view, and the stops around it."""
 
     draft: Draft
     view: View | None
     row: float
     current: bool
+    reach: Reach | None = None
 
     @staticmethod
     def of(session: Session) -> Scene:
         """What a session shows now."""
-        return Scene(session.draft, session.view, session.row, not session.problem)
+        return Scene(session.draft, session.view, session.row, not session.problem, session.reach)
 
     @property
     def stem(self) -> str:
@@ -87,7 +89,7 @@ def _figures(ending: str) -> Callable[[Scene], tuple[str, bytes]]:
 def _page(scene: Scene) -> tuple[str, bytes]:
     from sevenbar.studio.panels.playback import page
 
-    return f"{scene.stem}.html", page(scene.moving()).encode()
+    return f"{scene.stem}.html", page(scene.moving(), scene.reach).encode()
 
 
 def _one(stem: str, files: list[Path]) -> tuple[str, bytes]:

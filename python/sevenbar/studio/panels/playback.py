@@ -9,6 +9,7 @@ import numpy as np
 from sevenbar.studio.local_server import LocalServer
 from sevenbar.studio.panels.transport import CYCLE
 from sevenbar.studio.pictures.stage import FIELD, Stage
+from sevenbar.studio.state.reach import Reach, within
 from sevenbar.studio.state.verdict import facts_html
 from sevenbar.studio.state.view import View, views_of
 from sevenbar.studio.svg.curves import panels
@@ -18,9 +19,12 @@ from sevenbar.studio.svg.quantities import quantities
 PICTURES = 180
 
 
-def page(view: View) -> str:
-    """The HTML of one cycle of the circuit on view; all it needs is in it."""
-    scene = escape(_scene(view), quote=True)
+def page(view: View, reach: Reach | None = None) -> str:
+    """The HTML of one cycle of the circuit on view, or of its way from stop to stop and back.
+
+    All it needs is in it.
+    """
+    scene = escape(_scene(view, reach), quote=True)
     motion = view.motion
     curves = "".join(
         panel.html for panel in panels(views_of(motion), quantities(motion)[:3], view.circuit.index)
@@ -43,22 +47,31 @@ iframe {{ flex: 1; border: 0; height: 100%; min-width: 0; }}
 """
 
 
-def _scene(view: View) -> str:
+def _scene(view: View, reach: Reach | None) -> str:
     """The page of viser's player, with the scene and its motion in it."""
     # a recording is made of a server's scene; nobody hears of this one
     server = LocalServer("127.0.0.1", 0)
     try:
         stage = Stage(server.scene)
         stage.frame_view(view.frame.places)
-        stage.set(view.frame, (view.motion.input, view.motion.output))
+        stage.set(view.frame, (view.motion.input, view.motion.output), within(view))
         place, target = stage.look()
         server.initial_camera.fov = FIELD
         server.initial_camera.position, server.initial_camera.look_at = place, target
-        stage.pose(view.frame.pose(0))
+        rows = _rows(view, reach)
+        stage.pose(view.frame.pose(rows[0]))
         recorder = server.get_scene_serializer()
-        for time in np.linspace(0, view.period, PICTURES + 1)[:-1]:
-            stage.pose(view.frame.pose(view.row_at(float(time))))
+        for row in rows:
+            stage.pose(view.frame.pose(row))
             recorder.insert_sleep(CYCLE / PICTURES)
         return recorder.as_html()
     finally:
         server.stop()
+
+
+def _rows(view: View, reach: Reach | None) -> list[float]:
+    """The rows of the pictures, evenly in time."""
+    if reach is None:
+        return [view.row_at(float(time)) for time in np.linspace(0, view.period, PICTURES + 1)[:-1]]
+    way = np.linspace(*reach.times, PICTURES // 2 + 1)
+    return [reach.row_at(float(time)) for time in (*way[:-1], *way[:0:-1])]

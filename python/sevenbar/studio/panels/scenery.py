@@ -13,6 +13,7 @@ from sevenbar.drawing.style import ACCELERATION, CIRCUIT_COLOURS, VELOCITY
 from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.studio.panels.controls import Asked, offer
 from sevenbar.studio.pictures.stage import FIELD, Stage
+from sevenbar.studio.state.reach import within
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
 
@@ -138,7 +139,8 @@ class Scenery:
         if self._is_new("axodes", (view, row, self._axodes.value)):
             self._draw_axodes(view, row)
         ghosts = self._ghosts.value
-        if self._is_new("ghosts", (view, ghosts, row if ghosts == MODES else None)):
+        among = {MODES: row, ALONG: self._session.reach}.get(ghosts)
+        if self._is_new("ghosts", (view, ghosts, among)):
             self._ghost(view)
 
     def _still(self) -> None:
@@ -178,7 +180,7 @@ class Scenery:
             every = np.concatenate([each.frame.places.reshape(-1, 3) for each in self._session.views])
             self._everything = every[np.isfinite(every).all(axis=1)]
             self.stage.frame_view(self._everything)
-        self.stage.set(view.frame, (view.motion.input, view.motion.output))
+        self.stage.set(view.frame, (view.motion.input, view.motion.output), within(view))
         self.stage.pose(view.frame.pose(self._session.row))
         self._drawn["pose"] = self._session.row
         self.stage.grey(grey)
@@ -210,8 +212,7 @@ class Scenery:
     def _ghost(self, view: View) -> None:
         match self._ghosts.value:
             case word if word == ALONG:
-                rows = np.linspace(0, len(view.path.rows) - 1, POSITIONS, endpoint=False)
-                self.stage.ghosts([(view.frame.pose(float(row)), None) for row in rows])
+                self.stage.ghosts([(view.frame.pose(row), None) for row in self._spread(view)])
             case word if word == MODES:
                 modes = self._session.modes()
                 shown = self._session.mode(modes)
@@ -222,6 +223,14 @@ class Scenery:
                 self.stage.ghosts(list(zip(places, colours, strict=True)))
             case _:
                 self.stage.ghosts([])
+
+    def _spread(self, view: View) -> list[float]:
+        """Rows spread over the cycle, or from stop to stop."""
+        reach = self._session.reach
+        if reach is None:
+            rows = np.linspace(0, len(view.path.rows) - 1, POSITIONS, endpoint=False)
+            return [float(row) for row in rows]
+        return [reach.rolled(float(row)) for row in np.linspace(reach.low, reach.high, POSITIONS)]
 
     def _point(self, view: View, switches: dict[str, bool]) -> None:
         """The arrows of the points at the row on view."""

@@ -13,6 +13,7 @@ from sevenbar.kinematics.circuits.poses import at_row
 from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.shown import value_text
 from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, offer, put
+from sevenbar.studio.state.reach import Reach, stopped_by
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import heading
 from sevenbar.studio.state.view import View
@@ -43,6 +44,11 @@ class Transport:
         self._speed = gui.add_dropdown(
             "speed", tuple(SPEEDS), initial_value="1 x", hint="at 1 x a cycle takes six seconds"
         )
+        self._held = gui.add_checkbox(
+            "halt at stops",
+            True,
+            hint="ranges of joints, cones of balls and radii of rods that the file gives",
+        )
         command = gui.add_command("Play or pause", hotkey="space")
         command.on_trigger(lambda _: worker.ask("play", self._toggle))
         self._play.on_click(lambda _: worker.ask("play", self._toggle))
@@ -51,6 +57,7 @@ class Transport:
         self._travel.on_update(self._scrubbed)
         self._goto.on_update(self._typed)
         self._circuit.on_update(self._chosen)
+        self._held.on_update(self._let_go)
         self._shown: tuple[object, ...] = ()
 
     def tick(self, seconds: float) -> None:
@@ -84,10 +91,20 @@ class Transport:
             travel = float(self._travel.value)
             self._worker.ask("scrub", lambda: self._halt_and(lambda: self._seek(travel)))
 
+    def _let_go(self, event: viser.GuiEvent[Any]) -> None:
+        if by_person(event):
+            held = self._held.value
+            self._worker.ask("held", lambda: self._session.hold(held))
+
     def _seek(self, travel: float) -> None:
-        view = self._session.view
+        view, reach = self._session.view, self._session.reach
         if view is not None:
             time = travel / abs(_shown_speed(view))
+            if reach is not None:
+                # the slider's own ends are rounded
+                ends = {self._travel.min: reach.times[0], self._travel.max: reach.times[1]}
+                self._session.seek(reach.row_at(ends.get(travel, time)))
+                return
             last = len(view.path.rows) - 1
             self._session.seek(last if time >= view.period else view.row_at(max(time, 0.0)))
 
@@ -111,22 +128,23 @@ class Transport:
 
     def show(self) -> None:
         """Shows the session as it is."""
-        session, view = self._session, self._session.view
-        shown = (view, session.draft, session.problem)
+        session, view, reach = self._session, self._session.view, self._session.reach
+        shown = (view, session.draft, session.problem, reach)
         if any(a is not b for a, b in zip(shown, self._shown, strict=False)) or not self._shown:
             self._shown = shown
             self._heading.content = heading(session)
-            self._offer(view)
+            self._offer(view, reach)
         if view is None:
             self._reading.content = ""
             return
-        travel = view.time_at(session.row) * abs(_shown_speed(view))
+        time = view.time_at(session.row) if reach is None else reach.time_at(reach.unrolled(session.row))
+        travel = time * abs(_shown_speed(view))
         if abs(travel - self._travel.value) > 1e-6 and not self._worker.awaits("scrub"):
-            put(self._travel, min(travel, self._travel.max))
+            put(self._travel, min(max(travel, self._travel.min), self._travel.max))
         self._reading.content = _reading(session, view)
 
-    def _offer(self, view: View | None) -> None:
-        """What can be chosen of the motion on view."""
+    def _offer(self, view: View | None, reach: Reach | None) -> None:
+        """What can be chosen of the motion on view, up to its stops."""
         for control in (self._play, self._travel, self._goto, self._circuit, self._next):
             control.disabled = view is None
         if view is None:
@@ -135,11 +153,19 @@ class Transport:
         options = tuple(f"{c.index}: {c.motion_type}" for c in view.motion)
         offer(self._circuit, options)
         put(self._circuit, options[view.circuit.index])
-        self._travel.max = view.period * abs(_shown_speed(view)) or 1.0
-        self._travel.step = self._travel.max / 720
+        self._held.visible = bool(view.linkage.stops.stops)
+        first, last = (0.0, view.period) if reach is None else reach.times
+        low, high = (time * abs(_shown_speed(view)) for time in (first, last))
+        high = high if high > low else low + 1.0
+        if reach is not None:
+            # the ends are written below the slider, and stops seldom are at round values
+            low, high = (round(end, 3 - math.floor(math.log10(high - low))) for end in (low, high))
+        self._travel.min, self._travel.max = low, high
+        self._travel.step = (high - low) / 720
         unit = view.linkage.length_unit if _slides(view) else "deg"
         there = "" if view.circuit.goes_round else ", there and back"
-        self._travel.label = f"input{there} [{unit}]"
+        between = "" if reach is None else ", between stops"
+        self._travel.label = f"input{there}{between} [{unit}]"
 
 
 def _slides(view: View) -> bool:
@@ -160,7 +186,7 @@ def _reading(session: Session, view: View) -> str:
     way = ""
     if not circuit.goes_round:
         way = " rising" if view.path.sign[int(session.row)] * view.motion.speed > 0 else " falling"
-    modes = session.modes()
+    modes, reach = session.modes(), session.reach
     lines = [
         f"input {view.input_text(session.row)}{way}",
         f"output {value_text(view.linkage, circuit.output_column, second)}",
@@ -168,5 +194,11 @@ def _reading(session: Session, view: View) -> str:
     ]
     if modes:
         lines.append(f"mode {session.mode(modes) + 1} of {len(modes)} at this input")
+    if view.linkage.stops.stops:
+        beyond = stopped_by(view, session.row)
+        if reach is not None and (stop := reach.stop_at(session.row)):
+            lines.append(f"at the stop: {stop}")
+        elif reach is None and beyond:
+            lines.append(f"beyond the stop: {beyond}")
     text = " &nbsp; ".join(escape(line) for line in lines)
     return f'<div style="padding:2px 12px 8px;font-size:12.5px;color:#333">{text}</div>'

@@ -13,6 +13,7 @@ from sevenbar.drawing.scene import paths, view
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import PATH
 from sevenbar.drawing.view import directions
+from sevenbar.kinematics.circuits.extents import Flags
 from sevenbar.kinematics.loop.rigid import rotation_of
 from sevenbar.studio.pictures.batches import Batches, Labels
 from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, stretched
@@ -30,6 +31,8 @@ AXIS_LINE, JOINT_PATH, POINT_PATH = 1.4, 1.8, 2.8
 AXODE_LINE, FIXED_AXODE, MOVING_AXODE = 1.0, "#56B4E9", "#CC79A7"
 #: How much white is in the path of a joint that has its link's colour.
 PALE = 0.4
+#: How much white is in a path where a stop keeps the linkage from going, linear in light.
+BEYOND = 0.65
 #: Opacity of ghosts, and the most there are.
 GHOST, MOST_GHOSTS = 0.2, 16
 #: Radii of an arrow's shaft and head, and its head's length; a mark's radius [1].
@@ -69,6 +72,7 @@ class Stage:
         self._scene = scene
         self._fresh, self._size = False, 1.0
         self.centre, self.scale = np.zeros(3), 1.0
+        self._within: Flags | None = None
         self._grey, self._labels_on, self._axes_on, self._paths_on = False, False, True, True
         self._solids, self._ghosts = Batches(scene, "/linkage"), Batches(scene, "/ghosts", opacity=GHOST)
         self._marks = Batches(scene, "/marks")
@@ -160,11 +164,13 @@ class Stage:
         places = np.concatenate(drawn)
         return places[np.isfinite(places).all(axis=1)]
 
-    def set(self, frame: Skeleton, ends: tuple[str, str]) -> None:
+    def set(self, frame: Skeleton, ends: tuple[str, str], within: Flags | None = None) -> None:
         """Takes another linkage or circuit, by its frame and the columns of input and output.
 
-        Its paths are drawn at once, its solids, axes and names by the `pose` that must follow.
+        Its paths are drawn at once, pale where rows are not `within` (n,) the stops; its solids, axes and
+        names by the `pose` that must follow.
         """
+        self._within = within
         self._size = frame.span
         self._plan = plan(frame, ends)
         self._moving, self._frame = self._plan.moving(), frame
@@ -306,7 +312,12 @@ class Stage:
         trace = self.in_scene(self._frame.places[:, [place for place, _ in found]])
         steps = np.stack([trace[:-1], trace[1:]], axis=2)
         colours = np.array([colour for _, colour in found])
-        colours = np.broadcast_to(colours[None, :, None], steps.shape).reshape(-1, 2, 3)
+        colours = np.broadcast_to(colours[None, :, None], steps.shape)
+        if self._within is not None:
+            beyond = ~(self._within[:-1] & self._within[1:])
+            white = BEYOND * 255 + (1 - BEYOND) * colours
+            colours = np.where(beyond[:, None, None, None], white.astype(np.uint8), colours)
+        colours = colours.reshape(-1, 2, 3)
         self._draw_lines(name, steps.reshape(-1, 2, 3), self._shade(colours), thickness)
         if name in self._lines:
             self._path_colours[name] = colours

@@ -14,6 +14,7 @@ from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Place
 from sevenbar.reporting.facts import meaning
 from sevenbar.studio.state.acting import SwitchedLoading
+from sevenbar.studio.state.reach import Reach, reaches, stopped_by, within
 from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
 
 #: Inputs in a full turn.
@@ -32,7 +33,7 @@ class Session:
     `draft` is always a valid description. `problem` says why it has no motion, and is empty where it has one;
     `view` then shows the last one that moved, and is `None` only where there never was one. `views` are those
     of all circuits of the motion on view; `row` is the place on the view's path. `acting` is what acts on the
-    linkage on view, without what is switched off.
+    linkage on view, without what is switched off. `held` says that the linkage stops at its stops.
     """
 
     def __init__(self, text: str, source: str, *, agree: float | None = None) -> None:
@@ -42,10 +43,11 @@ class Session:
         """
         self.view: View | None = None
         self.views: tuple[View, ...] = ()
-        self.row, self.forwards = 0.0, True
+        self.row, self.forwards, self.held = 0.0, True, True
         self.past: list[Draft] = []
         self.future: list[Draft] = []
         self._last_change: tuple[object, float] = ((), -math.inf)
+        self._reaches: tuple[View, tuple[Reach, ...]] | None = None
         self.draft = Draft.of(text, source, agree=agree)
         self.acting = SwitchedLoading(self.draft.linkage)
         self._take(self.draft)
@@ -79,7 +81,45 @@ class Session:
             self.views = views_of(motion)
             self.acting = SwitchedLoading(draft.linkage, self.acting.off)
             self.view, self.row = (
-                (self.views[0], 0.0) if self.view is None else nearest(self.views, self.view, self.row)
+                self._first() if self.view is None else nearest(self.views, self.view, self.row)
+            )
+            self.hold(self.held)
+
+    def _first(self) -> tuple[View, float]:
+        """Where a linkage is shown first: on the first circuit that goes anywhere within its stops."""
+        for view in self.views:
+            if within(view).any():
+                free = reaches(view)
+                begins = not free or any(one.holds(0.0) for one in free)
+                return view, 0.0 if begins else free[0].low
+        return self.views[0], 0.0
+
+    @property
+    def reaches(self) -> tuple[Reach, ...]:
+        """The stretches of the path on view between stops; none where nothing stops it, or it is let go."""
+        if not self.held or self.view is None:
+            return ()
+        if self._reaches is None or self._reaches[0] is not self.view:
+            self._reaches = (self.view, reaches(self.view))
+        return self._reaches[1]
+
+    @property
+    def reach(self) -> Reach | None:
+        """The stretch that holds the place on view; `None` where no stop holds it, or it lies beyond one."""
+        return next((one for one in self.reaches if one.holds(self.row)), None)
+
+    def hold(self, held: bool) -> None:
+        """Has the linkage stop at its stops, or go through; a place beyond one goes to the nearest within."""
+        self.held = held
+        if self.reaches and self.reach is None:
+            view, last = self.reaches[0].view, len(self.reaches[0].view.path.rows) - 1
+
+            def apart(row: float) -> float:
+                gap = abs(row - self.row)
+                return min(gap, last - gap) if view.circuit.closed else gap
+
+            self.row = min(
+                (one.rolled(end) for one in self.reaches for end in (one.low, one.high)), key=apart
             )
 
     def change(self, place: Place, value: object, stroke: object = None) -> None:
@@ -207,9 +247,12 @@ class Session:
         return min(own, key=apart, default=0)
 
     def seek(self, row: float) -> None:
-        """Goes to a row of the path on view."""
+        """Goes to a row of the path on view, no farther than a stop lets it."""
         if self.view is not None:
+            reach = self.reach
             self.row = float(np.clip(row, 0, len(self.view.path.rows) - 1))
+            if reach is not None and not reach.holds(self.row):
+                self.row = reach.rolled(reach.clamped(reach.unrolled(self.row)))
 
     def seek_input(self, value: float) -> None:
         """Goes to a value of the input [rad, or length], along the present pass if that gets there.
@@ -228,22 +271,43 @@ class Session:
                 f"input: {value * size:.6g} {unit} is out of reach of circuit {view.circuit.index}; "
                 f"give {_within(low, high)} to {_within(high, low)} {unit}"
             )
+        if self.reaches:
+            free = [row for row in rows if any(one.holds(row) for one in self.reaches)]
+            if not free:
+                text, stops = view.input_text(rows[0]), stopped_by(view, rows[0])
+                raise RequestError(
+                    f"input: {text} lies beyond a stop of circuit {view.circuit.index} ({stops}); "
+                    "give another, or switch the stops off"
+                )
+            reach = self.reach
+            rows = [row for row in free if reach is not None and reach.holds(row)] or free
         part = view.pass_of(self.row)
         own = [row for row in rows if part.start <= row <= part.last]
         self.row = min(own or rows, key=lambda row: abs(row - self.row))
 
     def step(self, rows: int) -> None:
-        """Goes on, or back, by whole rows; a closed circuit runs over its end."""
+        """Goes on, or back, by whole rows, up to a stop; a closed circuit runs over its end."""
         if self.view is None:
             return
-        last = len(self.view.path.rows) - 1
-        target = math.floor(self.row + 1e-9) + rows if rows > 0 else math.ceil(self.row - 1e-9) + rows
+        last, reach = len(self.view.path.rows) - 1, self.reach
+        start = self.row if reach is None else reach.unrolled(self.row)
+        target = math.floor(start + 1e-9) + rows if rows > 0 else math.ceil(start - 1e-9) + rows
+        if reach is not None:
+            self.row = reach.rolled(reach.clamped(float(target)))
+            return
         self.row = float(target % last if self.view.circuit.closed and last else min(max(target, 0), last))
 
     def advance(self, seconds: float) -> None:
-        """Lets the mechanism run for some of its seconds; a motion that does not close turns at its ends."""
+        """Lets the mechanism run for some of its seconds; it turns at stops, and where it does not close."""
         view = self.view
         if view is None or not view.period > 0:
+            return
+        if (reach := self.reach) is not None:
+            low, high = reach.times
+            time = reach.time_at(reach.unrolled(self.row)) + (seconds if self.forwards else -seconds)
+            if not low < time < high:
+                self.forwards = not self.forwards
+            self.row = reach.row_at(time)
             return
         now = view.time_at(self.row)
         if view.circuit.closed:

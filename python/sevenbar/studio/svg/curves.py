@@ -18,7 +18,7 @@ from sevenbar.drawing.ticks import FLAT
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.extents import Flags
 from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.kinematics.paths.circuit_path import NotFollowedError
+from sevenbar.studio.state.reach import within
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.panel import Panel
 from sevenbar.studio.svg.picture import (
@@ -73,11 +73,7 @@ class ShownCurve:
     @property
     def within(self) -> Flags:
         """Whether its rows are within the stops of the linkage (n,)."""
-        circuit, rows = self.view.circuit, self.view.path.rows
-        try:
-            return np.asarray(circuit.allowed.within[rows])
-        except NotFollowedError:
-            return np.ones(len(rows), dtype=bool)
+        return within(self.view)
 
     def span(self, kind: str) -> Span | None:
         """The range worth showing, without endless rates at input dead centres; `None` without values."""

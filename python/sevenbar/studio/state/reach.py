@@ -1,0 +1,133 @@
+"""How far a circuit goes from a place before a stop of the linkage ends it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sevenbar.kinematics.circuits.extents import Flags
+from sevenbar.kinematics.paths.circuit_path import NotFollowedError
+from sevenbar.studio.state.view import SAME_ROW, View
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """A stretch of a view's path from row `low` to row `high`, within all stops.
+
+    On a closed circuit `high` may be greater than the last row: the stretch then goes on over the end.
+    `first_stop` and `last_stop` say what ends it: "range of rocker", "cone of ball_a", "links 1 and 3"; empty
+    where the circuit itself ends.
+    """
+
+    view: View
+    low: float
+    high: float
+    first_stop: str
+    last_stop: str
+
+    @property
+    def _round(self) -> float:
+        """Rows of a whole cycle of a closed circuit."""
+        return float(len(self.view.path.rows) - 1)
+
+    def holds(self, row: float) -> bool:
+        """Whether a row of the path lies on the stretch, its ends with it."""
+        return self.low - SAME_ROW <= self.unrolled(row) <= self.high + SAME_ROW
+
+    def unrolled(self, row: float) -> float:
+        """A row counted on from the stretch's first, over the end of a closed circuit."""
+        if not self.view.circuit.closed or row >= self.low - SAME_ROW:
+            return row
+        return row + self._round
+
+    def rolled(self, row: float) -> float:
+        """A row of the stretch as a row of the path."""
+        return row - self._round if row > self._round else row
+
+    def clamped(self, row: float) -> float:
+        """A row that is counted as `unrolled` does, no farther than the stops."""
+        return min(max(row, self.low), self.high)
+
+    def time_at(self, row: float) -> float:
+        """The time [s] of a row that is counted as `unrolled` does."""
+        over = row > self._round
+        return self.view.time_at(self.rolled(row)) + (self.view.period if over else 0.0)
+
+    @cached_property
+    def times(self) -> tuple[float, float]:
+        """The times [s] of both ends."""
+        return self.time_at(self.low), self.time_at(self.high)
+
+    def row_at(self, time: float) -> float:
+        """The row of the path at a time [s] between those of both ends."""
+        first, last = self.times
+        if not first < time < last:
+            return self.rolled(self.low if time <= first else self.high)
+        return self.view.row_at(time)
+
+    def stop_at(self, row: float) -> str:
+        """The stop at which a row of the path is; empty between the stops."""
+        place = self.unrolled(row)
+        if abs(place - self.high) <= SAME_ROW:
+            return self.last_stop
+        # of a stretch round a closed circuit that one stop touches, both ends are one row
+        return self.first_stop if abs(place - self.low) <= SAME_ROW else ""
+
+
+def within(view: View) -> Flags:
+    """Whether the rows of a view's path are within the stops of its linkage (n,); where unknown they are."""
+    try:
+        return np.asarray(view.circuit.allowed.within[view.path.rows])
+    except NotFollowedError:
+        return np.ones(len(view.path.rows), dtype=bool)
+
+
+def stopped_by(view: View, row: float) -> str:
+    """Which stops forbid the row of the circuit nearest to a row of a view's path; empty where none does."""
+    try:
+        return str(view.circuit.allowed.stopped_by[view.path.rows[round(row)]])
+    except NotFollowedError:
+        return ""
+
+
+def reaches(view: View) -> tuple[Reach, ...]:
+    """The stretches of a view's path within all stops, none where nothing, or everything, is stopped."""
+    if not view.linkage.stops.stops or (free := within(view)).all() or not free.any():
+        return ()
+    allowed, last = view.circuit.allowed, len(free) - 1
+    ends = [
+        (row, stop)
+        for span in allowed.spans
+        for value, stop in ((span.start, span.first_stop), (span.end, span.last_stop))
+        for row in (view.rows_at(value) if stop else ())
+    ]
+
+    def end(inside: int, outside: int) -> tuple[float, str]:
+        """Where the path leaves the stops between two neighbouring rows, and by which stop."""
+        if not 0 <= outside <= last:
+            return float(inside), ""
+        names = str(allowed.stopped_by[view.path.rows[outside]])
+        low = min(inside, outside)
+        met = (one for one in ends if low <= one[0] <= low + 1 and one[1] in names.split(", "))
+        return next(met, (float(inside), names))
+
+    found = []
+    for first, past in _runs(free, closed=view.circuit.closed):
+        laps = last if past - 1 > last else 0
+        low, first_stop = end(first, first - 1)
+        high, last_stop = end(past - 1 - laps, past - laps)
+        found.append(Reach(view, low, high + laps, first_stop, last_stop))
+    return tuple(found)
+
+
+def _runs(free: Flags, *, closed: bool) -> Iterator[tuple[int, int]]:
+    """The first row of each run within the stops, and the first past it; over the end of a closed circuit."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], free, [False]])))
+    runs = [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+    if closed and len(runs) > 1 and free[0] and free[-1]:
+        first, last = runs[0], runs[-1]
+        runs = [*runs[1:-1], (last[0], last[1] + first[1] - 1)]
+    yield from runs
