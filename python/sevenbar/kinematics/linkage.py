@@ -173,7 +173,7 @@ class Linkage(Solvable):
             raise RequestError(f"order: {shown(order)} is not offered; give 0 to 3")
         law = None
         constant = 1.0
-        plain = speed is None or isinstance(speed, str) or np.ndim(speed) == 0
+        plain = speed is None or isinstance(speed, (float, int, str)) or np.ndim(speed) == 0
         if plain and acceleration is None and jerk is None:
             constant = self._speed(speed, column)
         else:
