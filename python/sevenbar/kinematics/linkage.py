@@ -172,7 +172,7 @@ class Linkage(Solvable):
         order = whole_number("order", order, 0, 3, "offered")
         law = None
         constant = 1.0
-        plain = speed is None or isinstance(speed, str) or np.ndim(speed) == 0
+        plain = speed is None or isinstance(speed, (float, int, str)) or np.ndim(speed) == 0
         if plain and acceleration is None and jerk is None:
             constant = self._speed(speed, column)
         else:

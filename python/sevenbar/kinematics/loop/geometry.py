@@ -226,7 +226,6 @@ class Loop(Drawable):
 
     def column(self, name: str, key: str) -> int:
         """The place of a column named by the caller; a joint's name stands for its first one."""
-        known = [joint.name for joint in self.joints]
         for joint in self.joints:
             if joint.row.is_ball and name in (joint.name, *joint.columns):
                 raise RequestError(
@@ -236,7 +235,7 @@ class Loop(Drawable):
             if name == joint.name:
                 return self.columns.index(joint.first)
         if name not in self.columns:
-            raise RequestError(f"{key}: {no_joint(name, known)}")
+            raise RequestError(f"{key}: {no_joint(name, [joint.name for joint in self.joints])}")
         return self.columns.index(name)
 
     def input_column(self, name: str | None = None, key: str = "input") -> int:
