@@ -100,7 +100,7 @@ def test_a_swing_is_printed_and_written(tmp_path):
         ),
         (("function", "--y", "x", "--motion-type", "crank"), "motion type: 'crank' is not offered"),
         (("function", "--y", "x", "--designs", "0"), "--designs: 0 designs are not offered; give 1 to 50"),
-        (("function", "--y", "x", "--seed", "-1"), "--seed: -1 is no seed; give a number >= 0"),
+        (("function", "--y", "x", "--seed", "-1"), "--seed: -1 is not a seed; give 0 or more"),
         (("function", "--y", "x", "--tolerance", "little"), "--tolerance: 'little' is not an angle"),
         (
             ("function", "--table", "none.csv"),
