@@ -141,7 +141,7 @@ def fit_picture(space: ViewAxes, box: Box, room: Rectangle, *, bare: bool = Fals
     left, right, below, above = (0.1, 0.1, 0.1, 0.1) if bare else margins(space.view)
     if space.view.flat and not bare:
         # long numbers need more
-        left = max(left, room_beside(space) + EDGE / 2)
+        left = max(left, room_beside(space) + EDGE)
     inner = (room[0] + left, room[1] + below, room[2] - left - right, room[3] - below - above)
     fit(space, box, inner)
     space.axes.apply_aspect()
