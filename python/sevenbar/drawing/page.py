@@ -154,7 +154,7 @@ def fit_picture(space: ViewAxes, box: Box, room: Rectangle) -> None:
     left, right, below, above = margins(space.view)
     if space.view.flat:
         # long numbers need more
-        left = max(left, room_beside(space) + EDGE / 2)
+        left = max(left, room_beside(space) + EDGE)
     inner = (room[0] + left, room[1] + below, room[2] - left - right, room[3] - below - above)
     fit(space, box, inner)
     space.axes.apply_aspect()
