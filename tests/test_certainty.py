@@ -39,6 +39,14 @@ def test_a_few_of_each_family_hold(name):
     assert (row.linkages, row.differences) == (family.quick, [])
 
 
+@pytest.mark.parametrize(
+    ("name", "case"),
+    [("planar 4R, nearly stretched", 3), ("spherical 4R, nearly stretched", 15), ("RCCRR, narrow", 5)],
+)
+def test_cases_in_which_something_was_found_hold_now(name, case):
+    assert judged(command.FAMILIES[name], 1, case, case + 1).differences == []
+
+
 def test_what_does_not_hold_and_what_is_raised_are_differences_and_the_command_reports_them(
     tmp_path, monkeypatch, capsys
 ):

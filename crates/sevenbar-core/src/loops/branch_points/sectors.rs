@@ -2,6 +2,7 @@
 //!
 //! Source: docs/theory_many.md, (13), (14) and (20).
 
+use super::locating::Branching;
 use super::survey::{Infinite, Survey};
 use crate::loops::equation::closure::{Slides, Solution, UNKNOWNS};
 use crate::loops::modes::circle::{Circle, InputClosure};
@@ -33,6 +34,11 @@ pub(crate) struct Known {
     pub meetings: Vec<f64>,
     /// Change points and isolated poses: two zeros each.
     pub singular: Vec<f64>,
+}
+
+/// Whether a complex branch point is so near to a way down at an angle that this passes it on either side.
+pub(super) fn is_on_way(located: &[Branching], angle: f64) -> bool {
+    located.iter().any(|b| !b.real && apart(b.tau.re, angle) < CLEAR)
 }
 
 impl Known {
@@ -73,8 +79,14 @@ pub(super) struct Winding<'a> {
 impl Winding<'_> {
     /// The ranges between the borders of a circle, and the counts in each; `None` if a solution was lost on the way round.
     ///
-    /// `own` are the paths of the circle that belong to this closure.
-    pub fn sectors(&self, known: &Known, circle: &Circle, own: &[usize]) -> Option<Vec<Sector>> {
+    /// `own` are the paths of the circle that belong to this closure, `located` the complex branch points that are known.
+    pub fn sectors(
+        &self,
+        known: &Known,
+        located: &[Branching],
+        circle: &Circle,
+        own: &[usize],
+    ) -> Option<Vec<Sector>> {
         let count = circle.count;
         let all = |at: &[Option<Place>]| all(own, at);
         let lost = |at: &Vec<Option<Place>>| own.iter().any(|&path| at[path].is_none());
@@ -91,6 +103,7 @@ impl Winding<'_> {
             let angle = circle.first + k as f64 * spacing;
             if let Some(ends) = all(&circle.ends[k])
                 && self.is_clear(known, angle, &ends)
+                && !is_on_way(located, angle)
             {
                 let down = less(total(&ends), phases[k]);
                 borders.push((k, Border { angle, height: circle.radius.ln(), down }));
