@@ -115,7 +115,7 @@ _DRAWING = (
 SHARED = {
     "--view": ("modes", "task", "path", "point"),
     "--style": _DRAWING,
-    "--lang": ("analyze", "plot", "forces", "free", "sweep", *_DRAWING),
+    "--lang": ("analyze", "plot", "forces", "free", "sweep", "survey", *_DRAWING),
 }
 
 

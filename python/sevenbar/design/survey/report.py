@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.console import RenderableType
 
-from sevenbar.design.candidates import tally
+from sevenbar.design.candidates import tally_told
 from sevenbar.design.files import design_files
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.task import SurveyTask
@@ -19,6 +19,7 @@ from sevenbar.design.wish import Wish
 from sevenbar.kinematics.solvers.surveys import NUMBERS
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, page
+from sevenbar.text.words import retold, retold_parts, say
 
 #: Columns of the printed table, by their names in `Candidate.columns`, those that a task has.
 PRINTED = {
@@ -36,15 +37,15 @@ NUMBER_COLUMNS = {f"{name}_ratio": name for name in NUMBERS[:6]} | {"axes_deg": 
 def survey_report(count: int, command: str) -> Report[SurveyResult]:
     """How a survey is reported with the files of at most `count` designs, whose heads name the `command`."""
     files = design_files(count, (), head=partial(_head, command), as_dict=as_dict)
-    return Report(partial(text, count), as_dict, files)
+    return Report(partial(text, count), as_dict, files, spoken=True)
 
 
 def text(count: int, found: SurveyResult) -> RenderableType:
     """The answer for people, with the first `count` designs."""
     assert isinstance(found.task, SurveyTask)
     facts = Facts()
-    facts.add("wanted", found.task.want.title, "bold")
-    facts.add("must hold", found.task.text())
+    facts.add("wanted", retold(found.task.want.title), "bold")
+    facts.add("must hold", retold_parts(found.task.text(), "; "))
     bounds = found.task.request()["bounds"]
     facts.add(
         "drawn",
@@ -54,16 +55,18 @@ def text(count: int, found: SurveyResult) -> RenderableType:
             if name != "angle"
         ),
     )
-    facts.add("axes", _axes(found.task))
+    facts.add("axes", retold(_axes(found.task)))
     if found.unfinished:
-        facts.add("unfinished", found.unfinished, "bold yellow")
-    facts.add_all(tally_facts(found), bold=["answer"])
-    facts.add("polished", f"{found.polished} of the best")
+        facts.add("unfinished", retold(found.unfinished), "bold yellow")
+    for label, words in tally_facts(found):
+        facts.add(label, _told(words), "bold" if label == "answer" else "")
+    facts.add("polished", say("{count} of the best", count=found.polished))
     if found.refusals:
-        facts.add("of the best", f"{tally(found.refusals)} refused after polishing")
+        reasons = tally_told(found.refusals)
+        facts.add("of the best", say("{reasons} refused after polishing", reasons=reasons))
     best = found.candidates[:count]
     tables = (columns_table(best, heads) for heads in (PRINTED, NUMBER_COLUMNS)) if best else ()
-    return page("Survey of RSSRs", facts, *tables)
+    return page(say("Survey of RSSRs"), facts, *tables)
 
 
 def tally_facts(found: SurveyResult) -> list[tuple[str, str]]:
@@ -106,6 +109,12 @@ def as_dict(found: SurveyResult) -> dict[str, Any]:
         "refused": list(map(vars, found.refusals)),
         "designs": plain_designs(found),
     }
+
+
+def _told(words: str) -> str:
+    """A fact of the tally in the language that is spoken: the verdict, and what is told of it."""
+    before, colon, after = words.partition(": ")
+    return f"{say(before)}{say(': ')}{retold_parts(after, ': ')}" if colon else retold(words)
 
 
 def _axes(task: SurveyTask) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from sevenbar.design.candidates import Candidate
+from sevenbar.design.candidates import tally_told
 from sevenbar.design.closure import NAMES
 from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
@@ -49,20 +48,12 @@ def text(found: Synthesis) -> RenderableType:
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
     if found.refusals:
-        facts.add("refused", _refused(found))
+        facts.add("refused", tally_told(found.refusals))
     unit = found.candidates[0].draft.linkage.length_unit
     wanted = {n: head for n, head in PRINTED.items() if found.wish is not None or n not in OF_SWING}
     dimensions = {f"{name}_{unit}": f"{name} [{unit}]" for name in NAMES}
     tables = (columns_table(found.candidates, heads) for heads in (wanted, dimensions))
     return page(say("Synthesis of an RSSR"), facts, *tables)
-
-
-def _refused(found: Synthesis) -> str:
-    """What was refused, the commonest first."""
-    counts = Counter(refusal.fault for refusal in found.refusals)
-    return say(", ").join(
-        say("{count} by {fault}", count=count, fault=say(fault)) for fault, count in counts.most_common()
-    )
 
 
 def _searched(found: Synthesis) -> str:
