@@ -9,7 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from sevenbar.design.candidates import tally_told
+from sevenbar.design.candidates import Candidate, tally_told
 from sevenbar.design.closure import NAMES
 from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
