@@ -1,14 +1,17 @@
-"""What tests are given: a Chinese font; Chromium, its pages, the studio; a cluster."""
+"""What tests are given: a Chinese font, or none but matplotlib's; Chromium, its pages, the studio; a cluster."""
 
 import logging
 from contextlib import ExitStack
 from itertools import count
+from pathlib import Path
 
 import pytest
+from matplotlib import get_data_path
+from matplotlib.font_manager import fontManager
 
 import browser
 from served import Studio
-from sevenbar.drawing import fonts
+from sevenbar.drawing import fonts, style
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -25,6 +28,13 @@ def chinese_font():
     """A font in which figures can have Chinese labels; without one the test is skipped."""
     if fonts._installed() is None:
         pytest.skip("no font with Chinese characters is installed")
+
+
+@pytest.fixture
+def fonts_of_matplotlib(monkeypatch):
+    """Figures have the fonts that come with matplotlib, the widest letters a machine may have: no Arial, no Times."""
+    own = {font.name for font in fontManager.ttflist if Path(font.fname).is_relative_to(get_data_path())}
+    monkeypatch.setattr(style, "get_font_names", lambda: sorted(own))
 
 
 @pytest.fixture(scope="session")

@@ -416,3 +416,23 @@ def test_modes_at_the_limit_of_an_input_are_one_pose_and_beside_it_two():
     counts = [len(linkage.assembly_modes(limit + by)) for by in (-1e-3, -1e-15, 0.0, 1e-15, 1e-3)]
     assert sorted(counts[::4]) == [0, 2]
     assert max(counts[1:4]) <= 1
+
+
+def test_inputs_of_change_points_are_within_a_turn_and_poses_at_one_input_are_counted() -> None:
+    """Rounding leaves a change point at 0 a hair short of a full turn."""
+    parallelogram = sb.four_bar(1, 2, 1, 2).motion(24)
+    np.testing.assert_allclose(parallelogram.change_point_inputs, [0, pi], atol=1e-12)
+    assert "input 0.000\N{DEGREE SIGN}  180.000\N{DEGREE SIGN}:" in repr(parallelogram)
+    # the rhombus folded at 0 turns about one point, and at 180 degrees is stretched
+    assert "input 0.000\N{DEGREE SIGN} (2 poses)  180.000\N{DEGREE SIGN}:" in repr(
+        sb.four_bar(1, 1, 1, 1).motion(24)
+    )
+
+
+def test_an_output_that_rests_has_one_place_and_not_a_range() -> None:
+    words = repr(sb.four_bar(1, 1, 1, 1).motion(24))
+    assert "theta_4 at rest at 180.000\N{DEGREE SIGN}" in words
+    # a slider-crank of equal links: the slider rests or goes to 0, up to rounding
+    words = repr(sb.slider_crank(40, 40).motion(24))
+    assert "slider [mm] at rest at -80" in words
+    assert "slider [mm] -160 to 0" in words

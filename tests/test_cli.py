@@ -159,6 +159,14 @@ def test_a_linkage_that_does_not_close_is_an_answer(tmp_path):
     assert run.returncode == 0
     assert "cannot-assemble" in run.stdout
     assert {p.name for p in (tmp_path / "out").iterdir()} == {"report.md", "report.json", "motion.csv"}
+    # nothing is known of constraints where no pose is
+    assert "redundant" not in run.stdout
+    film = sevenbar("analyze", "short.toml", "--out", "film", "--animate", "short.gif", cwd=tmp_path)
+    assert film.returncode == 2
+    assert film.stderr.strip().endswith(
+        "--animate: cannot-assemble, there is no motion to draw; leave it out, the report says why"
+    )
+    assert not (tmp_path / "film").exists()
 
 
 @pytest.mark.slow
@@ -383,7 +391,7 @@ def test_the_folder_of_a_general_loop_holds_joints_and_paths_too(tmp_path):
         ),
         (
             ["plot", "rssp", "--kind", "path", "--out", "out"],
-            "--kind: 'path' is not a figure; allowed: curves, joints, modes, configuration, point, transmission, axodes, all",
+            "--kind: 'path' is not a figure; give curves, joints, modes, configuration, point, transmission, axodes or all",
         ),
         (["plot", "rssp", "--point", "C", "--out", "out"], "--point: no point 'C'; this linkage has B"),
         (

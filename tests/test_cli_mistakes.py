@@ -67,7 +67,7 @@ def folder(tmp_path):
         ),
         (
             ["rssr", "--out", "out", "--figures", "svg,bmp"],
-            "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf, eps",
+            "--figures: 'bmp' is not a figure format; give png, svg, pdf or eps",
         ),
         (
             ["rssr", "--out", "taken"],
@@ -135,6 +135,15 @@ def test_a_name_nested_a_thousand_times_is_one_short_message(folder):
             [
                 "not valid TOML: unterminated string, at the end of the file; 'sevenbar gallery rssr' prints a file that is right"
             ],
+        ),
+        ("", ["is empty; begin with a linkage of the gallery, as in 'sevenbar gallery rssr > mine.toml'"]),
+        (
+            "# nothing yet\n",
+            ["is empty; begin with a linkage of the gallery, as in 'sevenbar gallery rssr > mine.toml'"],
+        ),
+        (
+            "linkage = 'rssr'\n[free]\nL1 = '200:300'\n[[want]]\nkind = 'function'\n",
+            ["is a design task and not a linkage; 'sevenbar design task' takes it"],
         ),
         (
             "format = 1\nM = 700\nspeed = 3\ntwist = 80\n",

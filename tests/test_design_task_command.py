@@ -199,6 +199,18 @@ def test_mistakes_come_before_the_search(task_path):
     found = mistake("design", "task", task_path, "--pareto", "1")
     assert "--pareto: '1' are not two wants; give two, as in 1,2" in found
     assert "no such file" in mistake("design", "task", task_path.parent / "none.toml")
+    folder = task_path.parent
+    near = mistake("design", "task", folder / task_path.name.replace("t", "tt", 1))
+    assert f"no such file; did you mean '{task_path}'? give the path of a task file (TOML)" in near
+    assert "is a folder; give the path of a task file (TOML) in it" in mistake("design", "task", folder)
+    (folder / "loop.toml").write_text(gallery_text("planar_4r"))
+    linkage = mistake("design", "task", folder / "loop.toml")
+    assert (
+        "is a linkage file and not a task; a task names its linkage, as in linkage = 'loop.toml'" in linkage
+    )
+    assert "--seed: 'x' is not a whole number; give one, as in 2" in mistake(
+        "design", "task", task_path, "--seed", "x"
+    )
 
 
 def test_figures_are_drawn(task_path):

@@ -236,7 +236,12 @@ def test_special_functions_have_fewer_linkages_or_a_family():
         (np.arange(5) * 0.1, np.arange(4) * 0.1, {}, "5 inputs and 4 outputs"),
         ([0, 1], [0, 1], {}, "2 pairs leave too much open; give 3 to 8"),
         (np.arange(5) * 0.1, np.arange(5) ** 2 * 0.01, {"longest": -1}, "longest: -1 is not a length"),
-        (np.arange(5) * 0.1, np.arange(5) ** 2 * 0.01, {"samples": 0}, "samples: 0 is no number"),
+        (
+            np.arange(5) * 0.1,
+            np.arange(5) ** 2 * 0.01,
+            {"samples": 0},
+            "samples: 0 is not a number of members",
+        ),
     ],
 )
 def test_pairs_that_are_none_say_so(inputs, outputs, given, said):

@@ -210,7 +210,7 @@ def test_a_known_spherical_four_bar_is_found_again_without_defects():
         ([about(2, x) for x in (0, 0.3, 0.6, 0.9, 1.2)], r"about one direction, \(0, 0, 1\)"),
         ([about(2, x) for x in (0, 0.3, 0.6, 0.3, 1.2)], r"orientations\[3\]: is the same"),
         ([np.eye(3), *(about(i, math.pi) for i in range(3)), about(1, 0.5)], "infinitely many dyads"),
-        ([np.diag([1.0, 1, -1])] * 5, "is a mirror image"),
+        ([np.diag([1.0, 1, -1])] * 5, "it mirrors"),
         ([np.eye(3) * 2] * 5, "is no rotation"),
         ([np.eye(3)] * 6, "6 are given"),
     ],
@@ -259,7 +259,7 @@ def test_the_example_of_the_page_prints_what_its_comments_say():
         ),
         (
             lambda: planar_poses([(0, 0, 0), (1, 0, 1), (3, 1, 2)], samples=2.5),
-            "samples: 2.5 is no number of members; give 1 to 1048576",
+            "samples: 2.5 is not a number of members; give 1 to 1048576",
         ),
         (
             lambda: spherical_orientations([np.eye(3), about(0, 1.0), about(1, 1.0)], radius=0),

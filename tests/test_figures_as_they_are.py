@@ -196,7 +196,7 @@ def test_styles_sizes_and_titles_are_as_asked() -> None:
     assert tuple(plot.curves(motion, figsize=(4, 3)).get_size_inches()) == (4, 3)
     assert dict(matplotlib.rcParams) == before
     for wrong, message in (
-        ({"style": "nature"}, "style: 'nature' is not a style; give one of screen, paper, ieee"),
+        ({"style": "nature"}, "style: 'nature' is not a style; give screen, paper or ieee"),
         ({"figsize": (0, 1)}, "figsize: .0, 1. is not a size; give width and height"),
         ({"view": "xyz"}, "view: 'xyz' is not a view; did you mean"),
         ({"view": (100, 0)}, "view: .100, 0. is not a view"),

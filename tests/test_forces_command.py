@@ -230,6 +230,7 @@ def forces_of(name: str) -> sb.Forces:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("fonts_of_matplotlib")
 @pytest.mark.parametrize("style", ["screen", pytest.param("paper", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kind", force_figures.KINDS)
 @pytest.mark.parametrize("name", FIGURES)

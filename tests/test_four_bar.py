@@ -60,6 +60,28 @@ def test_textbook_four_bars_have_their_class(lengths, grashof):
         assert motion.motion_type == expected(found, "theta_1", "theta_4")
 
 
+@pytest.mark.parametrize("longest", range(4))
+def test_a_link_longer_than_the_three_others_together_does_not_close(longest):
+    lengths = [10.0, 20.0, 30.0, 25.0]
+    for gap, closes in ((-1e-3, True), (1e-3, False), (50.0, False)):
+        own = list(lengths)
+        own[longest] = sum(lengths) - lengths[longest] + gap
+        found = sb.four_bar(*own)
+        assert (found.as_four_bar().grashof != "cannot close") == closes, own
+        assert (found.motion(24).motion_type != "cannot-assemble") == closes, own
+    words = " ".join(repr(found.motion(24)).split())
+    assert "is longer than the three others together, so the loop does not close" in words
+
+
+def test_a_slide_that_the_two_links_do_not_reach_does_not_close():
+    for offset, closes in ((69.999, True), (70.001, False)):
+        loop = sb.from_dh("RRRP", length=[40, 30, offset, 0], twist=[0, 0, pi / 2, -pi / 2])
+        found = loop.as_four_bar()
+        assert (found.kind, found.offset) == ("slider-crank", pytest.approx(offset))
+        assert (found.grashof != "cannot close") == closes, offset
+        assert (loop.motion(24).motion_type != "cannot-assemble") == closes, offset
+
+
 @pytest.mark.slow
 def test_the_class_is_that_of_the_motion_of_random_four_bars_for_every_input():
     rng = np.random.default_rng(2)

@@ -36,6 +36,8 @@ SPHERICAL = [
 ]
 DRAWN: dict[str, Callable[[], sb.Linkage]] = {
     "slider-crank": lambda: sb.from_axes(SLIDER_CRANK, name="Slider-crank"),
+    "planar, long numbers": lambda: sb.four_bar(1000, 2000, 1600, 1800),
+    "planar, small numbers": lambda: sb.four_bar(0.001, 0.002, 0.0016, 0.0018, length_unit="m"),
     "spherical, point far off": lambda: sb.from_axes(
         SPHERICAL, points=[{"name": "P", "link": 2, "at": (60, 40, 30)}]
     ),
@@ -113,6 +115,7 @@ def cases() -> list[Any]:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("fonts_of_matplotlib")
 @pytest.mark.parametrize(("name", "kind"), cases())
 def test_no_text_of_a_figure_lies_on_another_or_leaves_the_page(
     motions: dict[str, sb.Motion], name: str, kind: str, monkeypatch: pytest.MonkeyPatch

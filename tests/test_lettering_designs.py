@@ -98,6 +98,7 @@ FIGURES = {
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("fonts_of_matplotlib")
 @pytest.mark.parametrize(
     ("name", "style"),
     [

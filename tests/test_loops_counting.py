@@ -133,6 +133,42 @@ def test_circuits_that_end_where_slides_are_infinite_are_counted_and_none_is_mis
     assert far > 0
 
 
+@pytest.mark.parametrize("kinds", ["RCCC", "RPRRRPR"])
+def test_a_law_meets_an_open_circuit_at_its_own_inputs_and_nowhere_else(kinds: str) -> None:
+    """Such a circuit has no dead centre and is not gone round: it begins and ends where slides are infinite."""
+    inputs = np.linspace(-3, 3, 61)
+    law = sb.Law.of(np.arange(61.0), inputs, 1.0, 0.0)
+    missed = 0
+    for seed in range(3):
+        for circuit in drawn(np.random.default_rng(seed), kinds).motion(law=law):
+            asked = np.tile(inputs, len(circuit.input) // 61)
+            met = circuit.status != "no-solution"
+            turned = (circuit.input - asked)[met] / (2 * math.pi)
+            np.testing.assert_allclose(turned, np.round(turned), atol=1e-9)
+            missed += int((~met).sum())
+    assert missed > 0
+
+
+def test_a_narrow_circuit_that_begins_in_its_own_dead_centre_is_counted() -> None:
+    """Of a four-bar that closes nearly stretched only; its dead centres were taken for meetings with other curves."""
+    length = [1.6168810006227978, 0.5710081024464377, 0.8319621303934439, 0.21391077221784888]
+    motion = sb.from_dh("RRRR", length=length, twist=[0] * 4, offset=[0] * 4).motion(24)
+    assert (motion.completeness, len(motion.circuits)) == ("counted", 1)
+    # by the law of cosines: coupler and rocker in line between crank and ground
+    a, b, c, d = length
+    limit = math.pi - math.acos((a * a + d * d - (b + c) ** 2) / (2 * a * d))
+    np.testing.assert_allclose(motion.limits, sorted((limit % math.tau, -limit % math.tau)), atol=1e-10)
+
+
+def test_a_circuit_too_narrow_for_one_joint_s_count_is_counted_by_another_joint() -> None:
+    """A spherical four-bar nearly stretched: its input swings 2e-5 rad, its dead centres are lost in the rounding of the phases."""
+    side = [0.6999182565023351, 0.6394474344764746, 0.27152321780334704, 1.6108889087374223]
+    motion = sb.from_dh("RRRR", length=[0] * 4, twist=side, offset=[0] * 4).motion(24)
+    assert (motion.completeness, len(motion.circuits)) == ("counted", 1)
+    assert motion.search.count is not None
+    assert motion.search.count.joint == "theta_4"
+
+
 def test_the_paper_s_loop_has_no_branch_point() -> None:
     motion = sb.load("seven_r").motion(24)
     assert motion.completeness == "counted"

@@ -197,9 +197,9 @@ MISTAKES = {
         "swing",
         "--levels",
         "1,x",
-    ): "--levels: '1,x' are not numbers; give some, as in 20,40,60",
+    ): "--levels: '1,x' are not finite numbers; give some, as in 20,40,60",
     ("rssr", *OVER, "--levels", "1"): "--levels: of no measure; give --measure too, as in '--measure swing'",
-    ("rssr", *OVER, "--size", "A9"): "size: 'A9' is not a sheet; give one of A4, A3, A2, A1",
+    ("rssr", *OVER, "--size", "A9"): "size: 'A9' is not a sheet; give A4, A3, A2 or A1",
     ("rssr", *OVER, "--grid", "1"): "grid: 1 is not a count of lines; give 3 to 1001",
     (
         "rssr",

@@ -114,7 +114,10 @@ def test_a_function_of_the_motion_has_contours_too():
         ((["swing"], {"take": "best"}), "take: 'best' is not offered; give highest, lowest, or the index"),
         ((["swing"], {"take": -1}), "take: -1 is not offered; give highest, lowest, or the index"),
         ((["swing"], {"levels": []}), r"levels: \[\] are not finite numbers; give some, as in 20,40,60"),
-        ((["swing"], {"levels": ["x"]}), r"levels: \['x'\] are not numbers; give some, as in 20,40,60"),
+        (
+            (["swing"], {"levels": ["x"]}),
+            r"levels: \['x'\] are not finite numbers; give some, as in 20,40,60",
+        ),
         ((["swing"], {"levels": [np.nan]}), r"levels: \[nan\] are not finite numbers"),
     ],
 )

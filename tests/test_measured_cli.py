@@ -164,7 +164,7 @@ def test_a_folder_that_cannot_be_made_leaves_nothing(tmp_path, command):
         (["compare", "rssr", "good.csv", "--output", "crank"],
          "output: joint 'crank' is the input; give another: rocker"),
         (["compare", "rssr", "good.csv", "--figures", "bmp"],
-         "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf, eps"),
+         "--figures: 'bmp' is not a figure format; give png, svg, pdf or eps"),
         (["compare", "rssr", "extremes.csv", "--align", "phase"],
          "--align: extremes.csv has lowest and highest values of a circuit, no rows; leave it out"),
         (["compare", "rssr", "extremes.csv", "--branch", "0"],

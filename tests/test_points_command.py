@@ -145,7 +145,7 @@ def test_a_law_lets_a_mass_on_a_rocking_circuit_be_asked_for(tmp_path):
         ),
         (
             ("point", "seven_r", "--link", 4, CUBE, "--least", "snap"),
-            "--least: 'snap' is not offered; give one of acceleration, velocity, jerk, rms",
+            "--least: 'snap' is not offered; give acceleration, velocity, jerk or rms",
         ),
         (
             ("point", "seven_r", "--link", 4, CUBE, "--least", "rms", "--curve", "c.csv"),

@@ -13,8 +13,9 @@ from evidence.accuracy.precise_loops import DIGITS, PreciseLoop
 from evidence.accuracy.reference_forces import NewtonEuler
 from evidence.accuracy.reference_loops import Loop
 from evidence.fuzz.loadings import random_loading
+from sevenbar.forces.acting import Load
 from sevenbar.forces.bodies import Body
-from sevenbar.forces.loading import Load, Loading
+from sevenbar.forces.loading import Loading
 from sevenbar.text.units import LENGTHS
 from textbook_loops import slider_crank_joints
 

@@ -1,8 +1,4 @@
-"""Loops of screws: what `mobility` says of them, each input's motion says too; source: the subgroups that their screws span.
-
-Screws of one pitch about parallel axes, and slides across, move as a planar linkage of turns does, each link rising by what it turns: so
-three and a slide are a slider-crank, four a four-bar, and two such sets in two directions leave the straight line of Sarrus.
-"""
+"""Loops of screws: what `mobility` says of them, each input's motion says too; source: the subgroups that their screws span."""
 
 import math
 
@@ -10,69 +6,10 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.errors import RequestError
+from evidence.certainty.screw_loops import FAMILIES, moves, screw, slide
 from sevenbar.kinematics.solvers.batches import loop_motions
 from sevenbar.reporting import report
 from sevenbar.reporting.how_found import how_found
-
-Z = [0, 0, 1]
-
-
-def screw(at, axis=Z, pitch=0.4):
-    return {"kind": "H", "at": [float(x) for x in at], "axis": axis, "pitch": float(pitch)}
-
-
-def slide(at, axis):
-    return {"kind": "P", "at": [float(x) for x in at], "axis": axis}
-
-
-def slider_crank(random, places):
-    pitch = random.uniform(0.1, 1.5)
-    points = np.round(random.uniform(-2, 2, (3, 2)), places)
-    angle = random.uniform(0, math.tau)
-    screws = [screw([*p, 0], pitch=pitch) for p in points]
-    return [*screws, slide([*points[2], 0], [math.cos(angle), math.sin(angle), 0])]
-
-
-def four_bar(random, places):
-    pitch = random.uniform(-1.5, -0.1)
-    return [screw(p, pitch=pitch) for p in np.round(random.uniform(-2, 2, (4, 3)), places)]
-
-
-def sarrus(random, places):
-    pitch = round(random.uniform(0.1, 1.5), places)
-    points = np.round(random.uniform(-2, 2, (6, 3)), places)
-    axes = [Z] * 3 + [[1, 0, 0]] * 3
-    return [screw(p, axis, pitch) for p, axis in zip(points, axes, strict=True)]
-
-
-def jack(random, places):
-    """A nut on a screwed spindle, kept from turning by a slide."""
-    pitch = round(random.uniform(0.1, 1.5), places)
-    return [
-        {"kind": "R", "at": [0, 0, 0], "axis": Z},
-        screw([0, 0, 1], pitch=pitch),
-        slide(np.round(random.uniform(-2, 2, 3), places), Z),
-    ]
-
-
-def unlike_pitches(random, places):
-    """Four screws of unlike pitches: three conditions of the plane and that of height leave nothing."""
-    pitches = random.uniform(0.1, 1, 4)
-    points = np.round(random.uniform(-2, 2, (4, 2)), places)
-    return [screw([*p, 0], pitch=h) for p, h in zip(points, pitches, strict=True)]
-
-
-FAMILIES = {slider_crank: 1, four_bar: 1, sarrus: 1, jack: 1, unlike_pitches: 0}
-
-
-def verdict(linkage, column):
-    """Whether a motion is found with this input, one that stands still in it taken for one."""
-    try:
-        return bool(linkage.motion(24, input=column).circuits)
-    except RequestError as refused:
-        assert "stands still" in str(refused)
-        return True
 
 
 @pytest.mark.slow
@@ -83,7 +20,7 @@ def test_every_input_says_of_a_screw_loop_what_mobility_says(family, places):
     for _ in range(6):
         linkage = sb.from_axes(family(random, places))
         assert linkage.mobility().finite == FAMILIES[family]
-        told = [verdict(linkage, column) for column in linkage.drivable()]
+        told = [moves(linkage, column) for column in linkage.drivable()]
         assert told == [bool(FAMILIES[family])] * len(told)
 
 

@@ -114,7 +114,7 @@ def test_the_rest_works_without_any_engine():
         (["rssr", "--steps", "2"], "steps: 2 is not a count; give 4 to 1000000"),
         (
             ["rssr", "--out", "out", "--figures", "bmp"],
-            "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf, eps",
+            "--figures: 'bmp' is not a figure format; give png, svg, pdf or eps",
         ),
         (
             ["rssr", "--figures", "svg"],

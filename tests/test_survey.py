@@ -198,7 +198,7 @@ def test_the_answer_is_the_same_in_any_parts_and_any_order(want, rank):
 
 
 def test_any_number_of_threads_gives_the_same_answer(tmp_path, monkeypatch):
-    monkeypatch.setattr("sevenbar.design.survey.task.PART", 5000)
+    monkeypatch.setattr(SurveyTask, "part_size", 5000)
     task = SurveyTask(FLAP, count=23456)
     answers = [
         survey(task, designs_wanted=0, threads=threads, out=out)
@@ -209,7 +209,7 @@ def test_any_number_of_threads_gives_the_same_answer(tmp_path, monkeypatch):
 
 
 def test_a_journal_cut_anywhere_is_gone_on_with(tmp_path, monkeypatch):
-    monkeypatch.setattr("sevenbar.design.survey.task.PART", 2000)
+    monkeypatch.setattr(SurveyTask, "part_size", 2000)
     task = SurveyTask(FLAP, count=9000)
     whole = survey(task, designs_wanted=0, out=tmp_path / "a", threads=1).tally.line()
     journal = tmp_path / "a" / JOURNAL

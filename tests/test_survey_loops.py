@@ -84,7 +84,7 @@ def test_each_verdict_is_that_of_the_analysis():
 @pytest.mark.slow
 def test_the_answer_is_the_same_however_the_work_is_divided(tmp_path, monkeypatch):
     whole = LoopSurvey(about("planar_4r", 30.0, Most(0, 0.05)), 60, 2).tally(0)
-    monkeypatch.setattr("sevenbar.design.survey.loops.PART", 25)
+    monkeypatch.setattr(LoopSurvey, "part_size", 25)
     asked = LoopSurvey(about("planar_4r", 30.0, Most(0, 0.05)), 60, 2)
     tallies = [asked.tally(part) for part in range(3)]
     for order in ((0, 1, 2), (2, 0, 1)):

@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -99,7 +100,7 @@ def test_a_swing_is_printed_and_written(tmp_path):
         ),
         (("function", "--y", "x", "--motion-type", "crank"), "motion type: 'crank' is not offered"),
         (("function", "--y", "x", "--designs", "0"), "--designs: 0 designs are not offered; give 1 to 50"),
-        (("function", "--y", "x", "--seed", "-1"), "--seed: -1 is no seed; give a number >= 0"),
+        (("function", "--y", "x", "--seed", "-1"), "--seed: -1 is not a seed; give 0 or more"),
         (("function", "--y", "x", "--tolerance", "little"), "--tolerance: 'little' is not an angle"),
         (
             ("function", "--table", "none.csv"),
@@ -238,5 +239,13 @@ def test_a_wrong_table_is_told_with_its_place(text, message, tmp_path):
 @pytest.mark.slow
 def test_without_scipy_the_extra_is_named():
     hide = "import sys; sys.modules['scipy.optimize'] = None"
-    told = mistake("design", "function", "--y", "x^2", before=hide)
-    assert told == "design needs scipy and tomlkit; install them with: pip install 'sevenbar[design]'"
+    examples = Path(__file__).parent.parent / "examples"
+    task = examples / "design" / "steering_task.toml"
+    curve = examples / "coupler_curve.csv"
+    for asked in (
+        ("function", "--y", "x^2"),
+        ("task", task),
+        ("path", "planar_4r", "--path", curve, "--link", 2, "--at", "0,-50,20"),
+    ):
+        told = mistake("design", *asked, before=hide)
+        assert told == "design needs scipy and tomlkit; install them with: pip install 'sevenbar[design]'"

@@ -69,7 +69,7 @@ def test_a_point_s_coordinate_can_be_told():
         ),
         (
             ["rssr", "--tolerance", "L1=1", "--count", "-1"],
-            "count: -1 samples tell nothing; give 2 to 1000000",
+            "count: -1 is not a number of samples; give 2 to 1000000",
         ),
         (["bennett", "--tolerance", "*=0.1"], "would open this overconstrained loop"),
         (

@@ -395,8 +395,8 @@ def test_a_pattern_leaves_out_what_opens_the_loop_and_says_so():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"count": 0}, "count: 0 samples tell nothing; give 2 to 1000000"),
-        ({"count": 1}, "count: 1 samples tell nothing"),
+        ({"count": 0}, "count: 0 is not a number of samples; give 2 to 1000000"),
+        ({"count": 1}, "count: 1 is not a number of samples"),
         ({"seed": -1}, "seed: -1 is not a seed"),
         ({"distribution": "unifrom"}, "distribution: 'unifrom' is not offered; did you mean 'uniform'?"),
         ({"output": "ball_b.1"}, "output: ball_b.1 takes part in an idle motion"),

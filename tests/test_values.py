@@ -41,7 +41,7 @@ def same(a: object, b: object) -> bool:
     if isinstance(a, np.ndarray):
         return isinstance(b, np.ndarray) and a.dtype == b.dtype and a.tobytes() == b.tobytes()
     if is_dataclass(a) and not isinstance(a, type):
-        names = [f.name for f in fields(a) if f.name not in ("_point", "_sensitivity")]
+        names = [f.name for f in fields(a) if f.name != "_point"]
         return type(a) is type(b) and all(same(getattr(a, n), getattr(b, n)) for n in names)
     if isinstance(a, tuple | list):
         return type(a) is type(b) and len(a) == len(b) and all(map(same, a, b))

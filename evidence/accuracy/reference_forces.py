@@ -20,8 +20,9 @@ import numpy as np
 
 import sevenbar as sb
 from evidence.accuracy.reference_motion import RANK, Carried, Numbers, State, crossed, from_mp, length
+from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body
-from sevenbar.forces.loading import Load, Loading, Spring
+from sevenbar.forces.loading import Loading
 
 #: A component whose row of the null space is longer is not determined by equilibrium.
 OPEN = 1e-6

@@ -278,20 +278,26 @@ def modes_are_on_circuits(motion: sb.Motion, modes: sb.Modes) -> None:
     """Each mode at one of the inputs of the rows is a pose of a row, or stands alone."""
     if motion.motion_type in WITHOUT or reported_short(motion):
         return
+    lost = int((off_circuits(motion, modes.q) > ON_CIRCUIT).sum())
+    hold(not lost, f"{lost} of {len(modes)} modes lie on no circuit")
+
+
+def off_circuits(motion: sb.Motion, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """How far poses (n, columns) are from circuits and change points [rad, or relative to the size]."""
     turns = _columns(motion.linkage, lambda owner, kind: owner != "S" and kind == "turn")
     slides = _columns(motion.linkage, lambda owner, kind: owner != "S" and kind == "slide")
+    size = motion.circuits[0].size if motion.circuits else 1.0
 
     def place(q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        size = motion.circuits[0].size if motion.circuits else 1.0
         return np.concatenate([np.cos(q[:, turns]), np.sin(q[:, turns]), q[:, slides] / size], axis=1)
 
     # a row whose balls' turns are undefined has its other joints
     poses = [circuit.q[circuit.status != "no-solution"] for circuit in motion]
     poses += [np.atleast_2d(point.q) for point in motion.change_points]
-    known = np.concatenate(poses) if poses else np.zeros((0, modes.q.shape[1]))
-    apart = cKDTree(place(known)).query(place(modes.q), p=np.inf)[0] if len(known) else np.inf
-    lost = int((np.broadcast_to(apart, len(modes)) > ON_CIRCUIT).sum())
-    hold(not lost, f"{lost} of {len(modes)} modes lie on no circuit")
+    known = np.concatenate(poses) if poses else q[:0]
+    if not len(known):
+        return np.full(len(q), np.inf)
+    return np.asarray(cKDTree(place(known)).query(place(q), p=np.inf)[0])
 
 
 def written_down(motion: sb.Motion) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,11 +20,14 @@ Draw = Callable[[np.random.Generator], Description]
 #: Lengths are whole numbers up to this of tenths or hundredths.
 LARGEST = 30
 
-#: Decades by which one number is off a change point, and by which a pose that stands alone is opened.
+#: Decades by which one number is off a change point, and by which an isolated pose is opened.
 OFF, OPENED = (-16, -3), (-11, -4)
 
-#: Smallest singular value and second-order form of a pose that stands alone, so that nothing else is near.
+#: Smallest singular value and second-order form of an isolated pose, so that nothing else is near.
 CLEARLY = 0.1
+
+#: Singular values of screws below this are those of axes that fit exactly, to rounding.
+NOTHING = 1e-9
 
 
 def _round(rng: np.random.Generator, count: int) -> np.ndarray:
@@ -115,30 +119,59 @@ def shaky(rng: np.random.Generator) -> Description:
 
 
 def _screws(point: np.ndarray, axis: np.ndarray, letter: str) -> list[np.ndarray]:
+    slide = [np.r_[np.zeros(3), axis]] if letter in "PC" else []
     if letter == "P":
-        return [np.r_[np.zeros(3), axis]]
-    return [np.r_[a, np.cross(point, a)] for a in (np.eye(3) if letter == "S" else [axis])]
+        return slide
+    turns = np.eye(3) if letter == "S" else np.atleast_2d(axis)
+    return [np.r_[a, np.cross(point, a)] for a in turns] + slide
 
 
-def _second_order(screws: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Singular values of the screws (6, 7), and of the second-order form on what these leave free."""
+def second_order_forms(screws: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Singular values of the screws (6, n), what they leave free (m, n), and the forms (k, m, m) on that.
+
+    A form for each wrench that no joint yields to: the velocity v begins a motion only where all are 0.
+    """
 
     def bracket(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         return np.r_[np.cross(a[:3], b[:3]), np.cross(a[:3], b[3:]) + np.cross(a[3:], b[:3])]
 
+    count = screws.shape[1]
     u, s, vt = np.linalg.svd(screws)
-    form = np.zeros((7, 7))
-    for i in range(7):
-        for j in range(i + 1, 7):
-            form[i, j] = form[j, i] = u[:, 5] @ bracket(screws[:, i], screws[:, j])
-    return s, np.linalg.eigvalsh(vt[5:] @ form @ vt[5:].T)
+    rank = int((s > NOTHING).sum())
+    brackets = np.zeros((6, count, count))
+    for i in range(count):
+        for j in range(i + 1, count):
+            brackets[:, i, j] = brackets[:, j, i] = bracket(screws[:, i], screws[:, j])
+    free = vt[rank:]
+    return s, free, np.einsum("wk,wij,ai,bj->kab", u[:, rank:], brackets, free, free)
 
 
-def isolated_pose(rng: np.random.Generator, letters: str) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Points and axes of R, P and S joints of seven freedoms whose pose stands alone.
+@dataclass(frozen=True, eq=False)
+class SingularPose:
+    """Joints of seven freedoms in a pose with two infinitesimal freedoms, all in one linear complex about z.
 
-    All are in one linear complex about z.
+    `free` (2, 7) are these, and a link moved up z by epsilon leaves the velocities v = x @ free for which
+    `x @ form @ x` is 4 epsilon or -4 epsilon, to the lowest order.
     """
+
+    letters: str
+    axes: list[tuple[np.ndarray, np.ndarray]]
+    free: np.ndarray
+    form: np.ndarray
+
+    def joints(self) -> list[dict[str, Any]]:
+        """As drawn in this pose."""
+        return [joint_at(letter, *axis) for letter, axis in zip(self.letters, self.axes, strict=True)]
+
+
+def joint_at(letter: str, point: np.ndarray, axis: np.ndarray) -> dict[str, Any]:
+    """The table of a joint; `axis` (3,), of U two of them, is not read of S."""
+    keys = {"S": {}, "U": {"axes": axis.tolist()}}.get(letter, {"axis": axis.tolist()})
+    return {"kind": letter, "at": point.tolist(), **keys}
+
+
+def singular_pose(rng: np.random.Generator, letters: str, *, crossing: bool = False) -> SingularPose:
+    """Of R, P, C, U, S joints: the pose is isolated, or two branches are crossing in it."""
     while True:
         # a ball bears forces through its centre only
         pitch = 0.0 if "S" in letters else 0.7 * rng.normal()
@@ -148,14 +181,25 @@ def isolated_pose(rng: np.random.Generator, letters: str) -> list[tuple[np.ndarr
             if letter == "S":
                 point[:2] = 0.0
             normal = np.array([0.0, 0.0, 1.0]) if letter == "P" else np.array([-point[1], point[0], pitch])
-            axis = rng.normal(size=3)
-            if letter != "S":
+            axis = rng.normal(size=(2, 3) if letter == "U" else 3)
+            if letter == "C":
+                axis = np.cross(normal, [0.0, 0.0, 1.0])
+            elif letter != "S":
                 axis = np.cross(normal, axis)
-            axes.append((point, axis / np.linalg.norm(axis)))
+            axes.append((point, axis / np.linalg.norm(axis, axis=-1, keepdims=True)))
         screws = [s for axis, letter in zip(axes, letters, strict=True) for s in _screws(*axis, letter)]
-        s, form = _second_order(np.array(screws).T)
-        if s[4] > CLEARLY and np.abs(form).min() > CLEARLY and form[0] * form[1] > 0:
-            return axes
+        s, free, forms = second_order_forms(np.array(screws).T)
+        if s[4] > CLEARLY and len(forms) == 1:
+            # the wrench of the complex, one where the link moves by one along z
+            form = forms[0] * np.hypot(1.0, pitch)
+            low, high = np.linalg.eigvalsh(form)
+            if min(abs(low), abs(high)) > CLEARLY and (low * high < 0) == crossing:
+                return SingularPose(letters, axes, free, form)
+
+
+def isolated_pose(rng: np.random.Generator, letters: str) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Points and axes of joints of seven freedoms whose pose is isolated."""
+    return singular_pose(rng, letters).axes
 
 
 def narrow(rng: np.random.Generator) -> Description:

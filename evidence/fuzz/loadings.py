@@ -7,8 +7,9 @@ import numpy as np
 import sevenbar as sb
 from evidence.accuracy.reference_loops import Loop
 from evidence.fuzz.random_linkages import random_rotation
+from sevenbar.forces.acting import Load, Spring, Three
 from sevenbar.forces.bodies import Body
-from sevenbar.forces.loading import Load, Loading, Spring, Three
+from sevenbar.forces.loading import Loading
 from sevenbar.text.units import LENGTHS
 
 GRAVITY = 9.80665

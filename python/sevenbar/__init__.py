@@ -17,17 +17,14 @@ from sevenbar import errors
 from sevenbar._core import __version__
 from sevenbar.description.files import load, loads
 from sevenbar.description.forms import from_axes, from_dh, rssr
+from sevenbar.forces.loading import DRAWN_IN
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Trace
 from sevenbar.kinematics.circuits.modes import Modes, Output
 from sevenbar.kinematics.circuits.motion import ChangePoint, Motion
 from sevenbar.kinematics.circuits.search import Count, OpenRange, Search
-from sevenbar.kinematics.dynamics.link_bodies import DRAWN_IN
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Drive, Joint, Point
-from sevenbar.kinematics.loop.grashof import FourBar
-from sevenbar.kinematics.loop.law import Law
-from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere
 from sevenbar.text.printing import SAID_IN
 from sevenbar.text.words import language
 
@@ -49,13 +46,17 @@ if TYPE_CHECKING:
     from sevenbar.description.law_file import load_law
     from sevenbar.description.step_axes import PartAxis, axes_of_step
     from sevenbar.description.tables import from_table
+    from sevenbar.forces.acting import Load, Spring
     from sevenbar.forces.bodies import Body
     from sevenbar.forces.free_motion.equilibria import Equilibrium
     from sevenbar.forces.free_motion.result import FreeMotion
-    from sevenbar.forces.loading import Load, Loading, Spring
+    from sevenbar.forces.loading import Loading
     from sevenbar.kinematics.circuits.instant_centres import InstantCentre, InstantCentres
+    from sevenbar.kinematics.loop.grashof import FourBar
+    from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.screw_axes import ScrewAxes
     from sevenbar.kinematics.loop.stops import Cone
+    from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere
 
 __all__ = [
     "Body",
@@ -130,14 +131,18 @@ _NAMES_ON_DEMAND = {
     "Body": "sevenbar.forces.bodies",
     "Cone": "sevenbar.kinematics.loop.stops",
     "Equilibrium": "sevenbar.forces.free_motion.equilibria",
+    "FourBar": "sevenbar.kinematics.loop.grashof",
     "FreeMotion": "sevenbar.forces.free_motion.result",
     "InstantCentre": "sevenbar.kinematics.circuits.instant_centres",
     "InstantCentres": "sevenbar.kinematics.circuits.instant_centres",
-    "Load": "sevenbar.forces.loading",
+    "Law": "sevenbar.kinematics.loop.law",
+    "Load": "sevenbar.forces.acting",
     "Loading": "sevenbar.forces.loading",
+    "MotionPlane": "sevenbar.kinematics.solvers.plane_and_sphere",
+    "MotionSphere": "sevenbar.kinematics.solvers.plane_and_sphere",
     "PartAxis": "sevenbar.description.step_axes",
     "ScrewAxes": "sevenbar.kinematics.loop.screw_axes",
-    "Spring": "sevenbar.forces.loading",
+    "Spring": "sevenbar.forces.acting",
     "axes_of_step": "sevenbar.description.step_axes",
     "from_table": "sevenbar.description.tables",
     "load_law": "sevenbar.description.law_file",

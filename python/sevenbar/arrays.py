@@ -6,7 +6,7 @@ import math
 from collections.abc import Sized
 from decimal import Decimal
 from numbers import Real
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,10 @@ Booleans = npt.NDArray[np.bool_]
 Words = npt.NDArray[np.str_]
 
 
+#: An angle [rad] short of a full turn by less is zero.
+ROUNDING = 1e-12
+
+
 def finite_array(name: str, values: npt.ArrayLike) -> Floats:
     """A one-dimensional array of finite numbers, or `RequestError` naming the first that is none."""
     array = real_array(name, values)
@@ -33,6 +37,14 @@ def finite_array(name: str, values: npt.ArrayLike) -> Floats:
     if bad.size:
         raise RequestError(f"{name}[{bad[0]}]: {array[bad[0]]} is not a finite number")
     return array
+
+
+def triple(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
+    """Three finite numbers, or `RequestError`."""
+    array = finite_array(name, values)
+    if array.size != 3:
+        raise RequestError(f"{name}: {array.size} numbers; give three")
+    return float(array[0]), float(array[1]), float(array[2])
 
 
 def finite_number(name: str, value: npt.ArrayLike) -> float:
@@ -43,6 +55,14 @@ def finite_number(name: str, value: npt.ArrayLike) -> float:
     number = float(array[0])
     if not math.isfinite(number):
         raise RequestError(f"{name}: {number} is not a finite number")
+    return number
+
+
+def positive_length(name: str, value: npt.ArrayLike) -> float:
+    """One finite number greater than 0, or `RequestError`."""
+    number = finite_number(name, value)
+    if number <= 0:
+        raise RequestError(f"{name}: {number:g} is not a length; give a number > 0")
     return number
 
 
@@ -66,6 +86,24 @@ def real_array(name: str, values: npt.ArrayLike) -> Floats:
     return array.reshape(-1)
 
 
+def whole_number(name: str, value: object, low: int, high: int | None, what: str, hint: str = "") -> int:
+    """A whole number within bounds, or `RequestError` saying that it is not `what`.
+
+    >>> whole_number("circuit", np.int64(1), 0, 3, "a circuit")
+    1
+    """
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not whole or not low <= value or not (high is None or value <= high):  # type: ignore[operator]
+        allowed = f"{low} or more" if high is None else f"{low} to {high}" if low < high else f"{low}"
+        raise RequestError(f"{name}: {shown(value)} is not {what}; give {allowed}{hint}")
+    return int(value)  # type: ignore[call-overload, no-any-return]
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether a value is one real number; truth values are none."""
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
+
+
 def counted(words: Words) -> dict[str, int]:
     """How often each word is there, by the words in order of the alphabet.
 
@@ -74,6 +112,16 @@ def counted(words: Words) -> dict[str, int]:
     """
     found, counts = np.unique(words, return_counts=True)
     return {str(word): int(count) for word, count in zip(found, counts, strict=True)}
+
+
+def within_turn(angles: npt.ArrayLike) -> Floats:
+    """Angles [rad] in [0, 2 pi); what is short of a full turn by rounding is 0.
+
+    >>> within_turn([-math.pi / 2, -1e-17]).round(4).tolist()
+    [4.7124, 0.0]
+    """
+    within = np.mod(np.asarray(angles, dtype=np.float64), math.tau)
+    return np.where(within > math.tau - ROUNDING, 0.0, within)
 
 
 def short_way(angles: npt.ArrayLike) -> Floats:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import date, time
-from difflib import get_close_matches
 from functools import wraps
 from typing import ParamSpec, TypeVar
 
@@ -99,6 +99,18 @@ class DescriptionError(SevenbarError):
         return cls([Problem("", message)], source)
 
 
+@contextmanager
+def of_extra(extra: str, needs: str, otherwise: str = "") -> Iterator[None]:
+    """Imports within are of an extra; `MissingExtraError` where one is missing, with what `needs` what."""
+    try:
+        yield
+    except ImportError:
+        them = "them" if " and " in needs else "it"
+        raise MissingExtraError(
+            f"{needs}; install {them} with: pip install 'sevenbar[{extra}]'{otherwise}"
+        ) from None
+
+
 def shown(value: object, longest: int = 60) -> str:
     """A value as it is quoted in a message: its repr, a date or time as a file has it; cut short."""
     try:
@@ -117,10 +129,25 @@ def bare(word: str) -> str:
 
 def suggestion(word: str, known: Iterable[str]) -> str:
     """`did you mean 'L1'? ` for a word near a known one, else nothing."""
+    # of words that are wrong only
+    from difflib import get_close_matches
+
     known = list(known)
     lowered = {k.lower(): k for k in known}
     near = get_close_matches(word[:100].lower(), lowered, n=1, cutoff=0.6)
     return f"did you mean {shown(lowered[near[0]])}? " if near else ""
+
+
+def check_word(key: str, word: object, known: Iterable[str], what: str = "offered") -> None:
+    """Raises `RequestError` for a word that is none of those `known`: it is not `what`.
+
+    >>> check_word("measure", "rms", ("greatest", "rms"))
+    """
+    *most, last = known
+    if word not in (*most, last):
+        listed = f"{', '.join(most)} or {last}" if most else last
+        near = suggestion(str(word), [*most, last])
+        raise RequestError(f"{key}: {shown(word)} is not {what}; {near}give {listed}")
 
 
 def no_joint(name: object, names: Sequence[str]) -> str:

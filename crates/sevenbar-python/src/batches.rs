@@ -142,7 +142,7 @@ pub(crate) fn classify_rssr<'py>(
     Ok((codes.into_pyarray(py), table(py, limits.into_iter())?))
 }
 
-/// What the motions of square-axis RSSRs (6, n) come to, the input of each at its speed (n,).
+/// The measures of the motions of square-axis RSSRs (6, n), the input of each at its speed (n,).
 #[pyfunction]
 pub(crate) fn measure_rssr<'py>(
     py: Python<'py>,
@@ -176,7 +176,7 @@ fn finite<'a>(name: &str, values: impl Iterator<Item = &'a f64>) -> PyResult<()>
     }
 }
 
-/// What the motions of n loops of one pattern of joints come to, with so many rows a turn, the input of each at its speed.
+/// The measures of the motions of n loops of one pattern of joints, with so many rows a turn, the input of each at its speed.
 ///
 /// `advances` (n, joints), `base` and `ground` (n, 4, 4), `links` (n, joints - 1, 4, 4), `speed` (n,), otherwise as for one loop.
 #[pyfunction]

@@ -42,6 +42,7 @@ type Modes<'py> = (
     Bound<'py, PyArray1<f64>>,
     &'static str,
     Vec<f64>,
+    Option<Vec<f64>>,
 );
 
 /// Joint values with three derivatives (4, n, columns), status, pass, residual and condition (n,), and the rows of a loop.
@@ -129,8 +130,8 @@ impl Loop {
         self.0.spin_axes()
     }
 
-    /// Joint values (m, columns) and closure errors (m,) of every assembly mode at one value of a column, how complete they are, and
-    /// by how much redundant constraints keep other poses open.
+    /// Joint values (m, columns) and closure errors (m,) of every assembly mode at one value of a column, how complete they are,
+    /// by how much redundant constraints keep other poses open, and a pose on a curve of poses that close there, if one was found.
     fn assembly_modes<'py>(&self, py: Python<'py>, column: usize, value: f64) -> PyResult<Modes<'py>> {
         let found = py
             .detach(|| loops::modes(&self.0, column, value))
@@ -141,6 +142,7 @@ impl Loop {
             residuals.into_pyarray(py),
             found.completeness.name(),
             found.open_by,
+            found.on_curve,
         ))
     }
 

@@ -133,7 +133,7 @@ impl RawFound {
     }
 }
 
-/// What a search of circuits came to.
+/// The result of a search for circuits.
 #[pyclass(frozen, get_all, module = "sevenbar._core")]
 pub(crate) struct RawSearch {
     found: Option<Py<RawFound>>,

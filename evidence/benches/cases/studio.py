@@ -14,7 +14,7 @@ from evidence.benches.outcome import Cell, Outcome, Table
 from evidence.benches.setting import Setting
 
 if TYPE_CHECKING:
-    from sevenbar.description.draft import Place
+    from sevenbar.kinematics.loop.geometry import Place
 
 TITLE = "The studio: from a slider to new curves"
 ABOUT = """\

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from sevenbar.arrays import whole_number
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import opened
 from sevenbar.commands.options import Agree, Force, InputJoint, Json, OutputJoint, Samples, Source, Speed
@@ -40,8 +41,7 @@ def axodes(
     against = count if relative_to is None else relative_to
     links = list(dict.fromkeys(link or [n for n in range(1, count + 1) if n not in (against, count)]))
     for name, value in (*(("link", n) for n in links), ("relative-to", against)):
-        if not 1 <= value <= count:
-            raise RequestError(f"--{name}: {value} is not a link; give 1 to {count}, the last is the ground")
+        whole_number(f"--{name}", value, 1, count, "a link", ", the last is the ground")
     if against in links:
         raise RequestError(f"--relative-to: link {against} is one of --link; give another")
     report = axodes_report(links, relative_to)

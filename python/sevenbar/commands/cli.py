@@ -16,7 +16,8 @@ import typer
 import typer.core
 
 import sevenbar as sb
-from sevenbar.commands.command import Command, number_of
+from sevenbar.arrays import whole_number
+from sevenbar.commands.command import Command
 from sevenbar.commands.consent import confirm
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
 from sevenbar.commands.given import (
@@ -49,10 +50,18 @@ from sevenbar.commands.options import (
     Speed,
     Yes,
     figure_formats,
+    number_option,
     words,
 )
 from sevenbar.commands.progress import STOPPED, progress_bar
-from sevenbar.errors import AngleUnitWarning, MissingFontWarning, RequestError, SevenbarError, shown
+from sevenbar.errors import (
+    AngleUnitWarning,
+    MissingFontWarning,
+    RequestError,
+    SevenbarError,
+    check_word,
+    shown,
+)
 from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.kinematics.linkage import sample_count
 from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
@@ -163,16 +172,8 @@ def analyze(
     view: FigureView = None,
     size: FigureSize = None,
     style: FigureStyle = None,
-    fps: Annotated[
-        float | None,
-        typer.Option(
-            parser=number_of("--fps", "30"), metavar="NUMBER", help="Pictures a second of the film."
-        ),
-    ] = None,
-    seconds: Annotated[
-        float | None,
-        typer.Option(parser=number_of("--seconds", "10"), metavar="NUMBER", help="Length of the film."),
-    ] = None,
+    fps: Annotated[float | None, number_option("--fps", "30", "Pictures a second of the film.")] = None,
+    seconds: Annotated[float | None, number_option("--seconds", "10", "Length of the film.")] = None,
     force: Force = False,
     yes: Yes = False,
     json: Json = False,
@@ -241,6 +242,10 @@ def _film(
         check_target(file)
     check_targets([file], force=force)
     check_film(file, **film)
+    if not motion.circuits:
+        raise RequestError(
+            f"--animate: {motion.motion_type}, there is no motion to draw; leave it out, the report says why"
+        )
     posed = posed_circuit(motion) or 0 if circuit is None else circuit
     drawn = chosen_circuit(motion, posed).index
 
@@ -293,7 +298,10 @@ def plot_(
     linkage: Source,
     out: Annotated[Path, typer.Option(help="Folder for the figures.")],
     kind: Annotated[
-        list[str] | None, typer.Option(help=f"{', '.join(KINDS)} or all (the default); may be repeated.")
+        list[str] | None,
+        typer.Option(
+            help=f"{', '.join(KINDS)}, or all (the default), which leaves axodes out; may be repeated."
+        ),
     ] = None,
     point: PointName = None,
     link: PointLink = None,
@@ -340,8 +348,7 @@ def _kinds(given: list[str] | None) -> list[str]:
     if not kinds:
         raise RequestError(f"--kind: none given; give some of {', '.join(KINDS)}, all")
     for word in kinds:
-        if word not in (*KINDS, "all"):
-            raise RequestError(f"--kind: {shown(word)} is not a figure; allowed: {', '.join(KINDS)}, all")
+        check_word("--kind", word, (*KINDS, "all"), "a figure")
     return list(USUAL_KINDS) if "all" in kinds else kinds
 
 
@@ -356,9 +363,7 @@ def _points(linkage: sb.Linkage, asked: str | tuple[int, Place] | None) -> Place
             raise RequestError(f"--point: no point {shown(asked)}; this linkage has {known}")
         return {asked: named[asked]}
     link, (u, v, w) = asked
-    count = len(linkage.joints)
-    if not 1 <= link <= count:
-        raise RequestError(f"--link: {link} is not a link; give 1 to {count}, the last is the ground")
+    whole_number("--link", link, 1, len(linkage.joints), "a link", ", the last is the ground")
     return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
 
 

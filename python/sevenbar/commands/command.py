@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Annotated, Any
 
@@ -95,6 +95,14 @@ EXAMPLES = {
 }
 
 
+#: What the parser of options, whose words depend on its version, says of a text that is no number, and
+#: the message in its place.
+NUMBERS = {
+    "valid integer": "a whole number; give one, as in 2",
+    "valid number": "a number; give one, as in 0.5 or 1e-5",
+    "valid float": "a number; give one, as in 0.5 or 1e-5",
+}
+
 #: What two options mean, wherever a command has them.
 VIEW_HELP = "plane, space, xy, xz, yz or iso, or elevation and azimuth, as in '30,-60'."
 STYLE_HELP = "Style of the figures: screen, paper or ieee."
@@ -172,13 +180,27 @@ class Command(typer.core.TyperCommand):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """As usual; an option given twice is refused, of which otherwise the last would count silently."""
         # the parser takes words off the list
-        _, _, order = self.make_parser(ctx).parse_args(args=list(args))
+        given, _, order = self.make_parser(ctx).parse_args(args=list(args))
         for parameter, count in Counter(order).items():
             single = parameter.param_type_name == "option" and not parameter.multiple
             if count > 1 and single and not getattr(parameter, "is_flag", False):
                 option = parameter.opts[0]
                 raise RequestError(f"{option}: given {count} times; {WHY_ONE.get(option, 'give it once')}")
-        return super().parse_args(ctx, args)
+        try:
+            return super().parse_args(ctx, args)
+        except Exception as error:
+            if wrong := _no_number(error, given):
+                raise RequestError(wrong) from None
+            raise
+
+
+def _no_number(error: Exception, given: Mapping[str, Any]) -> str:
+    """The message for an option whose text is no number; empty for any other error of the parser."""
+    parameter, words = getattr(error, "param", None), getattr(error, "message", "")
+    kind = next((wanted for said, wanted in NUMBERS.items() if said in words), "")
+    if parameter is None or not kind:
+        return ""
+    return f"{parameter.opts[0]}: {shown(given.get(parameter.name))} is not {kind}"
 
 
 def count_of(option: str) -> Callable[[object], int]:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import sevenbar as sb
-from sevenbar.commands.command import number_of
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import opened
 from sevenbar.commands.options import (
@@ -21,6 +20,7 @@ from sevenbar.commands.options import (
     Source,
     Speed,
     figure_formats,
+    number_option,
     words,
 )
 from sevenbar.commands.progress import progress_bar
@@ -140,12 +140,7 @@ def calibrate(
     circuit: ChosenCircuit = None,
     branch: ChosenBranch = None,
     confidence: Annotated[
-        float,
-        typer.Option(
-            parser=number_of("--confidence", "0.95"),
-            metavar="NUMBER",
-            help="How often an interval holds the true value.",
-        ),
+        float, number_option("--confidence", "0.95", "How often an interval holds the true value.")
     ] = 0.95,
     out: Annotated[
         Path | None,

@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
+from sevenbar.arrays import whole_number
 from sevenbar.commands.deliver import check_out, command_line, deliver
-from sevenbar.commands.function import checked_designs, seed_of
+from sevenbar.commands.design_options import OutDesigns, checked_designs
 from sevenbar.commands.given import angle
 from sevenbar.commands.options import Force, Json
 from sevenbar.commands.progress import progress_bar
@@ -42,9 +43,7 @@ def exact(
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of these draws.")] = None,
     designs: Annotated[int, typer.Option(help="How many linkages are printed and written, at most.")] = 50,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for design_1.toml, .., summary.csv and summary.json.")
-    ] = None,
+    out: OutDesigns = None,
     force: Force = False,
     json: Json = False,
 ) -> None:
@@ -61,7 +60,7 @@ def exact(
         "twist": None if twist is None else angle("--twist", twist),
         "zeros": None if zeros is None else _zeros(zeros),
         "samples": samples,
-        "seed": None if seed is None else seed_of(seed),
+        "seed": None if seed is None else whole_number("--seed", seed, 0, None, "a seed"),
     }
     task = read_exact_task(table)
     with progress_bar(f"all answers to {table.name}"):

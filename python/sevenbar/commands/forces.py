@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import sevenbar as sb
-from sevenbar.commands.command import number_of
+from sevenbar.arrays import whole_number
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import agreed, check_law, law_of, look_of
 from sevenbar.commands.options import (
@@ -24,6 +24,7 @@ from sevenbar.commands.options import (
     Samples,
     Source,
     figure_formats,
+    number_option,
     words,
 )
 from sevenbar.errors import RequestError, no_joint, shown
@@ -51,10 +52,8 @@ def forces(
     law: Law = None,
     unevenness: Annotated[
         float | None,
-        typer.Option(
-            parser=number_of("--unevenness", "0.01"),
-            metavar="NUMBER",
-            help="(highest - lowest) / mean speed that a flywheel shall keep, as in 0.01.",
+        number_option(
+            "--unevenness", "0.01", "(highest - lowest) / mean speed that a flywheel shall keep, as in 0.01."
         ),
     ] = None,
     counterweights: Annotated[
@@ -66,10 +65,10 @@ def forces(
     ] = None,
     radius: Annotated[
         float | None,
-        typer.Option(
-            parser=number_of("--radius", "100"),
-            metavar="NUMBER",
-            help="How far counterweights are from their joints, in the length unit, for their masses.",
+        number_option(
+            "--radius",
+            "100",
+            "How far counterweights are from their joints, in the length unit, for their masses.",
         ),
     ] = None,
     joint: Annotated[
@@ -158,9 +157,5 @@ def _pass(circuit: Circuit, branch: int | None, *, one: bool) -> int | None:
     count = int(circuit.branch.max(initial=0)) + 1
     if branch is None:
         return 0 if one and count > 1 else None
-    if not 0 <= branch < count:
-        allowed = f"0 to {count - 1}" if count > 1 else "0"
-        raise RequestError(
-            f"--branch: {shown(branch)} is not a pass of circuit {circuit.index}; give {allowed}"
-        )
+    whole_number("--branch", branch, 0, count - 1, f"a pass of circuit {circuit.index}")
     return branch if count > 1 else None

@@ -7,32 +7,32 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sevenbar.commands.command import number_of
+from sevenbar.arrays import whole_number
 from sevenbar.commands.deliver import check_out, command_line, deliver
+from sevenbar.commands.design_options import (
+    Designs,
+    FunctionX,
+    MotionType,
+    OutFigures,
+    Pairs,
+    Seed,
+    TimeRatio,
+    Transmission,
+    checked_designs,
+    refuse_degrees_twice,
+)
 from sevenbar.commands.given import angle, angles, limits_of, numbers
 from sevenbar.commands.options import Figures, Force, Json, figure_formats
 from sevenbar.commands.progress import progress_bar
 from sevenbar.commands.unfinished import end_of_work
-from sevenbar.errors import RequestError, shown
-from sevenbar.text.expression import IN_DEGREES, calls_in
-from sevenbar.text.units import ANGLES
+from sevenbar.errors import RequestError
 
 if TYPE_CHECKING:
     from sevenbar.design.synthesis.function.generation import Synthesis
     from sevenbar.reporting.files import Report
 
-Transmission = Annotated[str, typer.Option(help="Least transmission angle; 0 for none.")]
 Size = Annotated[
     str | None, typer.Option(help="Shortest link and longest dimension in mm, as in 50:1000 or 5cm:1m.")
-]
-MotionType = Annotated[
-    str | None,
-    typer.Option(help="crank-rocker, double-crank, rocker-crank or double-rocker; any by default."),
-]
-Designs = Annotated[int, typer.Option(help="How many designs, at most.")]
-Seed = Annotated[int, typer.Option(help="Seed of the search.")]
-Out = Annotated[
-    Path | None, typer.Option(help="Folder for design_1.toml, .. with figures, summary.csv and summary.json.")
 ]
 
 
@@ -41,10 +41,8 @@ def function(
         str | None,
         typer.Option(help="The function of x, as in 'x^2', 'log10(x)' or 'sin(x)'; sind takes degrees."),
     ] = None,
-    x: Annotated[str, typer.Option(help="Range of x: 0:1, 0:pi/2 or 0:90deg (radians then).")] = "0:1",
-    table: Annotated[
-        Path | None, typer.Option(help="CSV of pairs of angles in place of a function: input_deg,output_deg.")
-    ] = None,
+    x: FunctionX = "0:1",
+    table: Pairs = None,
     input_range: Annotated[str, typer.Option(help="Readings of the input over the range of x.")] = "0:90deg",
     output_range: Annotated[
         str, typer.Option(help="Readings of the output from the least y to the greatest.")
@@ -59,7 +57,7 @@ def function(
     motion_type: MotionType = None,
     designs: Designs = 5,
     seed: Seed = 0,
-    out: Out = None,
+    out: OutFigures = None,
     figures: Figures = None,
     force: Force = False,
     json: Json = False,
@@ -91,7 +89,7 @@ def function(
             limits=limits_of(transmission, size, motion_type, "mm"),
             tolerance=angle("--tolerance", tolerance),
             count=designs,
-            seed=seed_of(seed),
+            seed=whole_number("--seed", seed, 0, None, "a seed"),
             progress=progress,
         )
         # a search that found nothing says why
@@ -102,19 +100,12 @@ def function(
 
 def swing(
     swing: Annotated[str, typer.Option(help="Angle through which the rocker swings.")],
-    time_ratio: Annotated[
-        float,
-        typer.Option(
-            parser=number_of("--time-ratio", "1.2"),
-            metavar="NUMBER",
-            help="Time of the slower stroke over the quicker, >= 1.",
-        ),
-    ] = 1.0,
+    time_ratio: TimeRatio = 1.0,
     transmission: Transmission = "30deg",
     size: Size = None,
     designs: Designs = 5,
     seed: Seed = 0,
-    out: Out = None,
+    out: OutFigures = None,
     figures: Figures = None,
     force: Force = False,
     json: Json = False,
@@ -129,27 +120,13 @@ def swing(
             time_ratio,
             limits=limits_of(transmission, size, None, "mm"),
             count=designs,
-            seed=seed_of(seed),
+            seed=whole_number("--seed", seed, 0, None, "a seed"),
             progress=progress,
         )
         # a search that found nothing says why
         found.required()
     deliver(found, report, out, json=json, force=force)
     end_of_work(found.unfinished)
-
-
-def refuse_degrees_twice(y: str, x: str) -> None:
-    """Raises `RequestError` where sind and the like would take an x in radians."""
-    with_unit = any(unit in x for unit in (*ANGLES, "\u00b0"))
-    if with_unit and (called := sorted(calls_in(y) & IN_DEGREES.keys())):
-        raise RequestError(
-            f"--x: {shown(x)} counts in radians, and {called[0]} takes degrees; "
-            f"write {IN_DEGREES[called[0]]}, or leave the unit of x out"
-        )
-
-
-#: Most designs that one command gives.
-MOST_DESIGNS = 50
 
 
 def _before(out: Path | None, designs: int, figures: list[str] | None, force: bool) -> Report[Synthesis]:
@@ -161,16 +138,3 @@ def _before(out: Path | None, designs: int, figures: list[str] | None, force: bo
     report = synthesis_report(designs, command_line(), formats)
     check_out(report, out, force=force)
     return report
-
-
-def checked_designs(count: int) -> None:
-    """Raises `RequestError` for a number of designs that one command does not give."""
-    if not 1 <= count <= MOST_DESIGNS:
-        raise RequestError(f"--designs: {count} designs are not offered; give 1 to {MOST_DESIGNS}")
-
-
-def seed_of(seed: int) -> int:
-    """A seed >= 0, or `RequestError`."""
-    if seed < 0:
-        raise RequestError(f"--seed: {seed} is no seed; give a number >= 0")
-    return seed

@@ -21,7 +21,7 @@ from sevenbar.commands.options import (
     words,
 )
 from sevenbar.commands.progress import progress_bar
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError
 
 if TYPE_CHECKING:
     from sevenbar.design.maps.plane import Take
@@ -64,13 +64,16 @@ def map_(
     """Map motion types over two dimensions, with exact boundaries, and contours of any measure."""
     from sevenbar.design.maps.atlas import motion_map
     from sevenbar.design.maps.figures import sheet
-    from sevenbar.design.maps.heights import measure_heights, with_contours
+    from sevenbar.design.maps.heights import check_take, levels_of, measure_heights, with_contours
     from sevenbar.design.maps.report import MapFindings, map_report
     from sevenbar.design.maps.window import split_ranges
 
     formats = figure_formats(figures, out)
     sheet(size or "A4")
-    ranges, at, which = split_ranges(over or []), _levels(levels), _take(take)
+    ranges = split_ranges(over or [])
+    at = None if levels is None else levels_of(levels, "--levels")
+    which = cast("Take", int(take) if take.isdecimal() else take)
+    check_take(which, "--take")
     names = words(measure, "--measure")
     if levels is not None and not names:
         raise RequestError("--levels: of no measure; give --measure too, as in '--measure swing'")
@@ -84,22 +87,3 @@ def map_(
         )
         heights = measure_heights(found, chosen, take=which, levels=at) if chosen else ()
     deliver(MapFindings(found, heights), report, out, json=json, force=force)
-
-
-def _take(word: str) -> Take:
-    if word in ("highest", "lowest"):
-        return cast("Take", word)
-    if not word.isdecimal():
-        raise RequestError(
-            f"--take: {shown(word)} is not offered; give highest, lowest, or the index of a circuit, from 0"
-        )
-    return int(word)
-
-
-def _levels(given: str | None) -> list[float] | None:
-    if given is None:
-        return None
-    try:
-        return [float(word) for word in words([given])]
-    except ValueError:
-        raise RequestError(f"--levels: {shown(given)} are not numbers; give some, as in 20,40,60") from None

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from sevenbar.commands.command import STYLE_HELP, VIEW_HELP, count_of, number_of
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_word
 
 
 def _noted(source: str) -> str:
@@ -25,6 +25,16 @@ def _known(incomplete: str) -> list[str]:
     from sevenbar.description.gallery import names
 
     return [name for name in names() if name.startswith(incomplete)]
+
+
+def number_option(option: str, example: str, help: str) -> Any:
+    """An option that takes a number, or a formula."""
+    return typer.Option(parser=number_of(option, example), metavar="NUMBER", help=help)
+
+
+def count_option(option: str, help: str) -> Any:
+    """An option that takes a whole number, perhaps with an exponent."""
+    return typer.Option(parser=count_of(option), metavar="COUNT", help=help)
 
 
 Source = Annotated[
@@ -45,12 +55,7 @@ Follow = Annotated[
     list[str] | None,
     typer.Option(help="A dimension that the file leaves out (L2), to follow from the others; else held."),
 ]
-Samples = Annotated[
-    int,
-    typer.Option(
-        parser=count_of("--samples"), metavar="COUNT", help="Inputs in a full turn, as in 720 or 1e5."
-    ),
-]
+Samples = Annotated[int, count_option("--samples", "Inputs in a full turn, as in 720 or 1e5.")]
 Figures = Annotated[
     list[str] | None,
     typer.Option(help="Format of the figures: png (the default), svg, pdf, eps; may be repeated."),
@@ -65,11 +70,11 @@ FigureSize = Annotated[
 FigureStyle = Annotated[str | None, typer.Option("--style", help=STYLE_HELP)]
 Agree = Annotated[
     float | None,
-    typer.Option(
-        parser=number_of("--agree", "1e-5"),
-        metavar="NUMBER",
-        help="Closure error up to which redundant constraints agree, in rad or relative to the size: "
-        "1e-9 by default, 1e-3 at most.",
+    number_option(
+        "--agree",
+        "1e-5",
+        "Closure error up to which redundant constraints agree, in rad or relative to the size: 1e-9 by "
+        "default, 1e-3 at most.",
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
@@ -128,10 +133,7 @@ def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]
     if not endings:
         raise RequestError(f"--figures: none given; give some of {', '.join(FORMATS)}, or leave it out")
     for ending in endings:
-        if ending not in FORMATS:
-            raise RequestError(
-                f"--figures: {shown(ending)} is not a figure format; allowed: {', '.join(FORMATS)}"
-            )
+        check_word("--figures", ending, FORMATS, "a figure format")
     if out is None:
         raise RequestError("--figures: a folder for them is missing; give --out, as in '--out report'")
     return endings

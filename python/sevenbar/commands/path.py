@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from sevenbar.commands.deliver import check_out, command_line, deliver
+from sevenbar.commands.design_options import Designs, MotionType, OutFigures, Seed, Starts
 from sevenbar.commands.given import limits_of, point_of
 from sevenbar.commands.options import (
     Figures,
@@ -54,13 +55,11 @@ def path(
     size: Annotated[
         str | None, typer.Option(help="Shortest link and longest dimension, as in 50:1000 or 5cm:1m.")
     ] = None,
-    motion_type: Annotated[str | None, typer.Option(help="Motion type, as in crank-rocker.")] = None,
-    designs: Annotated[int, typer.Option(help="How many designs that differ.")] = 5,
-    starts: Annotated[int, typer.Option(help="Linkages within the bounds that are tried.")] = 256,
-    seed: Annotated[int, typer.Option(help="Seed of the starts.")] = 0,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for design_1.toml, .., summary.csv and a figure of each.")
-    ] = None,
+    motion_type: MotionType = None,
+    designs: Designs = 5,
+    starts: Starts = 256,
+    seed: Seed = 0,
+    out: OutFigures = None,
     figures: Figures = None,
     force: Force = False,
     json: Json = False,
@@ -69,9 +68,11 @@ def path(
     from sevenbar.description.draft import Draft
     from sevenbar.description.files import toml_text
     from sevenbar.design.curve_table import read_curve
+    from sevenbar.design.extra import need_scipy
     from sevenbar.design.synthesis.path.generation import check_counts, generated, path_task
     from sevenbar.design.synthesis.path.report import PathDesigns, path_report
 
+    need_scipy()
     report = path_report(designs, command_line(), figure_formats(figures, out))
     draft = Draft.of(toml_text(linkage), linkage)
     check_out(report, out, force=force)
@@ -104,13 +105,7 @@ def path(
     check_counts(designs, starts, seed)
     with progress_bar(f"searching paths of {draft.linkage.name}") as progress:
         found = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
-    deliver(
-        PathDesigns(task, found, str(wanted), seed),
-        report,
-        out,
-        json=json,
-        force=force,
-    )
+    deliver(PathDesigns(task, found, str(wanted), seed), report, out, json=json, force=force)
     end_of_work(found.unfinished)
 
 

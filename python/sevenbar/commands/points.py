@@ -23,7 +23,7 @@ from sevenbar.commands.options import (
     figure_formats,
 )
 from sevenbar.commands.progress import progress_bar
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_word, shown
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.ranges import split_list, split_named, split_range, three_numbers
 from sevenbar.text.units import amount
@@ -152,19 +152,16 @@ def inertia(
 
 def parsed_box(text: str, unit: str) -> list[tuple[float, float]]:
     """The sides [unit] of a box like '-200:200,0:5cm,7'; a length alone is given. Raises `RequestError`."""
+    from sevenbar.design.points.cycle import box_of
+
     ends = [amount_in(end, unit) for side in split_list(text) for end in split_range(side) or (side, side)]
     if len(ends) != 6 or None in ends:
         raise RequestError(
             f"--box: {shown(text)} is no box; give three sides low:high, as in '-200:200,-200:200,0:50'"
         )
     values = [value for value in ends if value is not None]
-    sides = list(zip(values[::2], values[1::2], strict=True))
-    for letter, (low, high) in zip("uvw", sides, strict=True):
-        if low > high:
-            raise RequestError(
-                f"--box: empty along {letter}: lowest {low:g} above highest {high:g}; give the lower first"
-            )
-    return sides
+    low, high = box_of(list(zip(values[::2], values[1::2], strict=True)), name="--box")
+    return list(zip(low.tolist(), high.tolist(), strict=True))
 
 
 def parsed_masses(given: list[str]) -> dict[str, float]:
@@ -188,6 +185,5 @@ def _motion(
 
 def _least(least: str) -> tuple[Rate, Literal["greatest", "rms"]]:
     """The rate of a word of --least, and whether its greatest or its mean counts."""
-    if least not in LEAST:
-        raise RequestError(f"--least: {shown(least)} is not offered; give one of {', '.join(LEAST)}")
+    check_word("--least", least, LEAST)
     return ("acceleration", "rms") if least == "rms" else (cast("Rate", least), "greatest")

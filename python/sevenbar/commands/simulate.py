@@ -8,7 +8,6 @@ from typing import Annotated
 
 import typer
 
-from sevenbar.commands.command import count_of
 from sevenbar.commands.consent import Ahead, confirm
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import opened
@@ -22,6 +21,7 @@ from sevenbar.commands.options import (
     Source,
     Speed,
     Yes,
+    count_option,
     figure_formats,
 )
 from sevenbar.commands.progress import progress_bar
@@ -33,12 +33,7 @@ STEPS = {"exudyn": 1000.0, "mujoco": 10000.0}
 def simulate(
     linkage: Source,
     engine: Annotated[str, typer.Option(help="exudyn (hard constraints) or mujoco (soft ones).")] = "exudyn",
-    steps: Annotated[
-        int,
-        typer.Option(
-            parser=count_of("--steps"), metavar="COUNT", help="Steps in a full turn of the input, as in 1e4."
-        ),
-    ] = 3600,
+    steps: Annotated[int, count_option("--steps", "Steps in a full turn of the input, as in 1e4.")] = 3600,
     circuit: Annotated[int, typer.Option(help="The circuit that is followed, counted from 0.")] = 0,
     input_joint: InputJoint = None,
     output: OutputJoint = None,

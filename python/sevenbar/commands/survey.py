@@ -8,11 +8,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from sevenbar.commands.command import count_of, number_of
 from sevenbar.commands.deliver import check_out, command_line, deliver
-from sevenbar.commands.function import refuse_degrees_twice, seed_of
+from sevenbar.commands.design_options import (
+    FunctionX,
+    MotionType,
+    OutDesigns,
+    Pairs,
+    TimeRatio,
+    Transmission,
+    checked_designs,
+    refuse_degrees_twice,
+)
 from sevenbar.commands.given import angle, angles, numbers
-from sevenbar.commands.options import Force, Json, Mixed, Scheduler, Threads
+from sevenbar.commands.options import Force, Json, Mixed, Scheduler, Threads, count_option, number_option
 from sevenbar.commands.progress import progress_bar
 from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError, shown
@@ -40,10 +48,8 @@ def survey(
         typer.Argument(metavar="[TASK]", help="A design task (TOML) for any loop, in place of an RSSR."),
     ] = None,
     y: Annotated[str | None, typer.Option(help="The function of x, as in 'x^2'; sind takes degrees.")] = None,
-    x: Annotated[str, typer.Option(help="Range of x: 0:1, 0:pi/2 or 0:90deg (radians then).")] = "0:1",
-    table: Annotated[
-        Path | None, typer.Option(help="CSV of pairs of angles in place of a function: input_deg,output_deg.")
-    ] = None,
+    x: FunctionX = "0:1",
+    table: Pairs = None,
     input_range: Annotated[
         str,
         typer.Option(help="Readings of the input; without --y any one-way motion between the ends will do."),
@@ -52,14 +58,7 @@ def survey(
     swing: Annotated[
         str | None, typer.Option(help="In place of readings: the angle through which the rocker swings.")
     ] = None,
-    time_ratio: Annotated[
-        float,
-        typer.Option(
-            parser=number_of("--time-ratio", "1.2"),
-            metavar="NUMBER",
-            help="Of a swing: time of the slower stroke over the quicker, >= 1.",
-        ),
-    ] = 1.0,
+    time_ratio: TimeRatio = 1.0,
     bounds: Annotated[
         list[str] | None,
         typer.Option(
@@ -70,35 +69,21 @@ def survey(
     ] = None,
     count: Annotated[
         int | None,
-        typer.Option(
-            parser=count_of("--count"),
-            metavar="COUNT",
-            help="How many linkages are drawn, as in 1e8: 1e6 by default, 1e5 of a task.",
-        ),
+        count_option("--count", "How many linkages are drawn, as in 1e8: 1e6 by default, 1e5 of a task."),
     ] = None,
     tolerance: Annotated[str, typer.Option(help="Greatest error of one that does what is wanted.")] = "1deg",
-    transmission: Annotated[str, typer.Option(help="Least transmission angle; 0 for none.")] = "30deg",
+    transmission: Transmission = "30deg",
     ball_angle: Annotated[
         str, typer.Option(help="Furthest that a ball may turn from its best seat; 180deg for any.")
     ] = "180deg",
-    motion_type: Annotated[
-        str | None,
-        typer.Option(help="crank-rocker, double-crank, rocker-crank or double-rocker; any by default."),
-    ] = None,
-    ratio: Annotated[
-        float,
-        typer.Option(
-            parser=number_of("--ratio", "10"), metavar="NUMBER", help="Longest length over shortest link."
-        ),
-    ] = 20.0,
+    motion_type: MotionType = None,
+    ratio: Annotated[float, number_option("--ratio", "10", "Longest length over shortest link.")] = 20.0,
     rank: Annotated[
         str, typer.Option(help="What the best are best in: error, transmission, ball angle.")
     ] = "error",
     designs: Annotated[int, typer.Option(help="How many designs are shown and written.")] = 10,
     seed: Annotated[int, typer.Option(help="Seed of the sequence.")] = 0,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for design_1.toml, .., summary.csv and summary.json.")
-    ] = None,
+    out: OutDesigns = None,
     journal: Annotated[
         Path | None, typer.Option(help="Folder that keeps every finished part, for surveys of minutes.")
     ] = None,
@@ -118,8 +103,7 @@ def survey(
     from sevenbar.design.task.file.reader import task_file
     from sevenbar.design.task.report import task_report
 
-    if not 1 <= designs <= 100:
-        raise RequestError(f"--designs: {designs} designs are not offered; give 1 to 100")
+    checked_designs(designs, 100)
     if resume and journal is None:
         raise RequestError("--resume: of no folder; give --journal too, as in '--journal survey'")
     kept = "nothing is written"
@@ -134,7 +118,7 @@ def survey(
                 option = "bound" if name == "bounds" else name.replace("_", "-")
                 raise RequestError(f"--{option}: is of an RSSR, and {file} is a task; leave one out")
         read = task_file(file)
-        loops = LoopSurvey(read.task, 10**5 if count is None else count, seed_of(seed))
+        loops = LoopSurvey(read.task, 10**5 if count is None else count, seed)
         of_loops = task_report(read.task, designs, command_line(), ())
         check_out(of_loops, out, force=force)
         with progress_bar(f"surveying linkages of {read.name}", rate=True, kept=kept) as progress:
@@ -156,7 +140,7 @@ def survey(
         want,
         _bounds(bounds or []),
         10**6 if count is None else count,
-        seed_of(seed),
+        seed,
         tolerance=angle("--tolerance", tolerance),
         transmission_lowest=angle("--transmission", transmission),
         ball_angle=angle("--ball-angle", ball_angle),

@@ -9,6 +9,7 @@ import typer
 import typer.core
 
 from sevenbar.commands.deliver import check_out, command_line, deliver
+from sevenbar.commands.design_options import Designs, Seed, Starts
 from sevenbar.commands.given import agreed
 from sevenbar.commands.options import Agree, Figures, Force, Json, figure_formats, words
 from sevenbar.commands.progress import progress_bar
@@ -28,9 +29,9 @@ class TaskGroup(typer.core.TyperGroup):
 
 def task(
     file: Annotated[Path, typer.Argument(metavar="TASK", help="A task file (TOML).")],
-    designs: Annotated[int, typer.Option(help="How many designs that differ.")] = 5,
-    starts: Annotated[int, typer.Option(help="Linkages within the bounds that are tried.")] = 256,
-    seed: Annotated[int, typer.Option(help="Seed of the starts.")] = 0,
+    designs: Designs = 5,
+    starts: Starts = 256,
+    seed: Seed = 0,
     pareto: Annotated[
         str | None,
         typer.Option(help="Two wants to trade off, by number or measure, as in 1,2 or 1,peak_torque."),
@@ -49,11 +50,13 @@ def task(
 ) -> None:
     """Designs of any loop for what a task file asks (extra 'design')."""
     from sevenbar.design.exact.starts import exact_starts
+    from sevenbar.design.extra import need_scipy
     from sevenbar.design.synthesis.path.generation import check_counts
     from sevenbar.design.task.file.reader import task_file
     from sevenbar.design.task.report import TaskDesigns, task_report
     from sevenbar.design.task.search import designed
 
+    need_scipy()
     formats = figure_formats(figures, out)
     check_counts(designs, starts, seed)
     read = task_file(file, agree=agreed(agree))

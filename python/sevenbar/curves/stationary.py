@@ -1,7 +1,7 @@
-"""Where a smooth function is stationary: by the polynomial through values at Chebyshev's nodes, and by signs.
+"""Extremes and zeros of a smooth function on short intervals.
 
-The polynomial through values at `NODES` nodes is the function up to a term of its series that is rounding
-where the stretch is short enough; the zeros of its derivative are all places where the function may be
+On an interval that is short enough, the polynomial through the function's values at `NODES` Chebyshev nodes
+equals the function to rounding. The zeros of its derivative are then all places where the function can be
 highest or lowest.
 """
 
@@ -15,14 +15,15 @@ from numpy.polynomial import Chebyshev, chebyshev
 
 from sevenbar.arrays import Floats
 
-#: Values from which the curve of a short stretch is made: the next term of its series is rounding.
+#: Values for the polynomial of one interval: the next term of its series is rounding.
 NODES = 16
 
-#: A root with a smaller imaginary part counts as real: rounding makes two complex ones of a double root. One
-#: too many does no harm, as each is a place of the function.
+#: A root with a smaller imaginary part counts as real, since rounding can split a double root into a complex
+#: pair. A root too many does no harm: the function is evaluated at each.
 NEARLY_REAL = 1e-4
 
-#: A root beyond an end by no more than this lies at the end: else rounding loses one between two pieces.
+#: A root beyond an end by no more than this is at the end; otherwise rounding could lose a root between two
+#: neighbouring intervals.
 AT_END = 1e-9
 
 #: Most halvings of a bracket, from any length to rounding.
@@ -52,7 +53,7 @@ def curve_through(values: Floats) -> Chebyshev:
 
 def real_roots(curve: Chebyshev) -> Floats:
     """The real roots of a polynomial in [-1, 1]; double ones may be a pair with small imaginary parts."""
-    # a term of zero is no degree, and a constant has no root worth the name
+    # leading zeros would raise the degree; a constant has no roots
     trimmed = chebyshev.chebtrim(curve.coef)
     if len(trimmed) < 2:
         return np.empty(0)
@@ -62,10 +63,10 @@ def real_roots(curve: Chebyshev) -> Floats:
 
 
 def highest_between(evaluate: Callable[[Floats], Floats], low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Where (k,) a function is highest inside brackets from `low` to `high`, (k,) each, and how high.
+    """Where a function is highest in each bracket from `low` to `high` (k,), and its values there: (k,) each.
 
-    `evaluate` takes places (j,) and gives values (j,), of waves longer than the brackets. Where these are
-    stationary nowhere inside, the place is the middle.
+    `evaluate` maps places (j,) to values (j,) of a function that varies slowly over a bracket. Where the
+    function is stationary nowhere inside, the place is the middle.
     """
     middle, half = (low + high) / 2, (high - low) / 2
     grid = middle[:, None] + half[:, None] * nodes()
@@ -85,11 +86,11 @@ def zeros_between(
     high: Floats,
     falls: npt.NDArray[np.bool_],
 ) -> Floats:
-    """One zero (k,) in each bracket, at which a function falls from above zero to below, or rises.
+    """One zero (k,) in each bracket from `low` to `high`; `falls` says where the function goes from + to -.
 
-    `function` takes places (k,) and gives values and slopes there. Newton's method, and half the bracket
-    where a step leaves it. Of which sign the ends are is the caller's word: rounding may see a zero that
-    lies at an end on either side of it.
+    `function` maps places (k,) to values and slopes there. Newton's method, and bisection where a step would
+    leave the bracket. The signs at the ends are not evaluated but taken from `falls`: where a zero is at an
+    end, rounding decides them.
     """
     low, high = low.copy(), high.copy()
     at = (low + high) / 2

@@ -1,4 +1,7 @@
-"""What is wrong between keys of a description that may each be right; reads only what has the right form."""
+"""Contradictions between the keys of a description: each is valid alone, together they are not.
+
+Values of a wrong form are skipped here; the schema reports them.
+"""
 
 from __future__ import annotations
 
@@ -17,12 +20,24 @@ from sevenbar.description.written import (
 from sevenbar.errors import Problem, shown
 from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, ROW_KINDS
 
+#: The keys of the three ways to write a linkage: a file has one of them.
+FORMS = ("rssr", "joint", "link")
+
 FEWEST_JOINTS, MOST_JOINTS = 2, 12
 
 
+def other_file(raw: Mapping[str, Any]) -> str:
+    """What to say of tables that describe no linkage at all: an empty file, a design task; else nothing."""
+    if not raw:
+        return "is empty; begin with a linkage of the gallery, as in 'sevenbar gallery rssr > mine.toml'"
+    if "want" in raw and not raw.keys() & set(FORMS):
+        return "is a design task and not a linkage; 'sevenbar design task' takes it"
+    return ""
+
+
 def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
-    """What is wrong between keys that may each be right; reads only what has the right form."""
-    written = [key for key in ("rssr", "joint", "link") if key in raw]
+    """All contradictions of a description, in the order of its keys."""
+    written = [key for key in FORMS if key in raw]
     if len(written) != 1:
         what = f"{' and '.join(written)} are given together" if written else "no linkage is described"
         return [Problem("", f"{what}; give exactly one of [rssr], [[joint]] or [[link]]")]
@@ -70,7 +85,7 @@ def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list
 
 
 def _wrong_keys(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Keys that a joint of this kind needs and has not, or has and cannot use."""
+    """Keys of a drawn joint that its kind needs and that are missing, or that its kind has no use for."""
     kind = joint["kind"]
     needs = set(KINDS[kind].drawn_keys)
     given = joint.keys() & {key for row in KINDS.values() for key in row.drawn_keys}
@@ -81,7 +96,7 @@ def _wrong_keys(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _wrong_row_keys(row: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """The same for a Denavit-Hartenberg row, where one number is the variable and is not written."""
+    """The same for a Denavit-Hartenberg row; the number that moves is the joint's value, not written."""
     kind = row.get("joint", "R")
     moving, has_pitch = KINDS[kind].moving_key, "pitch" in KINDS[kind].row_keys
     wrong = []
@@ -95,7 +110,7 @@ def _wrong_row_keys(row: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def grounds(raw: Mapping[str, Any]) -> dict[tuple[int | str, ...], str]:
-    """A message for each place that speaks of a ground, which a loop has without a word."""
+    """A message for each entry that declares a ground: the last link is the ground without an entry."""
     last = len(joints_of(raw))
     already = f"link {last} is the ground already"
     leave = f"is not known here; {already}; leave it out"

@@ -13,10 +13,10 @@ from sevenbar.description.files import checked, toml_tables
 from sevenbar.description.forms import from_description
 from sevenbar.description.load_tables import with_rows
 from sevenbar.description.toml_text import is_tables
-from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
+from sevenbar.errors import RequestError, of_extra, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.numbers.dimensions import Dimension, Place, description_of, dimensions_of, masses_of
+from sevenbar.kinematics.loop.geometry import Loop, Place
+from sevenbar.kinematics.numbers.dimensions import Dimension, description_of, dimensions_of, masses_of
 
 #: Characters of a line from which rows of a load's table are written one below the other.
 LONGEST_ROWS = 110
@@ -58,6 +58,12 @@ class Draft:
     def of_linkage(linkage: Loop) -> Draft:
         """The draft of a linkage's own description, which has no text with comments."""
         return Draft("", description_of(linkage), linkage.name, agree=linkage.agree)
+
+    @staticmethod
+    def made(name: str, length_unit: str, **tables: Any) -> Draft:
+        """The draft of tables that no file has; its angles are in degrees."""
+        head = {"format": 1, "name": name, "length_unit": length_unit, "angle_unit": "deg"}
+        return Draft("", {**head, **tables}, name)
 
     def as_opened(self) -> Draft:
         """The draft as its text has it."""
@@ -164,12 +170,8 @@ class Draft:
 
     def toml(self) -> str:
         """The draft as TOML: the text it came from with its comments, and the changed values in place."""
-        try:
+        with of_extra("design", "writing a linkage file needs tomlkit"):
             import tomlkit
-        except ImportError:
-            raise MissingExtraError(
-                "writing a linkage file needs tomlkit; install it with: pip install 'sevenbar[design]'"
-            ) from None
         if not self.text:
             return _with_short_lines(tomlkit.dumps(self.raw))
         # tables out of order are put in order by a change only

@@ -1,7 +1,8 @@
-"""Linkages of the textbooks from their free dimensions; those that the family binds are computed.
+"""Textbook linkages, each from its free dimensions; the dependent ones are computed.
 
-An overconstrained loop moves at its exact numbers only, so these are computed to the last digit. Lengths are
-in `length_unit`, or texts with a unit ("6 cm"); angles are in radians, or texts ("40 deg", "pi/3").
+An overconstrained loop moves only at its exact dimensions, so the dependent ones are computed to the last
+digit. Lengths are in `length_unit`, or texts with a unit ("6 cm"); angles are in radians, or texts
+("40 deg", "pi/3").
 """
 
 from __future__ import annotations
@@ -20,10 +21,10 @@ from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.text.amounts import value_of
 from sevenbar.text.expression import cosd, sind
 
-#: A length or an angle as a caller gives it.
+#: A length or an angle as a caller gives it: a number, or a text with a unit.
 Given = float | str
 
-#: Below this sine [-] an angle is 0 or half a turn to the digits of a double.
+#: A sine below this is rounding: the angle is 0 or half a turn.
 NO_SINE = 1e-15
 
 
@@ -426,7 +427,7 @@ def _length(name: str, value: Given, others: Mapping[str, Any]) -> float:
 
 
 def _angle(name: str, value: Given) -> float:
-    """An angle [deg], of a number in radians or of a text."""
+    """An angle [deg], from a number in radians or from a text."""
     if isinstance(value, str):
         check_own_unit(name, value)
         return _number(name, value, "angle", {})
@@ -435,7 +436,7 @@ def _angle(name: str, value: Given) -> float:
         raise RequestError(
             f"{name}: {radians:g} rad is more than a turn; give radians, or a text, as in '{radians:g} deg'"
         )
-    # 30, not 29.999999999999996, of pi/6
+    # pi/6 gives 30, not 29.999999999999996
     return float(f"{math.degrees(radians):.15g}")
 
 
@@ -470,7 +471,7 @@ def _rows(
     others: Mapping[str, Any],
     offsets: Sequence[float] | None = None,
 ) -> Linkage:
-    """The loop of turning joints with these lengths and twists [deg]."""
+    """The loop of turning joints from its links (length, twist [deg]) and its offsets, zero if left out."""
     rows = [{"length": length, "twist": twist} for length, twist in links]
     for row, offset in zip(rows, offsets or [], strict=False):
         row["offset"] = offset
@@ -484,5 +485,5 @@ def _drawn(
 
 
 def _head(name: str, length_unit: str, speed: float | str) -> dict[str, Any]:
-    """What a description begins with."""
+    """The keys that all descriptions have in common."""
     return {"format": 1, "name": name, "length_unit": length_unit, "drive": {"speed": speed}}

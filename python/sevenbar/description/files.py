@@ -14,7 +14,6 @@ from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
 from sevenbar.errors import DescriptionError, SevenbarError, ends_here, shown
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.text.workbook import ZIP
 
 if TYPE_CHECKING:
     from sevenbar.description.table_reader import TableDescription
@@ -126,30 +125,30 @@ _OTHER_KINDS = {
 }
 
 #: What TOML's reader says of a place.
-_PLACE = re.compile(r"(.*) \(at (?:line (\d+), column \d+|end of document)\)")
+_PLACE = r"(.*) \(at (?:line (\d+), column \d+|end of document)\)"
 
 #: Slips that people make in TOML, by how the line looks: a unit next to a number, a decimal comma, a text or
 #: a sign of another language.
 _SLIPS = (
     (
-        re.compile("[^#]*[\u201c\u201d\u201e\u2018\u2019\u00ab\u00bb].*"),
+        "[^#]*[\u201c\u201d\u201e\u2018\u2019\u00ab\u00bb].*",
         'write straight quotes, as in name = "RSSR"',
     ),
     (
-        re.compile(r"[^=]+=\s*[-+\d.]+\s*[A-Za-z\u00b0/]+.*"),
+        r"[^=]+=\s*[-+\d.]+\s*[A-Za-z\u00b0/]+.*",
         "write a number without its unit, which length_unit and angle_unit give for the whole file, "
         'or both in quotes, as in "25 cm"',
     ),
-    (re.compile(r"[^=]+=\s*[-+]?\d+,\d+\s*(#.*)?"), "write a decimal point, as in 0.5"),
-    (re.compile(r"\s*[A-Za-z_]\w*\s*=\s*[A-Za-z_][^\"']*"), 'write a text in quotes, as in kind = "R"'),
-    (re.compile(r"\s*\w+\s*:.*"), "write a key and its value with '=', as in M = 700"),
-    (re.compile(r"\s*\[+[^\]]*"), "close the head of a table, as in [rssr] or [[joint]]"),
+    (r"[^=]+=\s*[-+]?\d+,\d+\s*(#.*)?", "write a decimal point, as in 0.5"),
+    (r"\s*[A-Za-z_]\w*\s*=\s*[A-Za-z_][^\"']*", 'write a text in quotes, as in kind = "R"'),
+    (r"\s*\w+\s*:.*", "write a key and its value with '=', as in M = 700"),
+    (r"\s*\[+[^\]]*", "close the head of a table, as in [rssr] or [[joint]]"),
 )
 
 
 def _syntax_problem(error: ValueError, lines: list[str]) -> str:
     """What is wrong with a text that is not TOML: the line, the reader's words, and what to do."""
-    match = _PLACE.fullmatch(str(error))
+    match = re.fullmatch(_PLACE, str(error))
     example = "'sevenbar gallery rssr' prints a file that is right"
     if match is None:
         return f"not valid TOML: {str(error)[:200]}; {example}"
@@ -159,7 +158,7 @@ def _syntax_problem(error: ValueError, lines: list[str]) -> str:
     line = lines[int(match[2]) - 1]
     if reason.startswith(("cannot overwrite", "cannot declare")):
         return f"line {match[2]}: {shown(line.strip())} stands twice; leave one of them out"
-    remedy = next((hint for slip, hint in _SLIPS if slip.fullmatch(line)), example)
+    remedy = next((hint for slip, hint in _SLIPS if re.fullmatch(slip, line)), example)
     return f"line {match[2]}: {shown(line.strip())} is not valid TOML: {reason}; {remedy}"
 
 
@@ -171,7 +170,7 @@ def _read(path: Path) -> bytes:
     except FileNotFoundError:
         raise DescriptionError.of_all(
             place,
-            f"no such file; {_offer(path)}"
+            f"no such file; {near_files(path)}"
             "give the path of a TOML file, or a name that 'sevenbar gallery' lists",
         ) from None
     except IsADirectoryError:
@@ -185,6 +184,8 @@ def _read(path: Path) -> bytes:
 
 def _is_table(content: bytes, path: Path) -> bool:
     """Whether a file is a table: by its ending, a workbook by its content."""
+    from sevenbar.text.workbook import ZIP
+
     return path.suffix.lower() in TABLE_ENDINGS or content.startswith(ZIP)
 
 
@@ -231,8 +232,8 @@ def _not_utf8(content: bytes, start: int) -> str:
     return f"line {number}: {shown(line)} is not UTF-8; save the file as UTF-8"
 
 
-def _offer(path: Path) -> str:
-    """`did you mean 'rssr' or 'rsur'? `: files of the folder and names of the gallery, or nothing."""
+def near_files(path: Path) -> str:
+    """`did you mean 'mine.toml'? `: files of the folder and names of the gallery like a path, or nothing."""
     try:
         known = (".toml", *TABLE_ENDINGS)
         files = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in known)

@@ -12,19 +12,16 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.angle_doubts import warn_of_angles
-from sevenbar.description.loads import loading_of
 from sevenbar.description.proportions import disproportions
 from sevenbar.description.stop_values import stops_of
 from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
+from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.loop.geometry import Drive, Form, Joint, Point
+from sevenbar.kinematics.loop.geometry import Drive, Form, Joint, Place, Point
 from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.loop.rigid import unit
-from sevenbar.kinematics.numbers.dimensions import Place
-from sevenbar.kinematics.numbers.word import Slots, word_of
-from sevenbar.text.grid import listed
-from sevenbar.text.table import name_and_unit
+from sevenbar.text.listed import listed
 from sevenbar.text.units import LENGTHS, measured_unit
 
 if TYPE_CHECKING:
@@ -229,7 +226,7 @@ def _in_unit(key: str, values: Any, length_unit: str) -> Any:
     """A column as a list; one of a data frame is in the unit that its name has."""
     plain = _plain(values)
     name = getattr(values, "name", None)
-    written = name_and_unit(name)[1] if isinstance(name, str) else ""
+    written = _unit_in(name) if isinstance(name, str) else ""
     if isinstance(plain, list) and key in ("twist", "angle"):
         for i, value in enumerate(plain):
             if isinstance(value, str):
@@ -243,6 +240,13 @@ def _in_unit(key: str, values: Any, length_unit: str) -> Any:
         raise RequestError(f"{key}: the unit of column {shown(name)} is not one of {what}; rename the column")
     size = unit.size_in(length_unit) if length_unit in LENGTHS else 1.0
     return [value * size if isinstance(value, int | float) and size != 1.0 else value for value in plain]
+
+
+def _unit_in(name: str) -> str:
+    """The unit in the name of a column."""
+    from sevenbar.text.table import name_and_unit
+
+    return name_and_unit(name)[1]
 
 
 def _rows(joints: object, columns: Mapping[str, Any], names: Any) -> list[dict[str, Any]]:
@@ -312,15 +316,25 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
         points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
         drive=Drive(*form.driven, form.drive.speed),
         description=raw,
-        loading=loading_of(
-            form.forces,
-            form.body,
-            form.load,
-            form.spring,
-            length_unit=form.length_unit,
-            columns=form.first_columns,
-        ),
+        loading=_loading(form),
         stops=stops_of(form.stop, form.rod, form.first_columns),
+    )
+
+
+def _loading(form: LinkageForm) -> Loading:
+    """What acts on the linkage of a form."""
+    if not (form.body or form.load or form.spring):
+        return Loading(form.forces.gravity)
+    # most files have none
+    from sevenbar.description.loads import loading_of
+
+    return loading_of(
+        form.forces,
+        form.body,
+        form.load,
+        form.spring,
+        length_unit=form.length_unit,
+        columns=form.first_columns,
     )
 
 
@@ -342,6 +356,9 @@ def _values(form: LinkageForm) -> dict[Place, float]:
 
 def _linkage(form: LinkageForm, written: Form, joints: tuple[Joint, ...], **parts: Any) -> Linkage:
     """The linkage of a form's word at its numbers."""
+    # `import sevenbar` needs no words
+    from sevenbar.kinematics.numbers.word import Slots, word_of
+
     numbers = _values(form)
     slots, values = Slots(zip(numbers, count())), np.array([*numbers.values()], dtype=np.float64)
     word = word_of(written, [joint.kind for joint in joints], slots)

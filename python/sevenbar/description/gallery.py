@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable
-from difflib import get_close_matches
-from importlib import resources
+from pathlib import Path
 
 #: Names that a message offers for one that does not exist.
 MOST_OFFERED = 3
+
+_FOLDER = Path(__file__).with_name("gallery")
 
 
 def names() -> tuple[str, ...]:
@@ -18,8 +19,7 @@ def names() -> tuple[str, ...]:
     >>> len(names()), names()[0]
     (23, 'bennett')
     """
-    folder = resources.files("sevenbar.description") / "gallery"
-    return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))
+    return tuple(sorted(file.stem for file in _FOLDER.glob("*.toml")))
 
 
 def title(name: str) -> str:
@@ -41,6 +41,9 @@ def nearest(word: str, others: Iterable[str] = ()) -> tuple[str, ...]:
         >>> nearest("7R")
         ('seven_r',)
     """
+    # of words that are wrong only
+    from difflib import get_close_matches
+
     plain = {_plain(name): name for name in (*names(), *others)}
     sought = _plain(word[:100])
     if not sought:
@@ -63,4 +66,4 @@ def _plain(name: str) -> str:
 
 def text(name: str) -> str:
     """The TOML text of a linkage of the gallery."""
-    return (resources.files("sevenbar.description") / "gallery" / f"{name}.toml").read_text(encoding="utf-8")
+    return (_FOLDER / f"{name}.toml").read_text(encoding="utf-8")

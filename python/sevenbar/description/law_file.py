@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError, ends_here
+from sevenbar.errors import ends_here, of_extra
 from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
 from sevenbar.kinematics.loop.law import Law
 from sevenbar.text.table import TextTable, read_table
@@ -157,12 +157,7 @@ def _completed(table: TextTable, t: Floats, given: Sequence[Floats]) -> list[Flo
     if t.size <= DEGREE:
         rows = "one row is too few" if t.size == 1 else f"{t.size} rows are too few"
         raise table.wrong(f"{rows}: {through} needs {DEGREE + 1}; give more rows, or {columns}")
-    try:
+    with of_extra("law", f"{table.source}: {through} needs SciPy", f", or give {columns}"):
         from scipy.interpolate import make_interp_spline
-    except ImportError:
-        raise MissingExtraError(
-            f"{table.source}: {through} needs SciPy; install it with: pip install 'sevenbar[law]', or give "
-            f"{columns}"
-        ) from None
     spline = make_interp_spline(t, given[-1], k=DEGREE)
     return [*given, *(np.asarray(spline(t, nu=order)) for order in range(1, missing + 1))]

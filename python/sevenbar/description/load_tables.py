@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sevenbar.description.written import entries
 from sevenbar.errors import RequestError, SevenbarError, TableError, shown
-from sevenbar.text.table import TextTable, read_table
 from sevenbar.text.units import ANGLES
+
+# most descriptions have none
+if TYPE_CHECKING:
+    from sevenbar.text.table import TextTable
 
 #: Rows that a table may have: a description holds them.
 MOST_ROWS = 1_000
@@ -50,6 +53,8 @@ def rows_of(name: str, context: Mapping[str, Any]) -> list[list[float]]:
 
     A header names the columns and the unit of the input, as in `crank [deg],factor`. Raises `RequestError`.
     """
+    from sevenbar.text.table import read_table
+
     if not name.strip() or len(name) > 200 or not name.isprintable():
         raise RequestError(f"{shown(name)} is not the name of a table; give a CSV file, as in 'press.csv'")
     try:

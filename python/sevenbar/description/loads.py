@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, cast
 
+from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body, Solid, tensor_of
-from sevenbar.forces.loading import Load, Loading, Spring
+from sevenbar.forces.loading import Loading
 from sevenbar.text.units import LENGTHS, MASSES
 
 if TYPE_CHECKING:

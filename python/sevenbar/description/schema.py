@@ -18,8 +18,7 @@ from pydantic import (
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
-from sevenbar.description.contradictions import contradictions, grounds
-from sevenbar.description.load_contradictions import load_contradictions
+from sevenbar.description.contradictions import FORMS, contradictions, grounds, other_file
 from sevenbar.description.load_schema import BodyForm, ForcesForm, LoadForm, SpringForm
 from sevenbar.description.load_tables import folder_of
 from sevenbar.description.mistakes import FileForms, path_of
@@ -185,7 +184,7 @@ class LinkageForm(TableForm):
         WithJsonSchema({"enum": list(ANGLES)}),
         key("of the angles written in this file"),
     ] = "deg"
-    drive: Annotated[DriveForm, key("the input, the output, the speed")] = DriveForm()
+    drive: Annotated[DriveForm, key("the input, the output, the speed")] = DriveForm.model_construct()
     rssr: Annotated[RssrForm | None, key("the RSSR paper's dimensions")] = None
     joint: Annotated[tuple[JointForm, ...] | None, key("joints as drawn, in loop order")] = None
     link: Annotated[
@@ -197,7 +196,7 @@ class LinkageForm(TableForm):
         key("of [[link]] rows: where the frame lies and angles begin"),
     ] = "dh"
     point: Annotated[tuple[PointForm, ...], key("points to be traced")] = ()
-    forces: Annotated[ForcesForm, key("gravity, and the unit of masses")] = ForcesForm()
+    forces: Annotated[ForcesForm, key("gravity, and the unit of masses")] = ForcesForm.model_construct()
     body: Annotated[tuple[BodyForm, ...], key("masses on links")] = ()
     load: Annotated[tuple[LoadForm, ...], key("forces and torques on links")] = ()
     spring: Annotated[tuple[SpringForm, ...], key("springs and dampers")] = ()
@@ -223,10 +222,6 @@ class LinkageForm(TableForm):
         """The columns of input and output."""
         drive = {"joint": self.drive.joint, "output": self.drive.output}
         return driven([Written("", *joint) for joint in self.joints], drive)[:2]
-
-
-#: The three ways to write a linkage: a file has one of them.
-FORMS = ("rssr", "link", "joint")
 
 
 class TomlSchema(GenerateJsonSchema):
@@ -258,6 +253,8 @@ def json_schema() -> dict[str, Any]:
 
 def check(raw: object, *, source: str = "") -> LinkageForm:
     """The checked form, or `DescriptionError` with every problem in it; `source` is the file it came from."""
+    if isinstance(raw, Mapping) and (other := other_file(raw)):
+        raise DescriptionError.of_all(source, other)
     ground_places = grounds(raw) if isinstance(raw, Mapping) else {}
     context = context_of(raw, source) if isinstance(raw, Mapping) else None
     try:
@@ -275,7 +272,11 @@ def check(raw: object, *, source: str = "") -> LinkageForm:
         ]
     if isinstance(raw, Mapping) and context is not None:
         joints = joints_of(raw)
-        problems += contradictions(raw) + load_contradictions(raw, joints, context)
+        problems += contradictions(raw)
+        if not raw.keys().isdisjoint(("body", "load", "spring")):
+            from sevenbar.description.load_contradictions import load_contradictions
+
+            problems += load_contradictions(raw, joints, context)
         problems += stop_contradictions(raw, joints, context)
     if problems:
         raise DescriptionError(problems, source)

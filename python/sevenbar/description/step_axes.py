@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError, TableError
+from sevenbar.errors import TableError, of_extra
 
 #: Cylinders are on one axis where their directions agree to this [rad] and their lines to this [mm]: the
 #: digits that CAD programs write.
@@ -126,16 +126,12 @@ def _axis(group: Sequence[_Face]) -> PartAxis:
 def _faces(path: Path) -> Iterator[_Face]:
     """Every cylinder and ball of a file, in the coordinates of the whole."""
     _refuse_other_files(path)
-    try:
+    with of_extra("cad", f"{path}: reading STEP needs build123d"):
         from OCP.BRepAdaptor import BRepAdaptor_Surface
         from OCP.GeomAbs import GeomAbs_SurfaceType
         from OCP.TopAbs import TopAbs_ShapeEnum
         from OCP.TopExp import TopExp_Explorer
         from OCP.TopoDS import TopoDS
-    except ImportError:
-        raise MissingExtraError(
-            f"{path}: reading STEP needs build123d; install it with: pip install 'sevenbar[cad]'"
-        ) from None
     # versions of OCP call it differently
     as_face = TopoDS.Face_s if hasattr(TopoDS, "Face_s") else TopoDS.Face
     for shape, place, part, name_of in _parts(path):

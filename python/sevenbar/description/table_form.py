@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 class TableForm(BaseModel):
     """A table whose keys are known."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 def key(meaning: str, unit: str = "") -> Any:

@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Literal, Protocol, TypeVar
 
 import numpy as np
 
@@ -60,6 +60,18 @@ Fault = Literal[
 ]
 
 
+class Drafted(Protocol):
+    """What has a description."""
+
+    @property
+    def draft(self) -> Draft:
+        """Its description."""
+        ...
+
+
+T = TypeVar("T", bound=Drafted)
+
+
 @dataclass(frozen=True, eq=False)
 class Claim:
     """What is claimed of a design: poses it takes, in this order and on one way; and how far off it is.
@@ -90,18 +102,15 @@ class Refusal:
 class Candidate(Printed):
     """A design that keeps what is claimed of it, with what was measured of it.
 
-    `error_greatest`, `error_rms` [rad, or length]; `transmission_lowest` [rad] over the used range of the
-    input, `None` where the loop has none; `size` [length], its longest dimension; `circuit` and `branch` the
-    one way that holds all `claim` poses; `position` (n,) their places along it, in rows of the circuit.
+    `transmission_lowest` [rad] over the used range of the input, `None` where the loop has none; `circuit`
+    and `branch` the one way that holds all `claim` poses; `position` (n,) their places along it, in rows of
+    the circuit.
     """
 
     draft: Draft
     claim: Claim
-    error_greatest: float
-    error_rms: float
     motion_type: str
     transmission_lowest: float | None
-    size: float
     circuit: int
     branch: int
     position: Floats
@@ -110,6 +119,21 @@ class Candidate(Printed):
     def name(self) -> str:
         """The name of its linkage."""
         return self.draft.linkage.name
+
+    @property
+    def error_greatest(self) -> float:
+        """The greatest of its errors [rad, or length]."""
+        return float(np.abs(self.claim.errors).max())
+
+    @property
+    def error_rms(self) -> float:
+        """The root mean square of its errors [rad, or length]."""
+        return float(np.sqrt((self.claim.errors**2).mean()))
+
+    @property
+    def size(self) -> float:
+        """Its longest dimension [length]."""
+        return max(abs(d.value) for d in self.draft.dimensions if d.kind == "length")
 
     @property
     def columns(self) -> dict[str, float | str | int | None]:
@@ -170,25 +194,8 @@ def checked(
         lowest = None if circuit.transmission is None else circuit.transmission.lowest
     else:
         lowest = used_transmission(linkage, circuit, claim.inputs, ways.position)
-    lengths = [abs(d.value) for d in draft.dimensions if d.kind == "length"]
-    found = Candidate(
-        draft,
-        claim,
-        float(np.abs(claim.errors).max()),
-        float(np.sqrt((claim.errors**2).mean())),
-        motion.motion_type,
-        lowest,
-        max(lengths),
-        int(ways.circuit[0]),
-        int(ways.branch[0]),
-        ways.position,
-    )
-    return within_limits(found, limits)
-
-
-def within_limits(found: Candidate, limits: Limits) -> Candidate | Refusal:
-    """A design that keeps the limits, or why it does not."""
-    return _within(found, limits) or found
+    place = int(ways.circuit[0]), int(ways.branch[0])
+    return within_limits(Candidate(draft, claim, motion.motion_type, lowest, *place, ways.position), limits)
 
 
 @dataclass(frozen=True, eq=False)
@@ -320,8 +327,8 @@ def _travel(circuit: Circuit, inputs: Floats, position: Floats) -> float:
     return last + math.tau * round((rough - last) / math.tau)
 
 
-def _within(found: Candidate, limits: Limits) -> Refusal | None:
-    """Which limit a design misses, if any."""
+def within_limits(found: Candidate, limits: Limits) -> Candidate | Refusal:
+    """A design that keeps the limits, or which it misses."""
     lowest = found.transmission_lowest
     if lowest is not None and lowest < limits.transmission_lowest - LIMIT_ROUNDING:
         angle, wanted = math.degrees(lowest), math.degrees(limits.transmission_lowest)
@@ -333,7 +340,7 @@ def _within(found: Candidate, limits: Limits) -> Refusal | None:
         return fault
     if limits.motion_type is not None and found.motion_type != limits.motion_type:
         return Refusal("motion type", f"is a {found.motion_type}, required is a {limits.motion_type}")
-    return None
+    return found
 
 
 def size_fault(draft: Draft, limits: Limits) -> Refusal | None:
@@ -399,17 +406,17 @@ def likeness(draft: Draft, *, scale_free: bool, mirrored: bool = False) -> Float
 
 
 def distinct(
-    candidates: Iterable[Candidate], *, scale_free: bool, mirrored: bool = False, count: int | None = None
-) -> list[Candidate]:
-    """The candidates that differ, the first of those that are alike by `likeness`; at most `count`."""
-    kept: list[Candidate] = []
+    designs: Iterable[T], *, scale_free: bool, mirrored: bool = False, count: int | None = None
+) -> list[T]:
+    """The designs that differ, the first of those that are alike by `likeness`; at most `count`."""
+    kept: list[T] = []
     seen: list[Floats] = []
-    for candidate in candidates:
+    for design in designs:
         if count is not None and len(kept) >= count:
             break
-        own = likeness(candidate.draft, scale_free=scale_free, mirrored=mirrored)
+        own = likeness(design.draft, scale_free=scale_free, mirrored=mirrored)
         if all(len(own) != len(other) or np.abs(own - other).max() > SAME for other in seen):
-            kept.append(candidate)
+            kept.append(design)
             seen.append(own)
     return kept
 
@@ -421,10 +428,10 @@ def ranked(
     return sorted(candidates, key=key or (lambda candidate: candidate.error_greatest))
 
 
-def renamed(candidates: Sequence[Candidate], title: str) -> list[Candidate]:
+def renamed(candidates: Iterable[Candidate], title: str, word: str = "design") -> list[Candidate]:
     """The candidates with the names `title, design 1`, .. in their order."""
     return [
-        replace(c, draft=c.draft.with_value(("name",), f"{title}, design {i}"))
+        replace(c, draft=c.draft.with_value(("name",), f"{title}, {word} {i}"))
         for i, c in enumerate(candidates, 1)
     ]
 

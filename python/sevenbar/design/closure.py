@@ -14,7 +14,6 @@ Source: docs/rssr.md, (3) to (5); docs/theory_design.md, (26).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -35,14 +34,7 @@ def row_of(dimensions: Mapping[str, float]) -> Floats:
 
 def draft_of(row: Floats, name: str, *, length_unit: str = "mm") -> Draft:
     """A description of one design (6,), whose name reports show."""
-    raw: dict[str, Any] = {
-        "format": 1,
-        "name": name,
-        "length_unit": length_unit,
-        "angle_unit": "deg",
-        "rssr": {key: float(value) for key, value in zip(NAMES, row, strict=True)},
-    }
-    return Draft("", raw, name)
+    return Draft.made(name, length_unit, rssr=dict(zip(NAMES, map(float, row), strict=True)))
 
 
 def scaled(row: Floats, longest: float) -> Floats:

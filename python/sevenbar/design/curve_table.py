@@ -30,9 +30,7 @@ def read_curve(
     for letter in "xyz":
         place = _place(table, letter, point, unit)
         if place is not None:
-            numbers[place] = table.numbers(place) * table.size(
-                place, ("slide", 0), unit, what=letter, example=unit
-            )
+            numbers[place] = table.sized(place, ("slide", 0), unit, what=letter, example=unit)
             columns.append(numbers[place])
         elif letter == "z":
             columns.append(np.zeros(len(table.rows)))
@@ -46,8 +44,7 @@ def read_curve(
     if place is not None:
         kind = linkage.column_kinds[linkage.columns.index(input_joint)]
         example = "deg" if linkage.turns(input_joint) else unit
-        size = table.size(place, (kind, 0), unit, what="input", example=example)
-        inputs = numbers[place] = table.numbers(place) * size
+        inputs = numbers[place] = table.sized(place, (kind, 0), unit, what="input", example=example)
     table.refuse_gaps(numbers, "leave the row out")
     return np.column_stack(columns), inputs
 

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from sevenbar.errors import MissingExtraError
+from sevenbar.errors import of_extra
 
 
 def need_scipy() -> None:
     """Raises `MissingExtraError` where scipy is not installed."""
-    try:
+    with of_extra("design", "design needs scipy and tomlkit"):
         import scipy.optimize
         import scipy.stats  # noqa: F401
-    except ImportError:
-        raise MissingExtraError(
-            "design needs scipy and tomlkit; install them with: pip install 'sevenbar[design]'"
-        ) from None

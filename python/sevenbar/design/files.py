@@ -7,8 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from sevenbar.description.draft import Draft
 from sevenbar.description.files import loads
+from sevenbar.design.candidates import Drafted
 from sevenbar.reporting.files import Write, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
 
@@ -16,13 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class Writable(Protocol):
+class Writable(Drafted, Protocol):
     """A design that can be written: its description, and what is reported of it."""
-
-    @property
-    def draft(self) -> Draft:
-        """Its description."""
-        ...
 
     @property
     def columns(self) -> dict[str, float | str | int | None]:

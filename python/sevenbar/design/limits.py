@@ -9,7 +9,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.closure import transmission_slopes, transmissions
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import RequestError, check_word
 
 #: What a linkage can be asked to be, seen from its input.
 MOTION_TYPES = ("crank-rocker", "double-crank", "rocker-crank", "double-rocker")
@@ -57,11 +57,14 @@ class Limits:
                     f"size: {low:g}:{high:g} is no range of lengths; give the shortest link and the longest "
                     "dimension, as in 50:1000"
                 )
-        if self.motion_type is not None and self.motion_type not in MOTION_TYPES:
-            raise RequestError(
-                f"motion type: {shown(self.motion_type)} is not offered; "
-                f"{suggestion(self.motion_type, MOTION_TYPES)}give one of {', '.join(MOTION_TYPES)}"
-            )
+        if self.motion_type is not None:
+            check_word("motion type", self.motion_type, MOTION_TYPES)
+
+    def flaw(self, form: str) -> str:
+        """What is wrong with the transmission angle for linkages of a form; empty where nothing is."""
+        if self.transmission_lowest == 0.0 or form == "rssr":
+            return ""
+        return "its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out"
 
     @property
     def ratio(self) -> float:

@@ -35,8 +35,8 @@ def read_turns(table: TextTable) -> Floats:
         column = table.column(name)
         if column is not None:
             # an angle: the unit of lengths has no say
-            size = table.size(column, ("turn", 0), "m", what=name, example="deg")
-            numbers[column] = turns[:, axis] = table.numbers(column) * size
+            found = table.sized(column, ("turn", 0), "m", what=name, example="deg")
+            numbers[column] = turns[:, axis] = found
     if not numbers:
         raise table.wrong(f"no column for a rotation; {table.header}; name them as in 'turn_z [deg]'")
     table.refuse_gaps(numbers, "leave the row out")

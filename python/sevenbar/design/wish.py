@@ -28,6 +28,10 @@ FIT_SAMPLES = 81
 #: Readings over the range at which errors are measured: 0.25 deg apart on a quarter turn.
 DENSE_SAMPLES = 361
 
+#: A function that rises or falls by more than this part of its whole range from one of 7220 values of x to
+#: the next has a jump or a pole there; x^0.1, steep as it begins, does so by 0.41.
+MOST_OF_A_STEP = 0.5
+
 #: Most pairs of readings that a fit takes.
 MOST_PAIRS = 100_000
 
@@ -143,6 +147,12 @@ def wish_of_function(
         at = x[int(np.flatnonzero(~np.isfinite(y))[0])]
         raise RequestError(f"y: {title} has no value at x = {at:g}; give another range of x")
     least, most = float(y.min()), float(y.max())
+    rise = int(np.argmax(np.abs(np.diff(y))))
+    if abs(y[rise + 1] - y[rise]) > MOST_OF_A_STEP * (most - least):
+        raise RequestError(
+            f"y: {title} jumps between x = {x[rise]:.3g} and {x[rise + 1]:.3g}, from {y[rise]:.3g} to "
+            f"{y[rise + 1]:.3g}; give a range of x in which it is continuous"
+        )
     if most - least <= 1e-12 * max(abs(least), abs(most), 1e-300):
         raise RequestError(f"y: {title} is the same all over {low:g}:{high:g}; give a function that changes")
 
@@ -228,7 +238,6 @@ def read_pairs(path: Path) -> tuple[Floats, Floats]:
     columns = []
     for column in (0, 1) if None in named else named:
         assert column is not None
-        size = table.size(column, ("turn", 0), "m", what="angle", example="deg")
-        columns.append(table.numbers(column) * size)
+        columns.append(table.sized(column, ("turn", 0), "m", what="angle", example="deg"))
     table.refuse_gaps(dict(enumerate(columns)), "leave the row out")
     return columns[0], columns[1]

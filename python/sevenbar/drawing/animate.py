@@ -18,7 +18,7 @@ from matplotlib.artist import Artist
 from matplotlib.transforms import Bbox
 from PIL import Image
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, is_number, whole_number
 from sevenbar.drawing import output_curves, scene
 from sevenbar.drawing.figure import new_figure, shown_value, slides, title_of, title_text, written_whole
 from sevenbar.drawing.film_page import film_page
@@ -118,15 +118,14 @@ def check_film(
 ) -> int:
     """How many pictures a film has; raises `RequestError` for a count, a rate or a length not offered."""
     most = FASTEST[target.suffix.lower()]
-    if isinstance(fps, bool) or not isinstance(fps, (int, float, np.number)) or not 0.1 <= fps <= most:
+    if not is_number(fps) or not 0.1 <= fps <= most:
         raise RequestError(
             f"fps: {shown(fps)} is not offered; give 0.1 to {most:g} for a {target.suffix.lower()} file"
         )
     if seconds is not None:
         if frames is not None:
             raise RequestError("seconds: frames and fps give the length of the film; leave one of them out")
-        usable = isinstance(seconds, (int, float, np.number)) and not isinstance(seconds, bool)
-        if not (usable and 2 <= seconds * fps <= MOST_FRAMES):
+        if not (is_number(seconds) and 2 <= seconds * fps <= MOST_FRAMES):
             raise RequestError(
                 f"seconds: {shown(seconds)} is not offered; at {fps:g} pictures a second "
                 f"give {2 / fps:g} to {MOST_FRAMES / fps:g}"
@@ -134,10 +133,7 @@ def check_film(
         return round(float(seconds * fps))
     if frames is None:
         return FRAMES
-    counts = isinstance(frames, (int, np.integer)) and not isinstance(frames, bool)
-    if not (counts and 2 <= frames <= MOST_FRAMES):
-        raise RequestError(f"frames: {shown(frames)} is not a count; give 2 to {MOST_FRAMES}")
-    return int(frames)
+    return whole_number("frames", frames, 2, MOST_FRAMES, "a count")
 
 
 def check_target(target: Path) -> str:
@@ -251,7 +247,7 @@ def _pictures(
         dot.set_data([angle], [output])
         time = float(np.interp(row, count, path.time))
         reading.set_text(
-            f"t = {time:.3f} s   {said[0]} {angle:.1f}{units[0]}   {said[1]} {output:.1f}{units[1]}"
+            f"t = {time:.3f} s   {said[0]} {_tenths(angle)}{units[0]}   {said[1]} {_tenths(output)}{units[1]}"
         )
         canvas.restore_region(still)
         for draw, artist in moving:
@@ -314,3 +310,8 @@ def _write_mp4(
             words.seek(0)
             last = words.read().decode(errors="replace").strip().splitlines()[-1:]
             raise OutputError(f"{target}: ffmpeg failed: {''.join(last) or process.returncode}")
+
+
+def _tenths(value: float) -> str:
+    """A number to one decimal, without a minus on 0."""
+    return f"{round(value, 1) + 0.0:.1f}"

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
+from sevenbar.arrays import whole_number
 from sevenbar.drawing.figure import given_axes, new_figure, slides, title_of, title_text
 from sevenbar.drawing.lettering import write_names
 from sevenbar.drawing.names import short, shown_name
@@ -29,7 +30,7 @@ from sevenbar.drawing.skeleton import Skeleton, one_pose, skeleton, skeleton_of
 from sevenbar.drawing.space import ViewAxes
 from sevenbar.drawing.style import letters, page_size, styled
 from sevenbar.drawing.view import Asked, view_of
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
@@ -76,14 +77,9 @@ def configuration(
     chosen = chosen_circuit(motion, circuit)
     if positions is None:
         positions = 6 if len(motion.linkage.joints) < 5 else 3
-    if (
-        isinstance(positions, bool)
-        or not isinstance(positions, (int, np.integer))
-        or not 1 <= positions <= 100
-    ):
-        raise RequestError(f"positions: {shown(positions)} is not a count; give 1 to 100")
+    positions = whole_number("positions", positions, 1, 100, "a count")
     frame = skeleton(motion, chosen)
-    poses = [frame.pose(row) for row in _spread(motion, chosen, frame, int(positions))]
+    poses = [frame.pose(row) for row in _spread(motion, chosen, frame, positions)]
     ends = motion.input, motion.output
     with styled(style):
         if ax is not None:

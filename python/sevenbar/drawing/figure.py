@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.names import quantity_label, short, shown_name
@@ -31,6 +32,12 @@ PNG_DPI = 200
 
 #: A figure that is usually wider than this [inch] takes both columns of a paper.
 BOTH_COLUMNS = 7.5
+
+#: Letters [points] below which none are made smaller.
+SMALLEST = 4.0
+
+#: What a title may take of the width of its page.
+TITLE_SHARE = 0.97
 
 
 #: Rates that grow without bound are cut at these percentiles (low end; the high end mirrors it).
@@ -87,10 +94,23 @@ def title_text(title: bool | str, usual: str) -> str:
     return title if isinstance(title, str) else usual if title else ""
 
 
-def headline(figure: Figure, title: bool | str, usual: str) -> None:
-    """Writes the title of a figure whose layout matplotlib finds."""
-    if text := title_text(title, usual):
-        figure.suptitle(text)
+def headline(figure: Figure, text: str, **place: Any) -> Text:
+    """Writes the title of a figure, no wider than its page; `place` goes to matplotlib."""
+    title = figure.suptitle(text, **place)
+    fit_letters(title, TITLE_SHARE * figure.get_figwidth())
+    return title
+
+
+def fit_letters(text: Text, width: float) -> None:
+    """Makes a text that is wider than so much [inch] smaller: fonts differ from machine to machine."""
+    figure: Any = text.get_figure()
+    renderer = measuring(figure)
+    # widths of letters are whole pixels, so they do not follow their size evenly
+    while (wide := text.get_window_extent(renderer).width / figure.dpi) > width:
+        size = float(text.get_fontsize()) * min(0.98, width / wide)
+        if size < SMALLEST:
+            break
+        text.set_fontsize(size)
 
 
 def key_below(figure: Figure, handles: Sequence[Any], heading: str = "") -> None:

@@ -32,7 +32,7 @@ from sevenbar.drawing.force_panels import (
 from sevenbar.drawing.names import shown_name
 from sevenbar.drawing.panels import panels_of
 from sevenbar.drawing.style import INK, LINE_STYLES, OTHER, QUIET, stroke, styled
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import RequestError, check_word
 from sevenbar.forces.result import COMPONENTS, Forces, Reaction
 from sevenbar.forces.sizing import Sizing
 from sevenbar.text.words import say
@@ -112,8 +112,7 @@ def reactions(
         >>> [axes.get_title() for axes in reactions(found, joints=["crank", "rocker"]).axes]
         ['crank', 'rocker']
     """
-    if what not in ("force", "moment"):
-        raise RequestError(f"what: {shown(what)} is not offered; give force or moment")
+    check_word("what", what, ("force", "moment"))
     chosen = chosen_reactions(forces, joints)
     letters = COMPONENTS[3:] if what == "force" else COMPONENTS[:3]
     scale = max((greatest_of(getattr(reaction, what)) for reaction in forces.reactions.values()), default=0.0)
@@ -288,10 +287,7 @@ KINDS: dict[str, Callable[..., Figure]] = {
 
 def figure_of_kind(forces: Forces, kind: str, options: dict[str, Any]) -> Figure:
     """The figure of a kind; raises `RequestError` for another."""
-    if kind not in KINDS:
-        raise RequestError(
-            f"kind: {shown(kind)} is not a figure of forces; {suggestion(kind, KINDS)}give {', '.join(KINDS)}"
-        )
+    check_word("kind", kind, KINDS, "a figure of forces")
     return KINDS[kind](forces, **options)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.figure import headline, new_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, page_size, styled
 from sevenbar.forces.free_motion.result import FreeMotion
@@ -39,5 +39,5 @@ def free_figure(
         panels[2].set_ylabel(say("energy [J]"))
         panels[2].set_xlabel(say("time [s]"))
         panels[2].legend(frameon=False)
-        figure.suptitle(f"{short(found.heading, 60)}\n{say('free motion')}")
+        headline(figure, f"{short(found.heading, 60)}\n{say('free motion')}")
     return figure

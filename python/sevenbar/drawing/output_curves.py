@@ -27,7 +27,7 @@ from sevenbar.drawing.names import handy_unit, quantity_label
 from sevenbar.drawing.panels import coinciding, panels_of
 from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, stroke, styled
 from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
@@ -156,13 +156,9 @@ def curves(
     Source: Sun and Zhou, Figures 3 and 4.
     """
     chosen_circuit(motion, 0)
-    if against not in ("both", "input", "time"):
-        raise RequestError(f"against: {shown(against)} is not offered; give both, input or time")
+    check_word("against", against, ("both", "input", "time"))
     for quantity in quantities:
-        if quantity not in QUANTITIES:
-            raise RequestError(
-                f"quantities: {shown(quantity)} is not drawn; give some of {', '.join(QUANTITIES)}"
-            )
+        check_word("quantities", quantity, QUANTITIES, "drawn")
     turning = motion.law is None and all(circuit.goes_round for circuit in motion)
     columns = (
         [against] if against != "both" else ["input"] if turning or ax is not None else ["input", "time"]

@@ -11,15 +11,27 @@ from matplotlib.legend import Legend
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing import style
-from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.figure import headline, new_figure
 from sevenbar.drawing.scene import draw_box, frame_box
 from sevenbar.drawing.skeleton import Skeleton
-from sevenbar.drawing.space import Box, ViewAxes, box_round, draw_frame, fit, measuring, seen_size, set_limits
+from sevenbar.drawing.space import (
+    Box,
+    ViewAxes,
+    box_round,
+    draw_frame,
+    fit,
+    measuring,
+    room_beside,
+    seen_size,
+    set_limits,
+)
 from sevenbar.drawing.view import Projection
 
 #: Room [inch], for letters of 9 points: round the page; at the sides of a picture, for numbers and names of
 #: its axes, left, right, below, above.
 EDGE, FLAT_MARGINS, SOLID_MARGINS = 0.08, (0.62, 0.16, 0.46, 0.12), (0.5, 0.5, 0.42, 0.26)
+#: Height of a line of letters by their size, and room [inch] between the title of a panel and the panel.
+LINE, PANEL_ROOM = 1.2, 0.08
 #: A picture is so high at least and at most, as shares of its width.
 LOWEST, HIGHEST = 0.3, 1.15
 #: Share of the caller's axes that the box of three dimensions fills.
@@ -41,8 +53,19 @@ def write_title(figure: Figure, text: str) -> float:
     if not text:
         return EDGE / 2
     height = float(figure.get_figheight())
-    title = figure.suptitle(text, y=1 - EDGE / height, va="top")
+    title = headline(figure, text, y=1 - EDGE / height, va="top")
     return title.get_window_extent(measuring(figure)).height / figure.dpi + 1.8 * EDGE
+
+
+def write_title_over_panels(figure: Figure, text: str) -> tuple[float, float]:
+    """Writes a title; returns where titles of panels stand, and where these panels end.
+
+    Both are shares of the page's height.
+    """
+    height = float(figure.get_figheight())
+    line = LINE * (style.letters() + 1) / 72
+    below = height - write_title(figure, text)
+    return (below - line) / height, (below - line - PANEL_ROOM) / height
 
 
 def write_legend(
@@ -126,9 +149,12 @@ def page_of_one(
     return figure, ViewAxes(own_axes(figure, view), view), (0.0, foot, width, height - top - foot)
 
 
-def fit_picture(space: ViewAxes, box: Box, room: Rectangle, *, bare: bool = False) -> None:
-    """Places axes on the page so that their box and its labels fill a rectangle; `bare`: without labels."""
-    left, right, below, above = (0.1, 0.1, 0.1, 0.1) if bare else margins(space.view)
+def fit_picture(space: ViewAxes, box: Box, room: Rectangle) -> None:
+    """Places axes on the page so that their box and its labels fill a rectangle."""
+    left, right, below, above = margins(space.view)
+    if space.view.flat:
+        # long numbers need more
+        left = max(left, room_beside(space) + EDGE)
     inner = (room[0] + left, room[1] + below, room[2] - left - right, room[3] - below - above)
     fit(space, box, inner)
     space.axes.apply_aspect()

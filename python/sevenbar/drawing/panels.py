@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeVar
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from sevenbar.drawing.figure import given_axes, headline, key_below, new_figure, tidy
+from sevenbar.drawing.figure import given_axes, headline, key_below, new_figure, tidy, title_text
 from sevenbar.drawing.style import page_size
 
 Line = TypeVar("Line")
@@ -51,7 +51,8 @@ class Panels:
     ) -> None:
         """Writes title and legend on a page of its own; axes of the caller have neither."""
         if self.own:
-            headline(self.figure, title, usual)
+            if text := title_text(title, usual):
+                headline(self.figure, text)
             key_below(self.figure, handles, heading)
             tidy(self.figure)
 

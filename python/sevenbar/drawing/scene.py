@@ -12,6 +12,7 @@ from matplotlib.patheffects import Normal, withStroke
 from sevenbar.arrays import Floats
 from sevenbar.drawing.names import amount_text, shown_name
 from sevenbar.drawing.skeleton import DrawnSphere, Skeleton
+from sevenbar.drawing.smooth import smooth_line
 from sevenbar.drawing.space import Box, ViewAxes, box_round, draw_axes, draw_frame
 from sevenbar.drawing.style import COUPLER, GROUND, INPUT, JOINT, OUTPUT, PATH, POINT_COLOURS, paler, stroke
 from sevenbar.drawing.view import Projection, wide_view
@@ -58,7 +59,7 @@ def stage(space: ViewAxes, frame: Skeleton, ends: tuple[str, str], *, around: Sk
         for place, colour in paths(frame, ends):
             if place not in frame.far:
                 look = {"lw": 0.8, "zorder": 1} if colour == PATH else {"lw": 1.2, "zorder": 2}
-                space.line(frame.places[:, place], color=colour, **look)
+                space.line(smooth_line(frame.places[:, place]), color=colour, **look)
     ground = frame.pose(0)[list(frame.links[-1])]
     space.line(ground, color=paler(GROUND, 0.35), lw=3.4, zorder=2, solid_capstyle="round")
     rails = _ground_rails(frame)

@@ -32,6 +32,8 @@ END_ON = 0.08
 FOR_A_TICK, TICKS = 0.42, (2, 7)
 #: Distance [points] of numbers from their edge, and of an axis' name from its numbers.
 OFF, BEYOND = 4.0, 2.0
+#: Height of a name with its brackets, as a share of the size of its letters; points in an inch.
+UPRIGHT, POINTS = 1.4, 72.0
 
 PANE, EDGE, GRID = "#f3f3f5", "#9a9a9a", "#dedede"
 
@@ -165,6 +167,10 @@ def set_limits(space: ViewAxes, box: Box) -> None:
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
+        for scale, size in zip((axes.xaxis, axes.yaxis), seen_size(view, box), strict=True):
+            scale.set_major_locator(
+                MaxNLocator(max(3, round(8 * size / max(high - low))), steps=[1, 2, 5, 10])
+            )
         return
     axes.computed_zorder = False
     axes.set_proj_type("ortho")
@@ -173,6 +179,14 @@ def set_limits(space: ViewAxes, box: Box) -> None:
         getattr(axes, f"set_{name}lim3d")(*ends, view_margin=0)
     axes.set_axis_off()
     axes.set_box_aspect(high - low)
+
+
+def room_beside(space: ViewAxes) -> float:
+    """Width [inch] of what is written at the left of a flat picture: numbers, and the axis' name upright."""
+    axis = space.axes.yaxis
+    numbers = axis.get_tightbbox(measuring(space.figure))
+    name = axis.labelpad + UPRIGHT * style.letters()
+    return (0.0 if numbers is None else float(numbers.width) / space.figure.dpi) + float(name) / POINTS
 
 
 def corners_of(low: Floats, high: Floats) -> Floats:
@@ -214,10 +228,6 @@ def draw_frame(space: ViewAxes, box: Box, unit: str, *, letters: str = "xyz") ->
         axes.set_ylabel(f"{view.letters[1]} [{unit}]")
         axes.grid(True)
         axes.set_axisbelow(True)
-        for scale, size in zip((axes.xaxis, axes.yaxis), seen_size(view, box), strict=True):
-            scale.set_major_locator(
-                MaxNLocator(max(3, round(8 * size / max(high - low))), steps=[1, 2, 5, 10])
-            )
         return
     axes.set(xlabel=names[0], ylabel=names[1], zlabel=names[2])
     behind = view.towards > 0

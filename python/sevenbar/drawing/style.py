@@ -12,7 +12,7 @@ from matplotlib.font_manager import get_font_names
 
 from sevenbar.drawing.asked import asked_style
 from sevenbar.drawing.fonts import chinese_font
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import RequestError, check_word, shown
 from sevenbar.text.words import language, spoken
 
 #: Links, from the colours of Okabe and Ito, which colour-blind readers can distinguish.
@@ -113,11 +113,7 @@ USUAL_LINE = 1.5
 
 def check_style(name: str, key: str = "style") -> str:
     """The name of a style; raises `RequestError` for another."""
-    if name not in STYLES:
-        raise RequestError(
-            f"{key}: {shown(name)} is not a style; {suggestion(str(name), STYLES)}"
-            f"give one of {', '.join(STYLES)}"
-        )
+    check_word(key, name, STYLES, "a style")
     return name
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import RequestError, check_word, shown, suggestion
 from sevenbar.export.pose import take
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
@@ -281,8 +281,8 @@ def _word(to: str) -> str:
 def _check_choices(
     word: str, form: Format, circuit: int | None, at: float | None, branch: int | None, units: str | None
 ) -> None:
-    if units not in (None, "file", "si"):
-        raise RequestError(f"units: {shown(units)} is not offered; give file or si")
+    if units is not None:
+        check_word("units", units, ("file", "si"))
     if isinstance(form, Table):
         for name, value in (("circuit", circuit), ("at", at), ("branch", branch)):
             if value is not None:

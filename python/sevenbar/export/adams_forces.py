@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.export.left_out import left_out
 from sevenbar.export.pose import Pose
-from sevenbar.forces.loading import Load, Spring
+from sevenbar.forces.acting import Load, Spring
 from sevenbar.kinematics.loop.joints import Step
 from sevenbar.text.units import LENGTHS
 

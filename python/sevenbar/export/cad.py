@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError, OutputError
+from sevenbar.errors import OutputError, of_extra
 from sevenbar.export.libraries import installed
 from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid
 from sevenbar.kinematics.loop.rigid import perpendicular
@@ -98,10 +98,6 @@ def _plane(library: Any, origin: Floats, x: Floats, z: Floats) -> Any:
 
 
 def _build123d() -> Any:
-    try:
+    with of_extra("cad", "step needs build123d"):
         import build123d
-    except ImportError:
-        raise MissingExtraError(
-            "step needs build123d; install it with: pip install 'sevenbar[cad]'"
-        ) from None
     return build123d

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.errors import MissingExtraError
+from sevenbar.errors import of_extra
 from sevenbar.export.libraries import installed
 from sevenbar.export.parts import Assembly, Ball, Part, Rod, Solid, frame_of, length_of
 from sevenbar.text.progress import Progress, silent
@@ -118,11 +118,7 @@ def _rgba(colour: str) -> list[int]:
 
 
 def _trimesh() -> Any:
-    try:
+    with of_extra("export", "meshes need trimesh and manifold3d"):
         import manifold3d  # noqa: F401  # what trimesh joins and cuts solids with
         import trimesh
-    except ImportError:
-        raise MissingExtraError(
-            "meshes need trimesh and manifold3d; install them with: pip install 'sevenbar[export]'"
-        ) from None
     return trimesh

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from sevenbar.errors import MissingExtraError
+from sevenbar.errors import of_extra
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting.folder import write_parts
@@ -36,11 +36,9 @@ def write_csv(
 
 def write_parquet(motion: Motion, path: Path, units: Units) -> None:
     """Writes the flat table as Parquet, with the note as JSON under `sevenbar` in its schema's metadata."""
-    try:
+    with of_extra("export", "parquet needs pyarrow"):
         import pyarrow as arrow
         from pyarrow import parquet
-    except ImportError:
-        raise _missing("parquet", "pyarrow") from None
     about = {"sevenbar": json.dumps(note(motion, units, flat=True))}
     writer = None
     for part in motion.column_parts(si=units == "si"):
@@ -74,10 +72,8 @@ def write_npz(motion: Motion, path: Path, units: Units) -> None:
 
 def write_mat(motion: Motion, path: Path, units: Units) -> None:
     """Writes a MATLAB 5 file: `note` (JSON text), `columns` (cells), `circuits` (an array of structures)."""
-    try:
+    with of_extra("export", "mat needs scipy"):
         from scipy.io import savemat
-    except ImportError:
-        raise _missing("mat", "scipy") from None
     records = []
     for circuit in motion.circuits:
         arrays = circuit_arrays(motion, circuit, units)
@@ -186,7 +182,3 @@ def _cells(words: Any) -> Any:
     cells = np.empty((len(words), 1), dtype=object)
     cells[:, 0] = [str(word) for word in words]
     return cells
-
-
-def _missing(to: str, package: str) -> MissingExtraError:
-    return MissingExtraError(f"{to} needs {package}; install it with: pip install 'sevenbar[export]'")

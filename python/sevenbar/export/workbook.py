@@ -10,7 +10,7 @@ import numpy as np
 
 from sevenbar.description.table_writer import linkage_table, points_table
 from sevenbar.description.tables import SHEET
-from sevenbar.errors import MissingExtraError, RequestError
+from sevenbar.errors import RequestError, of_extra
 from sevenbar.kinematics.circuits.motion import Motion
 
 #: Rows that a sheet of Excel holds, the head not counted.
@@ -26,12 +26,8 @@ def write_xlsx(motion: Motion, path: Path, units: Literal["file", "si"]) -> None
     A value that does not exist is an empty cell. The sheet `linkage` is in the file's units whatever `units`
     of the motion are. Raises `RequestError` for more rows than a sheet holds.
     """
-    try:
+    with of_extra("excel", "xlsx needs openpyxl"):
         from openpyxl import Workbook
-    except ImportError:
-        raise MissingExtraError(
-            "xlsx needs openpyxl; install it with: pip install 'sevenbar[excel]'"
-        ) from None
     for circuit in motion.circuits:
         if len(circuit.time) > MOST_ROWS:
             raise RequestError(

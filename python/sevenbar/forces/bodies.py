@@ -10,8 +10,8 @@ from typing import Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, finite_number
-from sevenbar.errors import RequestError, shown
+from sevenbar.arrays import Floats, finite_number, triple
+from sevenbar.errors import RequestError, check_word, shown
 
 #: Where centre and inertia come from if they are not given.
 Solid = Literal["rod", "point", "drawn"]
@@ -45,8 +45,8 @@ class Body:
         mass = finite_number("mass", self.mass)
         if mass < 0 or (mass == 0 and self.solid != "drawn"):
             raise RequestError(f"mass: {shown(self.mass)} is not a mass; give kilograms > 0")
-        if self.solid is not None and self.solid not in SOLIDS:
-            raise RequestError(f"solid: {shown(self.solid)} is not offered; give {', '.join(SOLIDS)}")
+        if self.solid is not None:
+            check_word("solid", self.solid, SOLIDS)
         object.__setattr__(self, "mass", mass)
         made = self.solid in ("rod", "drawn")
         if made and (self.centre is not None or self.inertia is not None):
@@ -64,14 +64,6 @@ class Body:
     def tensor(self) -> Floats:
         """The inertia (3, 3) [kg m^2]."""
         return np.asarray(self.inertia, dtype=np.float64)
-
-
-def triple(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
-    """Three finite numbers, or `RequestError`."""
-    array = finite_array(name, values)
-    if array.size != 3:
-        raise RequestError(f"{name}: {array.size} numbers; give three")
-    return float(array[0]), float(array[1]), float(array[2])
 
 
 def flaw_of_inertia(tensor: Floats) -> str:

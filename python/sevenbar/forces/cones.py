@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError
+from sevenbar.errors import of_extra
 
 #: What is required of Clarabel, relative and absolute, in scaled variables; below, rounding is in its way.
 TOLERANCE = 1e-9
@@ -58,13 +58,9 @@ def least_greatest_size(constant: Floats, gradient: Floats, bounds: Bounds, *, w
 
     Raises `MissingExtraError` without Clarabel or SciPy, which `who` needs.
     """
-    try:
+    with of_extra("design", f"{who} needs clarabel and scipy"):
         import clarabel
         from scipy import sparse
-    except ImportError:
-        raise MissingExtraError(
-            f"{who} needs clarabel and scipy; install them with: pip install 'sevenbar[design]'"
-        ) from None
     count, size, numbers = gradient.shape
     # rows of (t, c + G x) in the cone, then the bounds; slack = right - matrix @ (x, t)
     cones = np.zeros((count, size + 1, numbers + 1))

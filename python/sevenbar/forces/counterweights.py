@@ -26,7 +26,7 @@ from typing import Literal
 import numpy as np
 
 from sevenbar.arrays import Floats, finite_array, finite_number
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_word, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.cones import Bounds, least_greatest_size
 from sevenbar.forces.mounts import Acting, Mount
@@ -261,8 +261,7 @@ def _refuse(mounts: Sequence[Mount], measure: object, force: float, moment: floa
         raise RequestError("links: none given; give those that may carry a counterweight")
     if len(set(links)) < len(links):
         raise RequestError("links: one is given twice; leave one out")
-    if measure not in ("rms", "greatest"):
-        raise RequestError(f"measure: {shown(measure)} is not offered; give rms or greatest")
+    check_word("measure", measure, ("rms", "greatest"))
     for name, value in (("force", force), ("moment", moment)):
         if finite_array(name, [value])[0] < 0:
             raise RequestError(f"{name}: {shown(value)} is not a factor; give a number >= 0")

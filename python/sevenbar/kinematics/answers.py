@@ -4,40 +4,55 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.forces.counterweights import Balance
-from sevenbar.forces.free_motion.equilibria import Equilibrium
-from sevenbar.forces.free_motion.result import FreeMotion
-from sevenbar.forces.loading import Loading
-from sevenbar.forces.result import Forces
-from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit import AT_REST, Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
-from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
 from sevenbar.kinematics.circuits.motion import Solvable
-from sevenbar.kinematics.dynamics.loaded import loading_with
 from sevenbar.kinematics.loop.geometry import Point
-from sevenbar.kinematics.loop.law import Law
-from sevenbar.kinematics.loop.stops import Cone
-from sevenbar.kinematics.solvers.plane_and_sphere import plane_of
-from sevenbar.kinematics.transmission import best_row, transmission_angle, transmission_extremes
 
+# the engines are for those who ask
 if TYPE_CHECKING:
+    from sevenbar.forces.counterweights import Balance
+    from sevenbar.forces.free_motion.equilibria import Equilibrium
+    from sevenbar.forces.free_motion.result import FreeMotion
+    from sevenbar.forces.loading import Loading
+    from sevenbar.forces.result import Forces
+    from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
+    from sevenbar.kinematics.circuits.sensitivity_values import Sensitivity
     from sevenbar.kinematics.dynamics.forces import ForceSolver
 
+#: A mechanical advantage, and the input [rad, or length] at which it is had.
+Place = tuple[float, float]
 
-@dataclass(frozen=True, eq=False)
+
+def _by_rates(circuit: Circuit) -> list[Place] | None:
+    """Both extremes of the advantage where the output's rate has its own, as the one is 1 over the other.
+
+    `None` where that has none, or nearly rests.
+    """
+    rates, speed = circuit.velocity, circuit.speed
+    if rates is None or not math.isfinite(speed) or rates.lowest * rates.highest <= 0:
+        return None
+    driving, driven = (
+        1.0 if turns else circuit.size for turns in (circuit.input_turns, circuit.output_turns)
+    )
+    if min(abs(rates.lowest), abs(rates.highest)) / driven <= AT_REST * abs(speed) / driving:
+        return None
+    return [(speed / rates.lowest, rates.lowest_at), (speed / rates.highest, rates.highest_at)]
+
+
 class LinkageAnswers:
     """The answers of a linkage; its circuits keep them and ask when they are asked."""
 
-    linkage: Solvable
-    #: What solves for its forces, by the driving column, made at the first asking.
-    _solvers: dict[int, ForceSolver] = field(default_factory=dict, repr=False)
+    def __init__(self, linkage: Solvable) -> None:
+        self.linkage = linkage
+        # what solves for its forces, by the driving column, made at the first asking
+        self._solvers: dict[int, ForceSolver] = {}
 
     def __reduce__(self) -> tuple[type[LinkageAnswers], tuple[Solvable]]:
         """Copied and pickled by the linkage."""
@@ -56,16 +71,35 @@ class LinkageAnswers:
 
     def transmission_angle(self, circuit: Circuit) -> Floats | None:
         """The transmission angle [rad] on each row (n,), `None` where it is not defined."""
+        from sevenbar.kinematics.transmission import transmission_angle
+
         return transmission_angle(self.linkage, circuit)
 
     def transmission(self, circuit: Circuit) -> Extremes | None:
         """The lowest and the highest transmission angle [rad], `None` where it is not defined."""
+        from sevenbar.kinematics.transmission import transmission_extremes
+
         return transmission_extremes(self.linkage, circuit)
 
     def advantage(self, circuit: Circuit) -> Extremes | None:
-        """The lowest and highest mechanical advantage: extremes of the input's rate, the output driving."""
+        """The lowest and highest mechanical advantage; `None` where the output stands still on the way."""
+        if any(centre.kind == "output" for centre in circuit.dead_centres):
+            return None
+        ends = _by_rates(circuit) or self._by_driving_back(circuit)
+        if ends is None:
+            return None
+        (low, low_at), (high, high_at) = sorted(ends)
+        if circuit.input_turns and circuit.input_range is None:
+            low_at, high_at = low_at % math.tau, high_at % math.tau
+        return Extremes(low, low_at, high, high_at)
+
+    def _by_driving_back(self, circuit: Circuit) -> list[Place] | None:
+        """The extremes of the input's rate, the output driving: where the input turns back, too."""
+        from sevenbar.kinematics.loop.law import Law
+        from sevenbar.kinematics.transmission import best_row
+
         row = best_row(circuit)
-        if row is None or any(centre.kind == "output" for centre in circuit.dead_centres):
+        if row is None:
             return None
         linkage, pose = self.linkage, circuit.q[row]
         names = [linkage.columns[c] for c in (circuit.output_column, circuit.input_column)]
@@ -85,24 +119,25 @@ class LinkageAnswers:
         for value in (back.velocity.lowest, back.velocity.highest):
             row = int(np.nanargmin(np.abs(rates - value)))
             ends.append((value, float(there.q[row, circuit.input_column])))
-        (low, low_at), (high, high_at) = ends
-        if circuit.input_turns and circuit.input_range is None:
-            low_at, high_at = low_at % math.tau, high_at % math.tau
-        return Extremes(low, low_at, high, high_at)
+        return ends
 
     def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """The forces on a circuit's rows, with what is given in place of what the linkage has."""
-        # the engine by numbers is for those who ask
         from sevenbar.kinematics.dynamics.forces import ForceSolver, forces_of
 
         if given:
-            loading = loading_with(self.linkage, **given)
-            solver = ForceSolver(self.linkage, loading, circuit.input_column)
+            solver = ForceSolver(self.linkage, self._loading(given), circuit.input_column)
             return forces_of(solver, circuit, at_rest=at_rest)
         if circuit.input_column not in self._solvers:
             solver = ForceSolver(self.linkage, self.linkage.loading, circuit.input_column)
             self._solvers[circuit.input_column] = solver
         return forces_of(self._solvers[circuit.input_column], circuit, at_rest=at_rest)
+
+    def sensitivity(self, circuit: Circuit) -> Sensitivity:
+        """Derivatives of its joints and the named points by every number of the description."""
+        from sevenbar.kinematics.numbers.sensitivity import sensitivity_of
+
+        return sensitivity_of(self.linkage, circuit)
 
     def counterweights(
         self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
@@ -129,7 +164,11 @@ class LinkageAnswers:
         return equilibria_of(self.linkage, circuit, self._loading(given), torque)
 
     def _loading(self, given: Mapping[str, Any]) -> Loading:
-        return loading_with(self.linkage, **given) if given else self.linkage.loading
+        if not given:
+            return self.linkage.loading
+        from sevenbar.kinematics.dynamics.loaded import loading_with
+
+        return loading_with(self.linkage, **given)
 
     def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
         """The range of every column but a ball's, by its name."""
@@ -145,6 +184,7 @@ class LinkageAnswers:
 
     def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> BallCone:
         """How far one is bent between directions that are given."""
+        from sevenbar.kinematics.loop.stops import Cone
         from sevenbar.kinematics.ranges.circuit_extents import cone_of
 
         named = any(value is not None for value in given.values())
@@ -170,5 +210,7 @@ class LinkageAnswers:
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) of the report frame in the plane of a planar loop (..., 2), `None` for others."""
+        from sevenbar.kinematics.solvers.plane_and_sphere import plane_of
+
         plane = plane_of(self.linkage)
         return None if plane is None else plane.coordinates(places)

@@ -5,29 +5,29 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
-from sevenbar.errors import NotCoveredError, RequestError, ends_here, shown
-from sevenbar.forces.bodies import Body
-from sevenbar.forces.loading import Load, Spring
+from sevenbar.arrays import Floats, finite_array, is_number, whole_number
+from sevenbar.errors import NotCoveredError, RequestError, check_word, ends_here, shown
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.modes import Modes, Output
 from sevenbar.kinematics.circuits.motion import LEAST_AGREE, MOST_AGREE, Motion, Solvable
-from sevenbar.kinematics.dynamics.loaded import loaded
-from sevenbar.kinematics.loop.grashof import FourBar
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
-from sevenbar.kinematics.loop.law import Law
-from sevenbar.kinematics.loop.mobility import Mobility
-from sevenbar.kinematics.ranges.stopped import Cones, Radii, Ranges, stopped
 from sevenbar.kinematics.solvers.closed_form import ClosedForm
-from sevenbar.kinematics.solvers.four_bar import four_bar_of
 from sevenbar.kinematics.solvers.general import AGREE, GeneralLoop
-from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
+
+if TYPE_CHECKING:
+    from sevenbar.forces.acting import Load, Spring
+    from sevenbar.forces.bodies import Body
+    from sevenbar.kinematics.loop.grashof import FourBar
+    from sevenbar.kinematics.loop.law import Law
+    from sevenbar.kinematics.loop.mobility import Mobility
+    from sevenbar.kinematics.ranges.stopped import Cones, Radii, Ranges
+    from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
 MOST_SAMPLES = 1_000_000
@@ -61,6 +61,8 @@ class Linkage(Solvable):
             >>> linkage.loading.bodies[1][0].mass
             1.2
         """
+        from sevenbar.kinematics.dynamics.loaded import loaded
+
         return loaded(self, bodies=bodies, gravity=gravity, loads=loads, springs=springs)
 
     @ends_here
@@ -83,6 +85,8 @@ class Linkage(Solvable):
             >>> linkage.description["stop"]
             [{'joint': 'rocker', 'range': [-30.0, 10.0]}]
         """
+        from sevenbar.kinematics.ranges.stopped import stopped
+
         return stopped(self, ranges=ranges, cones=cones, radii=radii)
 
     @property
@@ -165,11 +169,10 @@ class Linkage(Solvable):
         solver = self._rssr("output")
         column = self.input_column(input)
         array = joint_numbers("input", values, self, column)
-        if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= 3:
-            raise RequestError(f"order: {shown(order)} is not offered; give 0 to 3")
+        order = whole_number("order", order, 0, 3, "offered")
         law = None
         constant = 1.0
-        plain = speed is None or isinstance(speed, str) or np.ndim(speed) == 0
+        plain = speed is None or isinstance(speed, (float, int, str)) or np.ndim(speed) == 0
         if plain and acceleration is None and jerk is None:
             constant = self._speed(speed, column)
         else:
@@ -223,7 +226,7 @@ class Linkage(Solvable):
         """
         return self.agreeing(agree)._general.mobility(self.columns.index(self.drive.joint))
 
-    @cached_property
+    @property
     def plane(self) -> MotionPlane | None:
         """The plane of a planar loop; `None` for any other.
 
@@ -231,6 +234,8 @@ class Linkage(Solvable):
         >>> sb.load("planar_4r").plane.x.tolist()
         [0.0, 1.0, 0.0]
         """
+        from sevenbar.kinematics.solvers.plane_and_sphere import plane_of
+
         return plane_of(self)
 
     @property
@@ -246,6 +251,8 @@ class Linkage(Solvable):
         >>> sb.load("spherical_4r").sphere.radius
         1.0
         """
+        from sevenbar.kinematics.solvers.plane_and_sphere import sphere_of
+
         return sphere_of(self)
 
     @cached_property
@@ -266,6 +273,8 @@ class Linkage(Solvable):
 
         Source: docs/theory_measures.md, (1) to (3).
         """
+        from sevenbar.kinematics.solvers.four_bar import four_bar_of
+
         first, second = self.end_columns(
             input, self.drive.output if output is None and input is None else output
         )
@@ -347,12 +356,12 @@ class Linkage(Solvable):
             [('crank-rocker', 1), ('double-rocker', 0), ('crank-rocker', 1)]
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed)
-        general = self.agreeing(agree)._general
+        agreeing = self.agreeing(agree)
         if self._has_closed_form(method):
             found = self._closed_form.motion(column, samples, rate, law)
         else:
             self._refuse_unheld()
-            found = general.motion(column, output_column, samples, rate, law)
+            found = agreeing._general.motion(column, output_column, samples, rate, law)
         written = speed if speed is not None else self.speed_written(column)
         return replace(found, speed_written=written) if isinstance(written, str) and written else found
 
@@ -401,18 +410,13 @@ class Linkage(Solvable):
         return column, output_column, sample_count("samples", samples), self._speed(speed, column)
 
     def _has_closed_form(self, method: str) -> bool:
-        if method not in ("auto", "general"):
-            raise RequestError(f"method: {shown(method)} is not offered; give auto or general")
+        check_word("method", method, ("auto", "general"))
         return method == "auto" and self.kind == "RSSR"
 
 
 def closure_tolerance(name: str, value: object) -> float:
     """A closure error up to which redundant constraints agree, or `RequestError` that names it."""
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, (int, float, np.number))
-        or not LEAST_AGREE <= value <= MOST_AGREE
-    ):
+    if not is_number(value) or not LEAST_AGREE <= value <= MOST_AGREE:
         raise RequestError(
             f"{name}: {shown(value)} is not a closure error; give {LEAST_AGREE:g} to {MOST_AGREE:g} "
             "(rad, or relative to the linkage size)"
@@ -422,9 +426,7 @@ def closure_tolerance(name: str, value: object) -> float:
 
 def sample_count(name: str, value: object) -> int:
     """A number of inputs in a turn, or `RequestError` naming what it was given for."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not 4 <= value <= MOST_SAMPLES:
-        raise RequestError(f"{name}: {shown(value)} is not a count; give 4 to {MOST_SAMPLES}")
-    return int(value)
+    return whole_number(name, value, 4, MOST_SAMPLES, "a count")
 
 
 def _rate(name: str, value: npt.ArrayLike, count: int) -> Floats:

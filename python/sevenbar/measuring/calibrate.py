@@ -35,7 +35,7 @@ import numpy as np
 from sevenbar.arrays import Floats, Integers
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
-from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
+from sevenbar.errors import RequestError, check_word, of_extra, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.measuring.compare import Comparison, causes, compare, ends_of, inputs_of, name_of, per_cent
@@ -173,8 +173,7 @@ def calibrate(
     if not 0 < confidence < 1:
         raise RequestError(f"confidence: {shown(confidence)} is not a probability; give one like 0.95")
     for word in offsets:
-        if word not in OFFSETS:
-            raise RequestError(f"offset: {shown(word)} is not offered; give {' or '.join(OFFSETS)}")
+        check_word("offset", word, OFFSETS)
     ends = ends_of(linkage) if ends is None else ends
     numbers = Numbers(linkage)
     names = _named(numbers, free, hold, follow)
@@ -265,13 +264,9 @@ def _refuse_unexplained(before: Comparison, fit: CurveFit) -> None:
 
 
 def _need_scipy() -> None:
-    try:
+    with of_extra("calibrate", "calibrate needs scipy and tomlkit"):
         # its parts take a while to load, and are not needed before the end
         import scipy  # noqa: F401
-    except ImportError:
-        raise MissingExtraError(
-            "calibrate needs scipy and tomlkit; install them with: pip install 'sevenbar[calibrate]'"
-        ) from None
 
 
 def _calibration(

@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.measuring.candidates import SAME_RESIDUAL, Candidates
@@ -171,8 +171,7 @@ def compare(
     ends = ends_of(linkage) if ends is None else ends
     aligned = tuple(dict.fromkeys(align))
     for word in aligned:
-        if word not in ALIGN:
-            raise RequestError(f"align: {shown(word)} is not offered; give {' or '.join(ALIGN)}")
+        check_word("align", word, ALIGN)
     if "offset" in aligned and "angle" not in measured.values:
         raise RequestError(
             "align: an offset of the output needs its angle, and the table has none; leave it out"

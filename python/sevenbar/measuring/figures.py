@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import page_figure
+from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import quantity_label, short
 from sevenbar.drawing.style import COMPUTED as COMPUTED_COLOUR
 from sevenbar.drawing.style import OTHER, styled
@@ -138,6 +138,6 @@ def _labels(column: Any, ends: Ends, quantity: str, differences: list[str]) -> N
 
 def _finish(figure: Figure, grid: Any, title: str) -> None:
     figure.align_ylabels()
-    figure.suptitle(title)
+    headline(figure, title)
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(handles), frameon=False)

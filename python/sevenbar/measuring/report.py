@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.table import Table
-from rich.text import Text
 
 from sevenbar.measuring.calibrate import Calibration, Parameter
 from sevenbar.measuring.compare import Comparison, alike, name_of, per_cent
@@ -19,7 +18,7 @@ from sevenbar.measuring.measured import Ends
 from sevenbar.measuring.passes import PassFit
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
 from sevenbar.reporting.folder import write_columns, write_csv
-from sevenbar.reporting.page import Facts, drive_text, number_table, opening
+from sevenbar.reporting.page import Facts, drive_text, number_table, opening, page
 from sevenbar.text.printing import text_of
 from sevenbar.text.words import retold, say
 
@@ -35,9 +34,7 @@ MOST_CANDIDATES = 4
 
 def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableType:
     """The comparison for people: what explains the data, the paper's Table 1, the differences."""
-    ends = comparison.ends
-    facts = Facts()
-    parts: list[RenderableType] = [Text(comparison.linkage.heading, style="bold underline"), facts.grid]
+    ends, heading, facts = comparison.ends, comparison.linkage.heading, Facts()
     drive = drive_text(ends.input, comparison.speed, ends.unit("input"), ends.output)
     if isinstance(comparison, ExtremesComparison):
         facts.add("measured", say("{source}, lowest and highest values", source=comparison.source))
@@ -49,7 +46,7 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
         if others:
             facts.add("not by", say("; ").join(others[:MOST_CANDIDATES]))
         facts.add("", say("residual: root mean square of the errors relative to the measured range"))
-        return Group(*parts, Text(), _extents_table(comparison.table, ends))
+        return page(heading, facts, _extents_table(comparison.table, ends))
     chosen = comparison.chosen
     rows = np.isfinite(next(iter(comparison.computed.values()))).sum()
     facts.add(
@@ -87,7 +84,7 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
             )
     for note in comparison.notes:
         facts.add("note", retold(note))
-    return Group(*parts, Text(), _extents_table(comparison.table, ends), Text(), _spread_table(comparison))
+    return page(heading, facts, _extents_table(comparison.table, ends), _spread_table(comparison))
 
 
 def calibration_text(calibration: Calibration) -> RenderableType:
@@ -138,8 +135,7 @@ def calibration_text(calibration: Calibration) -> RenderableType:
         )
     for note in calibration.notes:
         facts.add("note", retold(note))
-    title = Text(calibration.linkage.heading, style="bold underline")
-    return Group(title, facts.grid, Text(), _parameter_table(calibration))
+    return page(calibration.linkage.heading, facts, _parameter_table(calibration))
 
 
 def _rows_and_places(calibration: Calibration) -> str:

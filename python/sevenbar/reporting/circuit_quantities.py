@@ -15,8 +15,7 @@ from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting.facts import turns_text
 from sevenbar.reporting.force_peaks import peaks_of
-from sevenbar.reporting.force_words import number
-from sevenbar.reporting.shown import REST, Shown, degrees, six_digits
+from sevenbar.reporting.shown import REST, Shown, degrees, number, six_digits
 from sevenbar.text.words import say
 
 #: Dead centres listed in one cell; an output that rests has no end of them.
@@ -80,14 +79,19 @@ class _Texts:
         """Extremes without rounding: of a joint that rests, or follows evenly, both are one number."""
         if extremes is None:
             return None
+        low, high = self._rounded(extremes.lowest, extremes.highest, circuit, order)
+        return replace(extremes, lowest=low, highest=high)
+
+    def _rounded(self, low: float, high: float, circuit: Circuit, order: int) -> tuple[float, float]:
+        """Two values of the output's derivative of an order; rounding is 0, and their difference too."""
         law = self.motion.law
         quick = abs(self.motion.speed) if law is None else float(np.abs(law.dq).max(initial=0.0))
         size = circuit.size or 1.0
         natural = (1.0 if circuit.output_turns else size) * (
             quick / (1.0 if circuit.input_turns else size)
         ) ** order
-        low, high = (0.0 if abs(x) < REST * natural else x for x in (extremes.lowest, extremes.highest))
-        return replace(extremes, lowest=low, highest=low if high - low < REST * natural else high)
+        low, high = (0.0 if abs(x) < REST * natural else x for x in (low, high))
+        return low, low if high - low < REST * natural else high
 
     def motion_type(self, circuit: Circuit) -> Texts:
         """Its motion type where circuits differ in it, and how it goes round where they differ in that."""
@@ -103,7 +107,13 @@ class _Texts:
     def output_range(self, circuit: Circuit) -> Texts:
         """The range of the output."""
         extent = circuit.output_range
-        return self._endless(circuit, extent, 1) or tuple(map(self.result, extent or ()))
+        words = self._endless(circuit, extent, 1)
+        if words or extent is None:
+            return words
+        low, high = self._rounded(*extent, circuit, 0)
+        if low == high:
+            return (say("at rest at {value}", value=self.result(low)),)
+        return self.result(low), self.result(high)
 
     def _endless(self, circuit: Circuit, extent: tuple[float, float] | None, end: int) -> Texts:
         """The words in place of a range; nothing where there is one."""

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from sevenbar.curves.curve import Peak
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.extents import Allowed
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 from sevenbar.reporting.shown import REST, Shown, degrees
 from sevenbar.text.words import say
+
+if TYPE_CHECKING:
+    from sevenbar.curves.curve import Peak
+    from sevenbar.kinematics.circuits.extents import Allowed
 
 T = TypeVar("T")
 
@@ -24,6 +25,9 @@ Row = tuple[str, ...]
 
 def known(of: Callable[[], T]) -> T | None:
     """What is found along a circuit, `None` where it cannot be followed by its own length."""
+    # with what follows it
+    from sevenbar.kinematics.paths.circuit_path import NotFollowedError
+
     try:
         return of()
     except NotFollowedError:

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from sevenbar.description.angle_doubts import angle_doubt
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.mobility import Mobility
 from sevenbar.reporting.extents import usable_text
-from sevenbar.reporting.force_words import acting_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.page import drive_text
 from sevenbar.reporting.shown import Shown
 from sevenbar.text.words import retold, say
+
+if TYPE_CHECKING:
+    from sevenbar.kinematics.loop.mobility import Mobility
 
 #: Limits of the input that are listed.
 MOST_LIMITS = 8
@@ -27,6 +30,12 @@ COMPLETE = {
     "counted": "all modes and all circuits are found",
     "algebraic": "all modes are found",
     "searched": "the modes that a search from many starts found; there may be others",
+}
+
+#: The same of modes at an input at which a curve of poses closes.
+COMPLETE_WITH_CURVE = {
+    "algebraic": "all isolated modes are found; a curve of poses closes here, too",
+    "searched": "one pose that a search found; a curve of poses closes here",
 }
 
 
@@ -88,8 +97,11 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.idle:
         idle = say("; ").join(map(retold, motion.idle))
         facts.append(("idle freedom", say("{freedoms}, held by convention", freedoms=idle)))
-    facts.append(("redundant", say("; ").join(map(retold, motion.redundant)) or say("no constraints")))
+    if motion.motion_type != "cannot-assemble":
+        facts.append(("redundant", say("; ").join(map(retold, motion.redundant)) or say("no constraints")))
     if not linkage.loading.is_empty:
+        from sevenbar.reporting.force_words import acting_text
+
         acting = acting_text(linkage.loading)
         facts.append(("forces", say("{acting}; 'sevenbar forces' reports all joints", acting=acting)))
     if motion.circuits and linkage.stops.stops:
@@ -100,9 +112,10 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     return facts
 
 
-def completeness_text(word: str) -> str:
-    """The word for how it is known that nothing is missing, and what it means."""
-    return say("{word}: {meaning}", word=say(word), meaning=say(COMPLETE[word]))
+def completeness_text(word: str, *, curve: bool = False) -> str:
+    """The word for how it is known that nothing is missing, and its meaning; modes may have a `curve` too."""
+    meanings = COMPLETE_WITH_CURVE if curve else COMPLETE
+    return say("{word}: {meaning}", word=say(word), meaning=say(meanings[word]))
 
 
 def _limits_text(motion: Motion) -> str:
@@ -131,7 +144,12 @@ def _change_points(motion: Motion) -> list[tuple[str, str]]:
     lines = []
     meeting = [point for point in motion.change_points if not point.isolated]
     if meeting:
-        where = "  ".join(show(x) for x in motion.change_point_inputs)
+        # several poses may share an input
+        poses = Counter(show(x, whole=True) for x in motion.change_point_inputs)
+        where = "  ".join(
+            say("{value} ({count} poses)", value=value, count=count) if count > 1 else value
+            for value, count in poses.items()
+        )
         what = say(
             "input {where}: branches meet there; the least change of a dimension decides how it goes on",
             where=where,
@@ -141,7 +159,7 @@ def _change_points(motion: Motion) -> list[tuple[str, str]]:
     if free > 1:
         more = say("there it can also move with {count} freedoms, which no circuit shows", count=free)
         lines.append(("", more))
-    alone = [show(point.input) for point in motion.change_points if point.isolated]
+    alone = [show(point.input, whole=True) for point in motion.change_points if point.isolated]
     if alone:
         where = "  ".join(alone)
         lines.append(("isolated pose", say("input {where}: no motion leads out of it", where=where)))

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sevenbar.curves.curve import Peak
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.long_circuit import LongCircuit
+
+if TYPE_CHECKING:
+    from sevenbar.curves.curve import Peak
 
 
 @dataclass(frozen=True)

@@ -21,12 +21,11 @@ from sevenbar.reporting.force_words import (
     check_text,
     found_text,
     greatest,
-    number,
     open_facts,
     quantity,
     spin_facts,
 )
-from sevenbar.reporting.shown import rows_text
+from sevenbar.reporting.shown import number, rows_text
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 

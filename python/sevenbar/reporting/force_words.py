@@ -10,12 +10,13 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Peak
 from sevenbar.curves.timed_rows import shares_of
+from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body
-from sevenbar.forces.loading import Load, Loading, Spring
+from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking, shaking_along
 from sevenbar.forces.sizing import Bearing, Sizing
-from sevenbar.reporting.shown import Shown
+from sevenbar.reporting.shown import Shown, number
 from sevenbar.text.words import retold, say
 
 #: The moment of an idle spin below this part of the greatest moment in a joint is rounding.
@@ -36,19 +37,6 @@ NOTHING_ACTS = """nothing in it has a mass and nothing acts; write a body, a loa
   link = 2
   mass = 1.3
   solid = "rod\""""
-
-#: Digits of forces, torques and what follows from them.
-DIGITS = 4
-
-
-def number(value: float) -> str:
-    """A force or torque to the digits that matter, without a power of ten where it is not far from 1.
-
-    >>> number(12612.3), number(-0.58712), number(3.1e-7)
-    ('12610', '-0.5871', '3.1e-07')
-    """
-    short = f"{value + 0.0:.{DIGITS}g}"
-    return f"{float(short):.0f}" if 1e4 <= abs(value) < 1e7 else short
 
 
 class Places:

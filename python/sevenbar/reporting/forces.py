@@ -35,15 +35,14 @@ from sevenbar.reporting.force_words import (
     found_text,
     greatest,
     no_peak,
-    number,
     open_facts,
     shaking_facts,
     shaking_found,
     spin_facts,
     unbounded_facts,
 )
-from sevenbar.reporting.page import Facts, drive_text, number_table
-from sevenbar.reporting.shown import rows_text
+from sevenbar.reporting.page import Facts, drive_text, number_table, page
+from sevenbar.reporting.shown import number, rows_text
 from sevenbar.text.words import say
 
 if TYPE_CHECKING:
@@ -147,17 +146,14 @@ def text(found: CircuitForces) -> RenderableType:
     """The forces on a circuit as a page."""
     forces = found.forces
     facts = Facts()
-    for label, said in facts_of_forces(found):
-        strong = label == drive_label(forces)
-        facts.add(label, said, style="bold" if strong else "")
-    parts: list[RenderableType] = [Text(found.motion.linkage.heading, style="bold underline"), facts.grid]
+    facts.add_all(facts_of_forces(found), bold=[drive_label(forces)])
+    tables = []
     if found.balance is not None:
         # a reader of its own, which knows these pages
         from sevenbar.reporting.force_results import balance_facts
 
         facts.add(say("counterweights"), say("least squares of the shaking over the cycle"))
-        for label, said in balance_facts(found.balance):
-            facts.add(label, said)
+        facts.add_all(balance_facts(found.balance))
     if found.sizing is not None:
         planar = found.motion.linkage.is_planar
         head, rows = bearing_rows(forces, found.sizing, planar=planar)
@@ -166,19 +162,12 @@ def text(found: CircuitForces) -> RenderableType:
             without = say("; in plane: the force in the plane of motion, the whole is open")
         elif head[1] == say(KNOWN):
             without = say("; known: the force without the component that is open")
-        parts += [
-            Text(),
-            number_table(head, rows),
-            Text(
-                say(
-                    "peaks of what the link before puts on the link after; radial square to the joint's "
-                    "axis, axial along it, tilting moment square to it, turning about it"
-                )
-                + without,
-                style="dim",
-            ),
-        ]
-    return Group(*parts)
+        meaning = say(
+            "peaks of what the link before puts on the link after; radial square to the joint's "
+            "axis, axial along it, tilting moment square to it, turning about it"
+        )
+        tables.append(Group(number_table(head, rows), Text(meaning + without, style="dim")))
+    return page(found.motion.linkage.heading, facts, *tables)
 
 
 #: The head of the column of whole forces.

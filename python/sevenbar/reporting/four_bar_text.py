@@ -25,7 +25,11 @@ def grashof_text(bar: FourBar, unit: str) -> str:
     short, long = shown(bar.links[bar.shortest]), shown(bar.links[bar.longest])
     if bar.offset is not None:
         total = f"s + e - l = {short} + {shown(bar.offset)} - {long}"
-        kinds = {"Grashof": say("Grashof"), "non-Grashof": say("no joint turns fully")}
+        kinds = {
+            "Grashof": say("Grashof"),
+            "non-Grashof": say("no joint turns fully"),
+            "cannot close": say("the offset is longer than both links together, so the loop does not close"),
+        }
         kind = kinds.get(bar.grashof) or say(bar.grashof)
         kind = say("in line, {kind}", kind=kind) if bar.offset == 0 else say("offset, {kind}", kind=kind)
     else:
@@ -35,6 +39,10 @@ def grashof_text(bar: FourBar, unit: str) -> str:
             "crank-rocker": say("Grashof crank-rocker"),
             "double-crank": say("Grashof double-crank"),
             "double-rocker": say("Grashof double-rocker"),
+            "cannot close": say(
+                "the {link} is longer than the three others together, so the loop does not close",
+                link=retold(bar.longest),
+            ),
         }.get(bar.grashof) or say(bar.grashof)
     ends = "" if bar.kind == "spherical" else f" {unit}"
     sums = f"{total} = {shown(bar.excess)}{ends}"

@@ -87,8 +87,7 @@ def _(found: FreeMotion, **options: Any) -> Any:
 def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
     fall, places = found
     facts = Facts()
-    for label, text in free_facts(fall):
-        facts.add(label, text)
+    facts.add_all(free_facts(fall))
     parts: list[RenderableType] = [
         Text(say("free motion of {linkage}", linkage=fall.heading), style="bold"),
         facts.grid,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from io import StringIO
 
 from rich.box import SIMPLE_HEAD
@@ -26,6 +26,11 @@ class Facts:
     def add(self, label: str, text: str, style: str = "") -> None:
         """Adds a line, its label in the language that is spoken; without one it belongs to the line above."""
         self.grid.add_row(say(label) if label else "", Text(text, style=style))
+
+    def add_all(self, facts: Iterable[tuple[str, str]], *, bold: Collection[str] = ()) -> None:
+        """Adds a line for each label and text, those with some labels bold."""
+        for label, text in facts:
+            self.add(label, text, "bold" if label in bold else "")
 
 
 def drive_text(input: str, speed: float | None, unit: str, output: str = "", *, written: str = "") -> str:
@@ -69,6 +74,12 @@ def number_table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: 
     for row in rows:
         table.add_row(*map(Text, row))
     return table
+
+
+def page(title: str, facts: Facts, *parts: RenderableType) -> Group:
+    """A page: its title, its facts, and tables or other parts with a free line above each."""
+    free = (own for part in parts for own in (Text(), part))
+    return Group(Text(title, style="bold underline"), facts.grid, *free)
 
 
 def opening(kind: str, page: RenderableType) -> str:

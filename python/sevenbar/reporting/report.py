@@ -61,7 +61,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         >>> found["motion_type"], len(found["circuits"])
         ('crank-rocker', 2)
     """
-    linkage = motion.linkage
+    linkage, four_bar, mobility = motion.linkage, motion.four_bar, motion.mobility
     with_extents = ranges or not linkage.stops.is_empty
     report = {
         "format": 1,
@@ -76,7 +76,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
             "dimensions": dict(linkage.dimensions),
             "lengths": side_lengths(linkage),
             "planar": linkage.is_planar,
-            "four_bar": None if motion.four_bar is None else vars(motion.four_bar),
+            "four_bar": None if four_bar is None else vars(four_bar),
         },
         "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
         "drive": {
@@ -99,10 +99,10 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
             for p in motion.change_points
         ],
         "mobility": {
-            "gruebler": motion.mobility.gruebler,
-            "freedoms": motion.mobility.freedoms,
-            "rank": motion.mobility.rank,
-            "finite": motion.mobility.finite,
+            "gruebler": mobility.gruebler,
+            "freedoms": mobility.freedoms,
+            "rank": mobility.rank,
+            "finite": mobility.finite,
         },
         "completeness": motion.completeness,
         "how_found": how_found(motion),
@@ -176,8 +176,7 @@ def text(motion: Motion, *, ranges: bool = False) -> RenderableType:
     def parts(width: int) -> Iterator[RenderableType]:
         page = summary(motion, width, ranges=ranges)
         facts = Facts()
-        for name, fact in page.facts:
-            facts.add(name, fact, style="bold" if name == say("motion type") else "")
+        facts.add_all(page.facts, bold=[say("motion type")])
         yield Text(page.title, style="bold underline")
         yield facts.grid
         for sheet in page.sheets:
@@ -318,6 +317,7 @@ def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
         "completeness": modes.completeness,
         "open_by": modes.open_by.tolist(),
         "agree": modes.agree,
+        "on_curve": None if modes.on_curve is None else modes.on_curve.tolist(),
         "count": len(modes),
         "columns": [
             {"name": name, "kind": kind}
@@ -339,7 +339,7 @@ def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
                 "{count} assembly mode{s} at {joint} = {value}, {completeness}",
                 count=count or say("no"), s="s" * (count != 1), joint=linkage.columns[column],
                 value=value_text(linkage, column, modes.input),
-                completeness=completeness_text(modes.completeness),
+                completeness=completeness_text(modes.completeness, curve=modes.on_curve is not None),
             )
         )  # fmt: skip
         if modes.open_by.size:

@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.circuit_values import Extremes, Sensitivity, Trace
+from sevenbar.kinematics.circuits.circuit_values import Extremes, Trace
 from sevenbar.kinematics.circuits.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.circuits.modes import Modes, Output
 from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.circuits.sensitivity_values import Sensitivity
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.screw_axes import ScrewAxes
 from sevenbar.reporting.circuit_quantities import way_round
 from sevenbar.reporting.facts import (
-    COMPLETE,
     closure_error,
+    completeness_text,
     dimensions_text,
     facts_of,
     joints_text,
@@ -80,7 +81,7 @@ def _(modes: Modes) -> str:
             ("q", f"{modes.q.shape}: {', '.join(modes.columns)}"),
             ("status", rows_text(modes.status)),
             ("residual", worst),
-            ("completeness", f"{modes.completeness}: {COMPLETE[modes.completeness]}"),
+            ("completeness", completeness_text(modes.completeness, curve=modes.on_curve is not None)),
         ],
     )
 
@@ -92,6 +93,8 @@ def _(motion: Motion) -> str:
     for label, text in facts_of(motion):
         # a line without a name goes on with the one above
         kept = label in OF_MOTION if label else kept
+        # whether a four-bar can be put together at all is seen by its sum of links
+        kept = kept or (label == "Grashof" and not motion.circuits)
         if kept:
             facts.append((label, text))
         if label == "circuits":
@@ -267,11 +270,7 @@ def _figure(motion: Motion, kind: str, options: dict[str, Any]) -> Figure:
     """The figure of a motion that a function of `sevenbar.plot` draws."""
     from sevenbar.drawing import plot
 
-    if kind not in OF_A_MOTION:
-        raise RequestError(
-            f"kind: {shown(kind)} is not a figure of a motion; {suggestion(kind, OF_A_MOTION)}"
-            f"give {', '.join(OF_A_MOTION)}"
-        )
+    check_word("kind", kind, OF_A_MOTION, "a figure of a motion")
     figure: Figure = getattr(plot, kind)(motion, **options)
     return figure
 

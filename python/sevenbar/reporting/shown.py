@@ -10,6 +10,9 @@ from sevenbar.kinematics.loop.geometry import Loop
 #: Values below this share of what the linkage's size and its drive make are rounding.
 REST = 1e-12
 
+#: Digits of forces, torques and what follows from them.
+DIGITS = 4
+
 
 class Shown:
     """How a joint's value is written: an angle in degrees, a slide in the length unit."""
@@ -31,6 +34,16 @@ class Shown:
     def same(self, a: float, b: float) -> bool:
         """Whether two values are one place, to the digits that are shown."""
         return self(a, whole=True) == self(b, whole=True)
+
+
+def number(value: float) -> str:
+    """A force or torque to the digits that matter, without a power of ten where it is not far from 1.
+
+    >>> number(12612.3), number(-0.58712), number(3.1e-7)
+    ('12610', '-0.5871', '3.1e-07')
+    """
+    short = f"{value + 0.0:.{DIGITS}g}"
+    return f"{float(short):.0f}" if 1e4 <= abs(value) < 1e7 else short
 
 
 def value_text(linkage: Loop, column: int, value: float) -> str:

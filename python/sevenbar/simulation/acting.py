@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.forces.acting import Load, Spring, Three
 from sevenbar.forces.bodies import Body
-from sevenbar.forces.loading import Load, Spring, Three
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.dynamics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.loop.geometry import Loop

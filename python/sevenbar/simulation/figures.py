@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import input_label, page_figure, shown_value, slides
+from sevenbar.drawing.figure import headline, input_label, page_figure, shown_value, slides
 from sevenbar.drawing.names import quantity_label, short, shown_name
 from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, OTHER, styled
 from sevenbar.drawing.ticks import DegreeLocator
@@ -216,7 +216,7 @@ def _finish(figure: Figure, run: Simulation) -> None:
         linkage=short(motion.linkage.heading, 60), engine=run.record.engine, version=run.record.version,
         number=run.course.circuit.index, driven=driven, step=run.course.step,
     )  # fmt: skip
-    figure.suptitle(title)
+    headline(figure, title)
 
 
 def _keys(run: Simulation, colour: str = "") -> list[Line2D]:

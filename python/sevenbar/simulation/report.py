@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from rich.console import Console, Group, RenderableType
-from rich.text import Text
+from rich.console import Console, RenderableType
 
 from sevenbar.drawing.names import short
 from sevenbar.kinematics.loop.columns import joint_column, point_column
@@ -25,7 +24,7 @@ from sevenbar.reporting.files import (
     text_file,
     without_nan,
 )
-from sevenbar.reporting.page import Facts, drive_text, number_table, opening
+from sevenbar.reporting.page import Facts, drive_text, number_table, opening, page
 from sevenbar.simulation.agreement import Difference, Simulation
 from sevenbar.text.printing import text_of
 
@@ -88,7 +87,7 @@ def text(run: Simulation) -> RenderableType:
     )
     slide = linkage.unit_of(motion.input) != "rad"
     table = number_table(heads, (_cells(found, slide, unit) for found in run.differences))
-    return Group(Text(linkage.heading, style="bold underline"), facts.grid, Text(), table)
+    return page(linkage.heading, facts, table)
 
 
 def _forces_text(run: Simulation) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Integers
+from sevenbar.arrays import Floats, Integers, whole_number
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.numbers.dimensions import Dimension, read_at
 from sevenbar.text.ranges import split_grid, split_list, split_name, split_range
@@ -154,13 +154,6 @@ def _value(dimension: Dimension, given: object) -> float:
     if not math.isfinite(value):
         raise RequestError(f"{dimension.name}: {shown(given)} is not a finite number; give a finite one")
     return value
-
-
-def whole_number(name: str, value: object, low: int, high: int, what: str, hint: str = "") -> int:
-    """A whole number within bounds, or `RequestError` saying that it is not `what`."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not low <= value <= high:
-        raise RequestError(f"{name}: {shown(value)} is not {what}; give {low} to {high}{hint}")
-    return int(value)
 
 
 def axis_from_text(text: str) -> tuple[str, Grid | Span | list[str]]:

@@ -12,7 +12,7 @@ from importlib import import_module
 from itertools import islice
 from typing import Any, NoReturn, Protocol
 
-from sevenbar.errors import EngineError, MissingExtraError, RequestError, SevenbarError, shown
+from sevenbar.errors import EngineError, RequestError, SevenbarError, of_extra, shown
 from sevenbar.sweep.plan import maker
 
 #: Time [s] in which a scheduler must answer.
@@ -45,13 +45,9 @@ class Cluster:
         Raises `MissingExtraError` without dask, `RequestError` for an address where none answers, and for
         measures that cannot be sent.
         """
-        try:
+        with of_extra("sweep", "a cluster needs dask"):
             distributed: Any = import_module("distributed")
             pickle: Any = import_module("distributed.protocol.pickle")
-        except ImportError:
-            raise MissingExtraError(
-                "a cluster needs dask; install it with: pip install 'sevenbar[sweep]'"
-            ) from None
         try:
             pickle.dumps(plan)
         except Exception as error:

@@ -7,14 +7,13 @@ its name exists, whatever moment the run was killed at, and it carries the mark 
 from __future__ import annotations
 
 import json
-import os
 import re
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from sevenbar.errors import OutputError, shown
+from sevenbar.errors import OutputError
+from sevenbar.sweep.held_folder import HeldFolder, other_maker
 from sevenbar.sweep.plan import FORMAT, SweepPlan
 from sevenbar.sweep.rows import MARK
 
@@ -25,8 +24,6 @@ DESCRIPTION = "sweep.json"
 DIGITS = 6
 
 _PART = re.compile(rf"part-(\d{{{DIGITS},}})\.parquet")
-
-_ASIDE = re.compile(r"\.(part-\d+\.parquet|sweep\.json)\.aside")
 
 
 def part_name(part: int) -> str:
@@ -62,8 +59,10 @@ def is_finished(folder: Path) -> bool:
     return bool(len(parts_there(folder)) == read_description(folder)["parts"])
 
 
-class PartsFolder:
+class PartsFolder(HeldFolder):
     """A folder that a sweep fills; held against a second run as long as it is open."""
+
+    description, what = DESCRIPTION, "sweep"
 
     def __init__(
         self, path: Path, plan: SweepPlan, makers: Sequence[Mapping[str, str]], *, resume: bool, mixed: bool
@@ -73,43 +72,18 @@ class PartsFolder:
         `makers` are what will make parts. Raises `OutputError` for a folder of something else, for one with
         parts where `resume` is not given, and for parts of another maker where `mixed` is not.
         """
-        self.path, self._plan = path, plan
-        self._lock: int | None = None
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-            names = [file.name for file in path.iterdir()]
-            self._lock = hold_folder(path)
-            if DESCRIPTION in names:
+        super().__init__(path, plan)
+        self._sweep, self._done = plan, set[int]()
+        with self._opened() as described:
+            if described:
                 self._take_up(makers, resume=resume, mixed=mixed)
             else:
-                strange = [name for name in names if not _ASIDE.fullmatch(name)]
-                if strange:
-                    raise OutputError(
-                        f"{path}: holds {shown(min(strange))} and no {DESCRIPTION}; "
-                        "give an empty folder or a new one"
-                    )
-                self._done = set[int]()
-                self._describe(list(makers))
-            for name in names:
-                if _ASIDE.fullmatch(name):
-                    (path / name).unlink(missing_ok=True)
-        except OSError as error:
-            self.close()
-            raise self._unwritable(error) from None
-        except BaseException:
-            self.close()
-            raise
+                self._describe(plan.description(list(makers)))
 
     @property
     def done(self) -> frozenset[int]:
         """The parts that are there."""
         return frozenset(self._done)
-
-    def close(self) -> None:
-        """Lets another run have the folder."""
-        if self._lock is not None:
-            os.close(self._lock)
-            self._lock = None
 
     def keep(self, part: int, content: bytes) -> None:
         """Puts a part into its place; raises `OutputError` where it cannot, and leaves nothing half."""
@@ -123,45 +97,14 @@ class PartsFolder:
         """Adds one more maker to the description."""
         makers = read_description(self.path)["made_by"]
         if dict(maker) not in makers:
-            self._describe([*makers, dict(maker)])
-
-    def _describe(self, makers: Sequence[Mapping[str, str]]) -> None:
-        description = self._plan.description(makers)
-        self._put(DESCRIPTION, (json.dumps(description, indent=1, ensure_ascii=False) + "\n").encode())
-
-    def _put(self, name: str, content: bytes) -> None:
-        aside = self.path / f".{name}.aside"
-        try:
-            with aside.open("wb") as file:
-                file.write(content)
-                file.flush()
-                os.fsync(file.fileno())
-            aside.replace(self.path / name)
-            if self._lock is not None:
-                # the new name itself
-                os.fsync(self._lock)
-        except BaseException:
-            with suppress(OSError):
-                aside.unlink(missing_ok=True)
-            raise
+            self._describe(self._sweep.description([*makers, dict(maker)]))
 
     def _take_up(self, makers: Sequence[Mapping[str, str]], *, resume: bool, mixed: bool) -> None:
         description = read_description(self.path)
-        wanted = self._plan.request()
-        there = {key: description.get(key) for key in wanted}
-        unlike = differences(there, wanted)
-        if unlike:
-            more = f", and {len(unlike) - 1} more differ" if len(unlike) > 1 else ""
-            raise OutputError(
-                f"{self.path}: holds another sweep: {unlike[0]}{more}; "
-                "give another folder, or the options of that sweep"
-            )
+        self._refuse_another({key: description.get(key) for key in self._plan.request()})
         done, total = parts_there(self.path), self._plan.parts
-        if len(done) < total and done and not resume:
-            raise OutputError(
-                f"{self.path}: {len(done)} of {total} parts are there; "
-                "give --resume to go on, or another folder"
-            )
+        if not resume:
+            self._refuse_unfinished(len(done))
         self._check_marks(done)
         self._done = set(done)
         strangers = [dict(maker) for maker in makers if dict(maker) not in description["made_by"]]
@@ -169,13 +112,14 @@ class PartsFolder:
             return
         if done and not mixed:
             raise OutputError(f"{self.path}: {other_maker(description['made_by'][0], strangers[0])}")
-        self._describe([*(description["made_by"] if done else ()), *strangers])
+        before = description["made_by"] if done else ()
+        self._describe(self._sweep.description([*before, *strangers]))
 
     def _check_marks(self, done: Sequence[int]) -> None:
         import pyarrow as pa
         import pyarrow.parquet as pq
 
-        mark = self._plan.digest().encode()
+        mark = self._sweep.digest().encode()
         for part in done:
             path = self.path / part_name(part)
             try:
@@ -184,57 +128,3 @@ class PartsFolder:
                 own = False
             if not own:
                 raise OutputError(f"{path}: is no part of this sweep; move it away and give --resume")
-
-    def _unwritable(self, error: OSError) -> OutputError:
-        reason = (error.strerror or str(error)).lower()
-        done = getattr(self, "_done", ())
-        kept = ""
-        if done:
-            kept = f"; {len(done)} of {self._plan.parts} parts are kept, --resume goes on with them"
-        return OutputError(
-            f"{self.path}: cannot be written: {reason}; make room or give a folder that can be written{kept}"
-        )
-
-
-def hold_folder(path: Path) -> int | None:
-    """Holds a folder against a second run, until what is given is closed; `None` where a system has no locks.
-
-    Raises `OutputError` where another run holds it.
-    """
-    try:
-        import fcntl
-    except ImportError:  # a system without: two runs at once would only do the work twice
-        return None
-    lock = os.open(path, os.O_RDONLY)
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(lock)
-        raise OutputError(
-            f"{path}: another run fills this folder; wait for it, end it, or give another folder"
-        ) from None
-    except OSError:
-        # some network file systems have no locks
-        pass
-    return lock
-
-
-def other_maker(first: Mapping[str, str], other: Mapping[str, str]) -> str:
-    """That two makers may differ in the last bits, naming in what they differ."""
-    what = [f"{key} {first.get(key)} and {value}" for key, value in other.items() if first.get(key) != value]
-    return (
-        f"its parts were made by {what[0] if what else 'another machine'}, whose last bits may differ; "
-        "go on where they were made, or give --mixed to have both"
-    )
-
-
-def differences(there: Any, here: Any, place: str = "") -> list[str]:
-    """Where two values of JSON differ, in words."""
-    if isinstance(there, dict) and isinstance(here, dict):
-        keys = [*here, *(key for key in there if key not in here)]
-        found = (differences(there.get(key), here.get(key), f"{place}.{key}".lstrip(".")) for key in keys)
-        return [one for some in found for one in some]
-    if isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
-        pairs = enumerate(zip(there, here, strict=True), 1)
-        return [one for i, pair in pairs for one in differences(*pair, f"{place}[{i}]")]
-    return [] if there == here else [f"{place} is {shown(there)} there and {shown(here)} here"]

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar import __version__
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import RequestError
@@ -21,7 +21,7 @@ from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
 from sevenbar.kinematics.solvers.batches import simd_level
-from sevenbar.sweep.axes import Given, whole_number
+from sevenbar.sweep.axes import Given
 from sevenbar.sweep.space import Space
 
 #: The format of a sweep's description.

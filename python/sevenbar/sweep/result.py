@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sevenbar.errors import MissingExtraError, OutputError, RequestError
+from sevenbar.errors import OutputError, RequestError, of_extra
 from sevenbar.sweep.block import OK
 from sevenbar.sweep.parts import part_name, parts_there, read_description
 from sevenbar.sweep.rows import need_pyarrow
@@ -106,12 +106,8 @@ class Sweep(Printed):
 
     def frame(self) -> pd.DataFrame:
         """All rows in one pandas table (extra `[frame]`); as `table` for the rest."""
-        try:
+        with of_extra("frame", "frame needs pandas"):
             import pandas  # noqa: F401
-        except ImportError:
-            raise MissingExtraError(
-                "frame needs pandas; install it with: pip install 'sevenbar[frame]'"
-            ) from None
         frame: pd.DataFrame = self.table().to_pandas()
         return frame
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError, RequestError, shown
+from sevenbar.errors import RequestError, of_extra, shown
 from sevenbar.sweep.batches import batched
 from sevenbar.sweep.block import NO_CIRCUIT, Block, limit_names, per_circuit
 from sevenbar.sweep.ordinary import analysed
@@ -32,12 +32,8 @@ PACKING: dict[str, Any] = {
 
 def need_pyarrow() -> None:
     """Raises `MissingExtraError` where Parquet cannot be written."""
-    try:
+    with of_extra("sweep", "a sweep's tables need pyarrow"):
         import pyarrow.parquet  # noqa: F401
-    except ImportError:
-        raise MissingExtraError(
-            "a sweep's tables need pyarrow; install it with: pip install 'sevenbar[sweep]'"
-        ) from None
 
 
 def schema(plan: SweepPlan) -> pa.Schema:

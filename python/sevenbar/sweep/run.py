@@ -21,13 +21,15 @@ from itertools import islice
 from multiprocessing import get_context, parent_process
 from pathlib import Path
 
+from sevenbar.arrays import whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.errors import EngineError, RequestError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import Measure
-from sevenbar.sweep.axes import Given, whole_number
-from sevenbar.sweep.parts import PartsFolder, other_maker
+from sevenbar.sweep.axes import Given
+from sevenbar.sweep.held_folder import other_maker, refuse_unlike
+from sevenbar.sweep.parts import PartsFolder
 from sevenbar.sweep.plan import SweepPlan, maker
 from sevenbar.sweep.result import Sweep
 from sevenbar.sweep.rows import need_pyarrow, part_bytes, schema
@@ -152,9 +154,7 @@ def _filled(
     progress: Progress | None,
 ) -> Sweep:
     """The sweep with all its parts, the missing ones made."""
-    unlike = [one for one in makers if one != makers[0]]
-    if unlike and not mixed:
-        raise RequestError(f"scheduler: {other_maker(makers[0], unlike[0])}")
+    refuse_unlike(makers, mixed=mixed)
     folder = None if out is None else PartsFolder(Path(out), plan, makers, resume=resume, mixed=mixed)
     contents: dict[int, bytes] = {}
     try:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError
+from sevenbar.errors import of_extra
 
 #: Words of 64 bits that a step of Philox's counter gives.
 WORDS_A_STEP = 4
@@ -50,12 +50,8 @@ def sobol_points(seed: int, axes: int, first: int, stop: int) -> Floats:
 
     Raises `MissingExtraError` without scipy. Source: Joe and Kuo's direction numbers, Owen's scrambling.
     """
-    try:
+    with of_extra("sweep", "Sobol samples need scipy"):
         from scipy.stats import qmc
-    except ImportError:
-        raise MissingExtraError(
-            "Sobol samples need scipy; install it with: pip install 'sevenbar[sweep]'"
-        ) from None
     engine = _ENGINE.engine
     if engine is None or _ENGINE.key != (seed, axes) or engine.num_generated > first:
         engine = qmc.Sobol(axes, scramble=True, seed=np.random.default_rng(seed))

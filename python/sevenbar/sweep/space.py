@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, whole_number
 from sevenbar.description.draft import Draft
-from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.sweep.axes import Given, SweepAxis, axis_of, whole_number
+from sevenbar.errors import RequestError, check_word, shown
+from sevenbar.sweep.axes import Given, SweepAxis, axis_of
 from sevenbar.sweep.sampling import MOST_SOBOL, random_points, sobol_points
 
 #: How linkages are chosen.
@@ -68,11 +68,7 @@ class Space:
         spans = [axis for axis in found if axis.count is None]
         if method is None:
             method = "sobol" if spans else "grid"
-        if method not in METHODS:
-            raise RequestError(
-                f"method: {shown(method)} is not a way to choose linkages; "
-                f"{suggestion(str(method), METHODS)}give one of {', '.join(METHODS)}"
-            )
+        check_word("method", method, METHODS, "a way to choose linkages")
         if method == "grid":
             return _grid(found, spans, count, seed)
         number = whole_number("seed", 0 if seed is None else seed, 0, MOST_SEED, "a seed")

@@ -14,6 +14,7 @@ from io import StringIO
 from typing import Any
 
 from sevenbar.errors import shown
+from sevenbar.text.listed import listed
 from sevenbar.text.table import COMMA_NUMBER, NAME_AND_UNIT, NO_NUMBER, NUMBER, name_and_unit
 from sevenbar.text.units import is_unit
 from sevenbar.text.workbook import WorkbookSheet, cell_name
@@ -85,14 +86,6 @@ def grid_of_frame(frame: Any) -> CellTable:
     rows = list(zip(*columns, strict=True))
     none = ("",) * len(names)
     return CellTable(tuple(names), none, tuple(range(1, len(rows) + 1)), tuple(rows), word="data row")
-
-
-def listed(values: Any) -> Any:
-    """A column of a data frame, an array or a tuple as a list; others as they are."""
-    for way in ("tolist", "to_list"):
-        if hasattr(values, way):
-            return getattr(values, way)()
-    return list(values) if isinstance(values, tuple) else values
 
 
 def _of_python(value: object) -> str:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal, get_args
+from typing import Literal, NamedTuple, get_args
 
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.amounts import value_of
@@ -29,8 +28,7 @@ QuantityKind = Literal[
 QUANTITY_KINDS: tuple[str, ...] = get_args(QuantityKind)
 
 
-@dataclass(frozen=True)
-class _Kind:
+class _Kind(NamedTuple):
     """What it is in words, the unit of a number alone, and another example."""
 
     what: str
@@ -51,8 +49,7 @@ _KINDS: Mapping[QuantityKind, _Kind] = {
 }
 
 
-@dataclass(frozen=True)
-class _Unit:
+class _Unit(NamedTuple):
     """Its size in kg, m, s, rad, and the powers of these."""
 
     size: Fraction

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from decimal import Decimal
 
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.amounts import lacks_unit
@@ -15,6 +16,9 @@ from sevenbar.text.units import ANGLES, LENGTHS, amount, sizes_of, split_quantit
 
 #: A unit that ends a value: after a number or a bracket.
 _UNIT_AT_END = re.compile(rf"(?<=[\d.)\s])({'|'.join((*LENGTHS, *ANGLES))})\s*$")
+
+#: A count of a grid: 51, 1e3.
+_COUNT = re.compile(r"[0-9]{1,20}(?:[eE][0-9]{1,2})?")
 
 #: Three numbers: a place, a direction.
 Place = tuple[float, float, float]
@@ -60,13 +64,13 @@ def split_range(text: str) -> tuple[str, str] | None:
 def split_grid(text: str) -> tuple[str, str, int] | None:
     """The two ends of LOW:HIGH:COUNT, and the count; `None` for a text of another form.
 
-    >>> split_grid("20:30cm:51")
-    ('20cm', '30cm', 51)
+    >>> split_grid("20:30cm:51"), split_grid("0:1:1e3")
+    (('20cm', '30cm', 51), ('0', '1', 1000))
     """
     parts = _parts(text)
-    if len(parts) != 3 or not parts[2].isdecimal():
+    if len(parts) != 3 or _COUNT.fullmatch(parts[2]) is None:
         return None
-    return *with_common_unit(parts[0], parts[1]), int(parts[2])
+    return *with_common_unit(parts[0], parts[1]), int(Decimal(parts[2]))
 
 
 def with_common_unit(low: str, high: str) -> tuple[str, str]:

@@ -1,10 +1,10 @@
-"""A text table of numbers as other programs write it: CSV, MATLAB's and ADAMS's; cells keep their lines.
+"""Reads text tables of numbers as CSV writers, MATLAB and ADAMS write them, with each row's line number.
 
-What is taken: cells parted by commas, semicolons, tabs or blanks; a decimal point, or a decimal comma where
-cells are not parted by commas; any lines of text before the first row of numbers, the last of which are the
-header and perhaps a line of units; lines that begin with # or % anywhere; no header at all, as MATLAB's
-`save -ascii` and `writematrix` leave it. Like ADAMS's own reader it takes a line that does not begin with a
-number, before the rows, for text. `law_file` and `measuring.measured` decide what the columns mean.
+Accepted: cells separated by commas, semicolons, tabs or blanks; a decimal point, or a decimal comma where
+commas do not separate cells; any lines of text before the first row of numbers, the last of which are the
+header and perhaps a line of units; remarks (lines that begin with # or %) anywhere; no header at all, as
+MATLAB's `save -ascii` and `writematrix` write. Like ADAMS's own reader, it treats a line before the rows as
+text if it does not begin with a number. `law_file` and `measuring.measured` decide what the columns mean.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from sevenbar.errors import TableError, shown
 from sevenbar.text.units import MeasuredUnit, is_unit, measured_unit
 from sevenbar.text.workbook import ZIP, first_sheet_text, refuse_old
 
-#: A table of a million rows has some 50 MB; a larger file [bytes] is a mistake of the name.
+#: Largest file [bytes]: a table of a million rows has some 50 MB, so a larger one is the wrong file.
 LARGEST_FILE = 200_000_000
 
-#: A row of a table has some dozen cells; a longer line [characters] is something else.
+#: Longest line [characters]: a row has some dozen cells, so a longer line is no row of a table.
 LONGEST_LINE = 100_000
 
-#: How many lines a message names.
+#: Most lines that a message lists.
 MOST_NAMED = 3
 
-#: What programs write where there is no number.
+#: What programs write for a missing number.
 NO_NUMBER = frozenset(
     {"", "-", "nan", "+nan", "-nan", "na", "n/a", "#n/a", "null", "none", "inf", "-inf", "+inf"}
 )
 
-#: A line of these alone is an empty one, as spreadsheets leave them; \x1a ends files of DOS.
+#: A line of only these characters counts as empty; spreadsheets leave such lines, and \x1a ends files of DOS.
 NOTHING = " \t\r\f\x1a,;"
 
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
@@ -46,13 +46,14 @@ NAME_AND_UNIT = re.compile(r'"[^"]*"|\S+(?:[ \t]?(?:\[[^\]]*\]|\([^)]*\)))?')
 
 @dataclass(frozen=True)
 class TextTable:
-    """Text cells: `names` and `units` of the columns ("" where not given), rows with their lines."""
+    """A table as text cells: `names` and `units` of the columns ("" where not given), and rows of cells."""
 
     source: str
     names: tuple[str, ...]
     units: tuple[str, ...]
     #: Line of the header, counted from 1; 0 where there is none.
     header_line: int
+    #: Line of each row, counted from 1.
     lines: tuple[int, ...]
     rows: tuple[tuple[str, ...], ...]
     decimal_comma: bool
@@ -86,16 +87,16 @@ class TextTable:
 
     @property
     def plain_names(self) -> list[str]:
-        """The columns' names for comparing, without their units."""
+        """The columns' names for comparisons, without units."""
         return [plain_name(self.name_and_unit(column)[0]) for column in range(len(self.names))]
 
     def column(self, *names: str) -> int | None:
-        """The column that has the first of these names that one has; `None` where none has any."""
+        """The column with the first of these names that the table has; `None` if it has none of them."""
         own = self.plain_names
         return next((own.index(plain_name(name)) for name in names if plain_name(name) in own), None)
 
     def unit(self, column: int) -> MeasuredUnit | None:
-        """What the unit of a column means; `None` where it has none, or one that is not known."""
+        """The unit of a column; `None` where it has none, or an unknown one."""
         return measured_unit(self.name_and_unit(column)[1])
 
     def size(
@@ -109,10 +110,11 @@ class TextTable:
         asked: str = "",
         option: str = "",
     ) -> float:
-        """What one of a column's unit is in s, rad or `length_unit`, as often by time.
+        """The factor from a column's unit to s, rad or `length_unit` (rates: by s, s^2 ..).
 
-        `sort` is the kind and the order that the unit must have, `what` and `example` say so in messages;
-        `asked` is the unit of an `option` for it. Raises `TableError` where none is given, or another.
+        `sort` is the kind and the order of time derivative that the unit must have; `what` and `example` name
+        it in messages. `asked` is a unit that an `option` gives instead of the header. Raises `TableError`
+        where there is no unit, or one of another sort.
         """
         name, written = self.name_and_unit(column)
         if written and asked and measured_unit(written) != measured_unit(asked):
@@ -127,8 +129,14 @@ class TextTable:
         return unit_size(where, written or asked, sort, length_unit, what=what, example=example)
 
     def numbers(self, column: int) -> npt.NDArray[np.float64]:
-        """The numbers of a column (rows,); NaN where it holds none. Raises `TableError` for other text."""
+        """The numbers of a column (rows,), NaN where one is missing; `TableError` for other text."""
         return np.array([self._number(row, column) for row in range(len(self.rows))])
+
+    def sized(
+        self, column: int, sort: tuple[str, int], length_unit: str, *, what: str, example: str
+    ) -> npt.NDArray[np.float64]:
+        """The numbers of a column (rows,) in s, rad or `length_unit`, as `size` has it."""
+        return self.numbers(column) * self.size(column, sort, length_unit, what=what, example=example)
 
     def _number(self, row: int, column: int) -> float:
         cell = self.rows[row][column]
@@ -177,7 +185,7 @@ class TextTable:
 def unit_size(
     where: str, unit: str, sort: tuple[str, int], length_unit: str, *, what: str, example: str
 ) -> float:
-    """What a unit is in s, rad or `length_unit`; `TableError` where it is not of the `sort` of `what`."""
+    """The factor from a unit to s, rad or `length_unit`; `TableError` if it is not a unit of this `sort`."""
     found = measured_unit(unit)
     if found is None or (found.kind, found.order) != sort:
         fault = "known here" if found is None else f"of the {what}"
@@ -186,7 +194,7 @@ def unit_size(
 
 
 def plain_name(name: str) -> str:
-    """A column's name for comparing: small letters, words parted by blanks.
+    """A column's name for comparisons: lower case, words separated by single blanks.
 
     >>> plain_name("Rocker_velocity")
     'rocker velocity'
@@ -215,7 +223,7 @@ def name_and_unit(text: str) -> tuple[str, str]:
 
 
 def number(cell: str, *, decimal_comma: bool = False) -> float | None:
-    """The number that a cell holds, NaN for one of the words for none, `None` for other text."""
+    """The number in a cell; NaN for one of `NO_NUMBER`, `None` for any other text."""
     if cell.lower() in NO_NUMBER:
         return float("nan")
     text = cell.replace(",", ".") if decimal_comma else cell
@@ -225,15 +233,16 @@ def number(cell: str, *, decimal_comma: bool = False) -> float | None:
 
 
 def read_text(path: Path, of: str) -> str:
-    """The text of a file in UTF-8, UTF-16 with its mark, or Windows-1252: a table `of` what messages say.
+    """The text of a file in UTF-8, UTF-16 with its byte order mark, or Windows-1252.
 
-    Of an Excel workbook it is the first sheet that is not empty, with tabs between the cells.
+    Messages call it a table `of`; an Excel workbook gives its first sheet that is not
+    empty, with tabs between the cells.
     """
     return text_of_bytes(read_bytes(path, of), str(path))
 
 
 def read_bytes(path: Path, of: str) -> bytes:
-    """The content of a file that may be a table `of` what messages say."""
+    """The content of a file, as bytes; `TableError` if it is missing, empty or too large for a table."""
     try:
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
@@ -274,7 +283,7 @@ def text_of_bytes(content: bytes, path: str) -> str:
 
 
 def read_table(path: Path, of: str) -> TextTable:
-    """The table of a file, `of` what messages say; `TableError` with the line where it is none."""
+    """The table in a file; `TableError` with the line where it is not one. Messages call it a table `of`."""
     source = str(path)
     lines = read_text(path, of).splitlines()
     for i, line in enumerate(lines, 1):
@@ -319,14 +328,14 @@ def _begins_with_number(line: str) -> bool:
 
 
 def _has_gap(line: str) -> bool:
-    """Whether a line is a row whose first cells hold no number: no other text, and a number somewhere."""
+    """Whether a line is a row with missing numbers: at least one number, and otherwise only `NO_NUMBER`."""
     words = [cell.strip(' "') for cell in re.split(r"[\t;,]", line)]
     numbers = [word for word in words if NUMBER.fullmatch(word)]
     return bool(numbers) and all(word in numbers or word.lower() in NO_NUMBER for word in words)
 
 
 def _delimiter(line: str) -> str:
-    """What parts the cells of a row of numbers; "" for blanks."""
+    """The character that separates the cells of a row of numbers; "" for blanks."""
     for delimiter in ("\t", ";"):
         if delimiter in line:
             return delimiter
@@ -337,7 +346,7 @@ def _delimiter(line: str) -> str:
 
 
 def _decimal_comma(rows: Sequence[Sequence[str]]) -> bool:
-    """Whether decimals have commas, by the first row that has decimals: 0;0 may precede 0,1;0,5."""
+    """Whether decimals have commas, judged by the first row with decimals, since 0;0 may precede 0,1;0,5."""
     for row in rows:
         point = any("." in cell and NUMBER.fullmatch(cell) for cell in row)
         comma = any(COMMA_NUMBER.fullmatch(cell) for cell in row)
@@ -358,7 +367,7 @@ def _header(
     """Names and units of the columns, and the line of the names, from the text before the rows."""
     none = ("",) * width
     units = none
-    # a remark may be the header, as of MATLAB's tables, where no plain line is
+    # a remark is the header only if no plain line is, as in MATLAB's tables
     for i in sorted(range(len(before), 0, -1), key=lambda i: _is_remark(before[i - 1])):
         line = before[i - 1].strip().lstrip("#%").strip()
         cells = _header_cells(line, delimiter, width)

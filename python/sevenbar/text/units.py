@@ -140,15 +140,14 @@ def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str)
             speed = float(value)
         except OverflowError:
             speed = math.inf
+    if SLOWEST <= abs(speed) <= FASTEST:
+        return speed
     first = example.split(" or ")[0]
     if speed == 0:
         raise RequestError(f"{shown(value)} moves nothing; give a finite speed other than 0, as in {first}")
-    if not SLOWEST <= abs(speed) <= FASTEST:
-        raise RequestError(
-            f"{shown(value)} is out of range; give a speed of {SLOWEST:g} to {FASTEST:g} in size, "
-            f"as in {first}"
-        )
-    return speed
+    raise RequestError(
+        f"{shown(value)} is out of range; give a speed of {SLOWEST:g} to {FASTEST:g} in size, as in {first}"
+    )
 
 
 def _no_such_speed(value: str, unit: str, sizes: Mapping[str, float], motion: str, hint: str) -> str:

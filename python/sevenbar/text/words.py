@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 
 from sevenbar.errors import RequestError, shown, suggestion
 
@@ -94,8 +94,7 @@ def catalogue(code: str) -> Mapping[str, str]:
 def _parts(code: str) -> Mapping[str, Mapping[str, str]]:
     if code == "en":
         return {}
-    text = files("sevenbar.text").joinpath(f"words_{code}.toml").read_text(encoding="utf-8")
-    return tomllib.loads(text)
+    return tomllib.loads(Path(__file__).with_name(f"words_{code}.toml").read_text(encoding="utf-8"))
 
 
 @cache

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
 
-from sevenbar.errors import MissingExtraError, TableError, shown
+from sevenbar.errors import TableError, of_extra, shown
 
 #: How a file of this kind begins: a workbook is a zip archive, as LibreOffice's and others are.
 ZIP = b"PK\x03\x04"
@@ -72,13 +72,9 @@ def first_sheet_text(content: bytes, source: str) -> str:
 
 
 def _open(content: bytes, source: str, *, data_only: bool) -> Any:
-    try:
+    needs = f"{source}: an Excel workbook needs openpyxl"
+    with of_extra("excel", needs, ", or export the table as CSV"):
         import openpyxl
-    except ImportError:
-        raise MissingExtraError(
-            f"{source}: an Excel workbook needs openpyxl; install it with: pip install 'sevenbar[excel]', or "
-            "export the table as CSV"
-        ) from None
     import warnings
 
     try:

@@ -202,7 +202,7 @@ fn special_loops_have_their_solutions_from_starts_of_their_class_and_from_genera
             let (a, b) = (special.at(0.0).modes, general.at(0.0).modes);
             assert_eq!(a.len(), b.len(), "{parallel:?} {meeting:?}");
             assert!(a.iter().zip(&b).all(|(a, b)| same(&chain, a, b)));
-            let once = special.once(0.0).modes;
+            let once = special.once(0.0).0.modes;
             assert_eq!(once.len(), a.len());
         }
     }

@@ -22,7 +22,7 @@ pub struct MotionMeasures {
     pub circuits: Vec<CircuitMeasures>,
 }
 
-/// What the motion of each linkage comes to, from M, N, L1, L2, L3, D of the paper's square axes, the input of each
+/// The measures of each linkage's motion, from M, N, L1, L2, L3, D of the paper's square axes, the input of each
 /// at its speed.
 ///
 /// # Errors

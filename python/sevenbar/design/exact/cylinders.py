@@ -105,10 +105,8 @@ def rccc_poses(
 def _refuse_special(task: Displacements) -> None:
     """`RequestError` for poses whose rotations have one axis, or that leave a point where it is."""
     refuse_one_axis(task.turns, "poses")
-    sides, right = np.concatenate(np.eye(3) - task.turns), np.concatenate(task.shifts)
-    centre = np.linalg.lstsq(sides, right, rcond=None)[0]
-    if np.abs(sides @ centre - right).max() < NOTHING:
-        place = place_text(centre * task.reach + task.origin, task.reach)
+    if task.centre is not None:
+        place = place_text(task.centre, task.reach)
         raise RequestError(
             f"poses: all are turns about one point, {place}, which spherical linkages "
             "take: give their rotations to spherical_orientations"

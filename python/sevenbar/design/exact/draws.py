@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, whole_number
 from sevenbar.design.exact.bilinear import on_cubic, partner
 from sevenbar.design.extra import need_scipy
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError
 
 #: A pair of points (a, b), both (3,), that bilinear forms make zero.
 Pair = tuple[Floats, Floats]
@@ -26,12 +26,28 @@ def directions(samples: int, size: int, seed: int) -> Floats:
     from scipy.special import ndtri
     from scipy.stats import qmc
 
-    if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or not 1 <= samples <= MOST:
-        raise RequestError(f"samples: {shown(samples)} is no number of members; give 1 to {MOST}")
+    samples = whole_number("samples", samples, 1, MOST, "a number of members")
     # a sequence is even in powers of two only
-    draws = qmc.Sobol(size, seed=seed).random_base2(max(int(samples) - 1, 1).bit_length())[:samples]
+    draws = qmc.Sobol(size, seed=seed).random_base2(max(samples - 1, 1).bit_length())[:samples]
     found = ndtri(np.clip(draws, 1e-9, 1 - 1e-9))
     return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
+
+
+def family(
+    forms: Floats, given: Floats | None, samples: int, seed: int, words: tuple[str, str, str]
+) -> tuple[list[Pair], str]:
+    """Pairs of a family, whose b are `given` (k, 3) or drawn, and how they were found.
+
+    `words` are the name of a point, of several, and of the curve that three forms leave them.
+    """
+    one, many, curve = words
+    if len(forms) == 3:
+        how = f"moving {many} on their {curve}, a cubic, drawn with seed {seed}"
+        return on_curve(forms, samples, seed), how
+    how = f"each moving {one} has one fixed {one}"
+    if given is not None:
+        return anywhere(forms, given), how
+    return anywhere(forms, directions(samples, 3, seed)), f"{how}; seed {seed}"
 
 
 def on_curve(forms: Floats, samples: int, seed: int) -> list[Pair]:

@@ -24,7 +24,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, finite_number
+from sevenbar.arrays import Floats, finite_array, finite_number, positive_length
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Claim
 from sevenbar.design.closure import draft_of
@@ -32,12 +32,13 @@ from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers, judged
 from sevenbar.design.exact.bilinear import cubic_roots
 from sevenbar.design.exact.closures import SkewRssr, designed, products, rssr_of
 from sevenbar.design.exact.draws import directions
+from sevenbar.design.exact.dyads import plain
 from sevenbar.design.synthesis.function.precision import null_angles, reflected
 from sevenbar.design.wish import FEWEST, wish_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
 
-#: Coefficients of a closure: with free zeros, with the zeros given, and with zeros and axes given.
-FREE, ZEROS_GIVEN, ALL_GIVEN = 9, 7, 6
+#: Coefficients of a closure.
+COEFFICIENTS = 9
 
 #: Singular value of the pairs' products, relative to the greatest, below which pairs depend on each other.
 RANK = 1e-12
@@ -102,9 +103,7 @@ def function_pairs(
         )
     if np.ptp(b) < STILL:
         raise RequestError("outputs: all are the same; give pairs whose output moves")
-    scale = finite_number("longest", longest)
-    if scale <= 0:
-        raise RequestError(f"longest: {scale:g} is not a length; give a number > 0")
+    scale = positive_length("longest", longest)
     own = None if zeros is None else _own_zeros(zeros, cosine)
     spaces, theory, known, how = _closures(a, b, cosine, own, samples, seed)
     found = [rssr for rssr in (_linkage(space, cosine, own) for space in spaces) if rssr is not None]
@@ -169,11 +168,11 @@ def _closures(
 def _null_space(a: Floats, b: Floats, cosine: float | None, zeros: tuple[float, float] | None) -> Floats:
     """A basis (k, 3, 3) of the closures of the pairs, orthonormal."""
     if zeros is None:
-        rows, back = products(a, b), np.eye(FREE)
+        rows, back = products(a, b), np.eye(COEFFICIENTS)
     else:
         # without ca sb and sa cb; with the axes given ca cb and sa sb go together
         kept = [0, 1, 2, 3, 4, 6, 8] if cosine is None else [0, 1, 2, 3, 4, 6]
-        back = np.eye(FREE)[kept]
+        back = np.eye(COEFFICIENTS)[kept]
         if cosine is not None:
             back[4, 8] = cosine
         rows = products(a + zeros[0], b + zeros[1]) @ back.T
@@ -267,14 +266,12 @@ def _answer(
 
 
 def _drawn(rssr: SkewRssr, pose: tuple[float, float], scale: float, name: str, length_unit: str) -> Draft:
-    up, places = np.array([0.0, 0.0, 1.0]), [np.array([0.0, 0.0, rssr.h]), rssr.ball_a(pose[0])]
-    places += [rssr.ball_b(pose[1]), rssr.foot_b()]
-    at = [[float(x) + 0.0 for x in scale * place] for place in places]
+    places = [np.array([0.0, 0.0, rssr.h]), rssr.ball_a(pose[0]), rssr.ball_b(pose[1]), rssr.foot_b()]
+    at = [plain(scale * place) for place in places]
     joints = [
-        {"name": "crank", "kind": "R", "at": at[0], "axis": up.tolist()},
+        {"name": "crank", "kind": "R", "at": at[0], "axis": [0.0, 0.0, 1.0]},
         {"name": "ball_a", "kind": "S", "at": at[1]},
         {"name": "ball_b", "kind": "S", "at": at[2]},
         {"name": "rocker", "kind": "R", "at": at[3], "axis": rssr.axis_b().tolist()},
     ]
-    raw = {"format": 1, "name": name, "length_unit": length_unit, "angle_unit": "deg", "joint": joints}
-    return Draft("", raw, name)
+    return Draft.made(name, length_unit, joint=joints)

@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.loop.rigid import about, pose
+from sevenbar.kinematics.loop.rigid import about, flaw_of_rotation, pose
 
-#: How far the columns of a rotation may be from square and of length 1 [-]: numbers typed to six digits.
+#: How far the last row of a rigid motion may be from 0, 0, 0, 1.
 RIGID = 1e-5
 
 #: Two poses are one where no number differs by more [rad, relative to the greatest distance of two].
@@ -39,6 +39,14 @@ class Displacements:
     def shifts(self) -> Floats:
         """The ways (n - 1, 3) of the body's point from the first pose, relative to `reach`."""
         return np.asarray(self.motions[1:, :3, 3] / self.reach)
+
+    @property
+    def centre(self) -> Floats | None:
+        """The place (3,) that all displacements leave where it is, in the caller's coordinates, if any."""
+        sides, right = np.concatenate(np.eye(3) - self.turns), np.concatenate(self.shifts)
+        found = np.linalg.lstsq(sides, right, rcond=None)[0]
+        still = np.abs(sides @ found - right).max() < SAME_POSE
+        return np.asarray(found * self.reach + self.origin) if still else None
 
 
 def planar_given(poses: npt.ArrayLike, least: int, most: int) -> Displacements:
@@ -118,16 +126,9 @@ def numbers_given(name: str, values: npt.ArrayLike) -> Floats:
 
 
 def _rotations(name: str, given: Floats) -> Floats:
-    """Matrices (n, 3, 3) that are rotations up to `RIGID`, as the nearest exact ones."""
-    off = np.abs(np.swapaxes(given, 1, 2) @ given - np.eye(3)).max(axis=(1, 2))
-    if (off > RIGID).any():
-        worst = int(off.argmax())
-        raise RequestError(
-            f"{name}[{worst}]: is no rotation: its columns are off from square and length 1 by "
-            f"{off[worst]:.3g}; give an orthogonal matrix"
-        )
+    """Matrices (n, 3, 3) that are rotations up to their last digits, as the nearest exact ones."""
+    for i, matrix in enumerate(given):
+        if flaw := flaw_of_rotation(matrix):
+            raise RequestError(f"{name}[{i}]: {flaw}")
     left, _, right = np.linalg.svd(given)
-    if (np.linalg.det(given) < 0).any():
-        mirror = int(np.linalg.det(given).argmin())
-        raise RequestError(f"{name}[{mirror}]: is a mirror image, of determinant -1; give a rotation")
     return np.asarray(left @ right)

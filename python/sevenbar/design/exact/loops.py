@@ -42,17 +42,12 @@ def loop(driver: Dyad, follower: Dyad, task: Displacements, name: str, length_un
         # at the joint, not at the origin of coordinates
         moved = np.abs(missed[:, :3] @ np.append(joint.at, 1.0)).max(axis=1)
         off = np.maximum(off, np.maximum(turned, moved))
-    raw = {
-        "format": 1,
-        "name": name,
-        "length_unit": length_unit,
-        "angle_unit": "deg",
-        "joint": [joint.written(own, task.origin) for joint, own in zip(joints, JOINT_NAMES, strict=True)],
-        "point": [{"name": "body", "link": 2, "at": plain(task.origin)}],
-    }
+    written = [joint.written(own, task.origin) for joint, own in zip(joints, JOINT_NAMES, strict=True)]
+    point = {"name": "body", "link": 2, "at": plain(task.origin)}
+    draft = Draft.made(name, length_unit, joint=written, point=[point])
     figures = {"closure_error": float(off.max()) / size}
     claim = Claim(columns[0][:, 0], columns[3][:, 0], off, length_unit, figures)
-    whole, draft = np.column_stack(columns), Draft("", raw, name)
+    whole = np.column_stack(columns)
     # with eight freedoms one input leaves another: there are no circuits
     return ExactAnswer(draft, claim, None, whole) if whole.shape[1] == 8 else judged(draft, claim, whole)
 

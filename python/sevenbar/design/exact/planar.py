@@ -22,12 +22,15 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, Complexes, solutions
-from sevenbar.design.exact.draws import anywhere, directions, on_curve
+from sevenbar.design.exact.draws import family
 from sevenbar.design.exact.dyads import Dyad, Line
 from sevenbar.design.exact.given import Displacements, numbers_given, place_text, planar_given
 from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.loop.rigid import axial, pose, turns_about
+
+#: What a point is called, several, and the curve that four poses leave them.
+PIVOTS = ("pivot", "pivots", "curve")
 
 #: Dyads of five poses over the complex numbers.
 DYADS = 4
@@ -85,14 +88,8 @@ def planar_poses(
         answers = all_loops(dyads, task, "Planar four-bar", length_unit)
         known = int(found.multiplicity[~circular].sum())
         return ExactAnswers(title, "dyads", DYADS, known, len(kept), answers, how, drawn(dyads, task))
-    if count == 4:
-        pairs = on_curve(forms, samples, seed)
-        how = f"moving pivots on their curve, a cubic, drawn with seed {seed}"
-    else:
-        pairs = anywhere(
-            forms, directions(samples, 3, seed) if moving is None else _given_points(moving, task)
-        )
-        how = "each moving pivot has one fixed pivot" + (f"; seed {seed}" if moving is None else "")
+    given = None if moving is None else _given_points(moving, task)
+    pairs, how = family(forms, given, samples, seed, PIVOTS)
     dyads = _dyads(pairs, task)
     answers = loops_of_pairs(dyads, task, "Planar four-bar", length_unit)
     return ExactAnswers(title, "dyads", None, None, len(dyads), answers, how, drawn(dyads, task))
@@ -103,8 +100,8 @@ def planar_dyads(task: Displacements, samples: int, seed: int) -> list[Dyad]:
 
     None where poses are special, so that infinitely many take five.
     """
-    forms, count = _forms(task), len(task.motions)
-    if count == 5:
+    forms = _forms(task)
+    if len(task.motions) == 5:
         found = solutions(forms)
         pairs = (
             []
@@ -115,10 +112,8 @@ def planar_dyads(task: Displacements, samples: int, seed: int) -> list[Dyad]:
                 if real and not _is_circular(b)
             ]
         )
-    elif count == 4:
-        pairs = on_curve(forms, samples, seed)
     else:
-        pairs = anywhere(forms, directions(samples, 3, seed))
+        pairs, _ = family(forms, None, samples, seed, PIVOTS)
     return _dyads(pairs, task)
 
 
@@ -184,17 +179,14 @@ def _given_points(moving: npt.ArrayLike, task: Displacements) -> Floats:
 
 def _refuse_special(task: Displacements) -> None:
     """`RequestError` for poses that one joint takes, or a parallelogram only."""
-    turns, shifts = task.turns[:, :2, :2], task.shifts[:, :2]
-    angles = np.abs(np.arctan2(axial(task.turns)[:, 2], turns[:, 0, 0]))
+    angles = np.abs(np.arctan2(axial(task.turns)[:, 2], task.turns[:, 0, 0]))
     if (angles < NOTHING).all():
         raise RequestError(
             "poses: all have the same angle, and a parallelogram or a slide takes them; turn one of them"
         )
-    sides, right = np.concatenate(np.eye(2) - turns), np.concatenate(shifts)
-    pole = np.linalg.lstsq(sides, right, rcond=None)[0]
-    if np.abs(sides @ pole - right).max() < NOTHING:
-        place = place_text(pole * task.reach + task.origin[:2], task.reach)
+    pole = task.centre
+    if pole is not None:
         raise RequestError(
-            f"poses: all are turns about one point, {place}, and a hinge there takes them; "
-            "shift one of the poses"
+            f"poses: all are turns about one point, {place_text(pole[:2], task.reach)}, and a hinge there "
+            "takes them; shift one of the poses"
         )

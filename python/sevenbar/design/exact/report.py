@@ -7,7 +7,7 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.text import Text
 
 from sevenbar.design.candidates import Refusal
@@ -15,8 +15,9 @@ from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers, answer_fact
 from sevenbar.design.exact.dyads import Line
 from sevenbar.design.exact.given import place_text
 from sevenbar.design.files import design_files
+from sevenbar.design.tables import design_table, plain_designs
 from sevenbar.reporting.files import Report
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, number_table, page
 
 #: Closure errors, relative to the size of the linkage, below which nothing is to be seen but rounding.
 ROUNDING = 1e-9
@@ -46,9 +47,8 @@ def text(count: int, designs: ExactDesigns) -> RenderableType:
     """The answers for people, with the first `count` linkages."""
     found, facts = designs.found, Facts()
     facts.add("task", f"{found.task} of {designs.source}", "bold")
-    for label, words in answer_facts(found):
-        facts.add(label, words)
-    parts: list[RenderableType] = [Text("All answers", style="bold underline"), facts.grid]
+    facts.add_all(answer_facts(found))
+    parts: list[RenderableType] = []
     if found.dyads:
         unit = designs.length_unit
         size = max(float(abs(line.at).max()) for dyad in found.dyads for line in (dyad.ground, dyad.body))
@@ -58,24 +58,18 @@ def text(count: int, designs: ExactDesigns) -> RenderableType:
             for i, dyad in enumerate(found.dyads, 1)
         ]
         heads = ["dyad", "joints", f"at the ground\n[{unit}]", f"at the link in pose 1\n[{unit}]"]
-        parts += [Text(), number_table(heads, rows, words=[1, 2, 3])]
+        parts.append(number_table(heads, rows, words=[1, 2, 3]))
     if designs.candidates:
         rows = [
-            [
-                str(i),
-                answer.linkage.name,
-                str(answer.columns["motion_type"]),
-                answer.defect,
-                f"{answer.error:.1e}",
-            ]
-            for i, answer in enumerate(designs.candidates[:count], 1)
+            [answer.linkage.name, str(answer.columns["motion_type"]), answer.defect, f"{answer.error:.1e}"]
+            for answer in designs.candidates[:count]
         ]
-        heads = ["design", "linkage", "motion type", "defect", "closure\nerror"]
-        parts += [Text(), number_table(heads, rows, words=[1, 2, 3])]
+        heads = ["linkage", "motion type", "defect", "closure\nerror"]
+        parts.append(design_table(heads, rows, words=heads[:3]))
     left = len(designs.candidates) - count
     if left > 0:
-        parts += [Text(), Text(f"and {left} more; --json lists them all")]
-    return Group(*parts)
+        parts.append(Text(f"and {left} more; --json lists them all"))
+    return page("All answers", facts, *parts)
 
 
 def as_dict(designs: ExactDesigns) -> dict[str, Any]:
@@ -99,14 +93,8 @@ def as_dict(designs: ExactDesigns) -> dict[str, Any]:
             for dyad in found.dyads
         ],
         "designs": [
-            {
-                "design": i,
-                "name": answer.linkage.name,
-                "inputs": answer.claim.inputs.tolist(),
-                "outputs": answer.claim.outputs.tolist(),
-                **answer.columns,
-            }
-            for i, answer in enumerate(designs.candidates, 1)
+            {**own, "inputs": one.claim.inputs.tolist(), "outputs": one.claim.outputs.tolist()}
+            for own, one in zip(plain_designs(designs), designs.candidates, strict=True)
         ],
     }
 

@@ -15,10 +15,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_number
+from sevenbar.arrays import Floats, positive_length
 from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, solutions
-from sevenbar.design.exact.draws import anywhere, directions, on_curve
+from sevenbar.design.exact.draws import family
 from sevenbar.design.exact.dyads import Dyad, Line
 from sevenbar.design.exact.given import Displacements, numbers_given, orientations_given, place_text
 from sevenbar.design.exact.lines import link_motions
@@ -60,9 +60,7 @@ def spherical_orientations(
     Source: J. M. McCarthy and G. S. Soh, "Geometric design of linkages" (2011); docs/theory_design.md, (32).
     """
     task = orientations_given(orientations, 3, 5)
-    radius = finite_number("radius", radius)
-    if radius <= 0:
-        raise RequestError(f"radius: {radius:g} is not a length; give a number > 0")
+    radius = positive_length("radius", radius)
     refuse_one_axis(task.turns, "orientations")
     forms, count = task.turns - np.eye(3), len(task.motions)
     title = f"{count} orientations"
@@ -80,12 +78,8 @@ def spherical_orientations(
         how = f"{POINTS} common points of four cubics by eigenvalues"
         known = int(found.multiplicity.sum())
         return ExactAnswers(title, "dyads", DYADS, known, len(kept), answers, how, drawn(dyads, task))
-    if count == 4:
-        pairs = on_curve(forms, samples, seed)
-        how = f"moving axes on their cone, a cubic, drawn with seed {seed}"
-    else:
-        pairs = anywhere(forms, directions(samples, 3, seed) if moving is None else _given_axes(moving))
-        how = "each moving axis has one fixed axis" + (f"; seed {seed}" if moving is None else "")
+    given = None if moving is None else _given_axes(moving)
+    pairs, how = family(forms, given, samples, seed, ("axis", "axes", "cone"))
     dyads = _dyads(pairs, task, radius)
     answers = loops_of_pairs(dyads, task, "Spherical four-bar", length_unit)
     return ExactAnswers(title, "dyads", None, None, len(dyads), answers, how, drawn(dyads, task))

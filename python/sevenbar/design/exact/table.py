@@ -122,6 +122,6 @@ def _length_unit(table: TextTable, letter: str) -> str:
 def _places(table: TextTable, letter: str, unit: str) -> Floats:
     column = table.column(letter)
     assert column is not None
-    values = table.numbers(column) * table.size(column, ("slide", 0), unit, what=letter, example=unit)
+    values = table.sized(column, ("slide", 0), unit, what=letter, example=unit)
     table.refuse_gaps({column: values}, "leave the row out")
     return values

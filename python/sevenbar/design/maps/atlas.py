@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats, Integers
+from sevenbar.arrays import Floats, Integers, whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
@@ -17,7 +17,7 @@ from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane
 from sevenbar.design.maps.rssr_plane import RssrPlane
 from sevenbar.design.maps.window import MapAxis, Range, axes_of
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed
@@ -209,14 +209,9 @@ def motion_map(
     )
 
 
-def _lines(grid: object, default: int) -> int:
+def _lines(grid: int | None, default: int) -> int:
     """How many lines a grid has, checked."""
-    if grid is None:
-        return default
-    low, high = GRID_ENDS
-    if isinstance(grid, bool) or not isinstance(grid, (int, np.integer)) or not low <= grid <= high:
-        raise RequestError(f"grid: {shown(grid)} is not a count of lines; give {low} to {high}")
-    return int(grid)
+    return default if grid is None else whole_number("grid", grid, *GRID_ENDS, "a count of lines")
 
 
 def _scheme(lines: int, fine: int, tolerance: float) -> Scheme:

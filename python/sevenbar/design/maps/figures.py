@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from sevenbar.drawing.asked import asked_style
 from sevenbar.drawing.figure import new_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import STYLES, letters, styled
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import check_word
 from sevenbar.text.words import say
 
 #: Sheets of paper, width and height [inch].
@@ -52,6 +51,9 @@ OTHERS = ("#c7b8dd", "#e9c3d3", "#bfe0dc", "#d9d9d9", "#dfe3b4", "#b9bfd9")
 #: How much lighter each further count of circuits of one type is than the one before, or darker.
 SHADE = -0.16
 
+#: How much lighter all fills are below contours.
+FAINT = 0.55
+
 HATCH = "#c4c4c4"
 CONTOUR = "#7a1f5c"
 MARK = "#c1121f"
@@ -74,12 +76,9 @@ LABEL = (0.03, 0.02)
 
 def sheet(size: str) -> tuple[float, float]:
     """Width and height [inch] of a sheet of this name; raises `RequestError` for another."""
-    known = SIZES.get(size.strip().upper())
-    if known is None:
-        raise RequestError(
-            f"size: {shown(size)} is not a sheet; {suggestion(size, SIZES)}give one of {', '.join(SIZES)}"
-        )
-    return known
+    name = size.strip().upper()
+    check_word("size", name, SIZES, "a sheet")
+    return SIZES[name]
 
 
 def draw(
@@ -129,8 +128,8 @@ def draw(
     return figure
 
 
-def look(of: Map, kind: Kind) -> dict[str, Any]:
-    """Fill and hatch of a kind on a map."""
+def look(of: Map, kind: Kind, *, faint: bool = False) -> dict[str, Any]:
+    """Fill and hatch of a kind on a map; `faint` below contours."""
     types = list(dict.fromkeys(k.motion_type for k in of.areas))
     if kind.motion_type in LOOKS:
         fill, hatch = LOOKS[kind.motion_type]
@@ -139,32 +138,29 @@ def look(of: Map, kind: Kind) -> dict[str, Any]:
         fill, hatch = OTHERS[others.index(kind.motion_type) % len(OTHERS)], ""
     counts = sorted(k.circuits for k in of.areas if k.motion_type == kind.motion_type)
     place = counts.index(kind.circuits) if kind.circuits in counts else 0
-    return {"facecolor": _shaded(fill, place * SHADE), "edgecolor": HATCH, "hatch": hatch, "lw": 0.0}
+    colour = _shaded(fill, place * SHADE)
+    if faint:
+        colour = _shaded(colour, FAINT)
+    return {"facecolor": colour, "edgecolor": HATCH, "hatch": hatch, "lw": 0.0}
 
 
-def _shaded(colour: str, by: float) -> tuple[float, ...]:
+def _shaded(colour: str | tuple[float, float, float], by: float) -> tuple[float, float, float]:
     """A colour moved towards white, or for a number below 0 towards black."""
     from matplotlib.colors import to_rgb
 
     rgb = np.array(to_rgb(colour))
-    return tuple(float(c) for c in (rgb + (1 - rgb) * by if by > 0 else rgb * max(0.35, 1 + by)))
+    red, green, blue = (rgb + (1 - rgb) * by if by > 0 else rgb * max(0.35, 1 + by)).tolist()
+    return red, green, blue
 
 
 def _fill(axes: Axes, of: Map, scale: float, *, faint: bool) -> None:
     for region in of.regions:
         path = Path.make_compound_path(*(_closed(of, loop) for loop in (region.outline, *region.holes)))
-        own = look(of, of.kinds[region.kind])
-        if faint:
-            own["facecolor"] = _shaded_rgb(own["facecolor"], 0.55)
-        axes.add_patch(PathPatch(path, zorder=1, **own))
+        axes.add_patch(PathPatch(path, zorder=1, **look(of, of.kinds[region.kind], faint=faint)))
     for line in of.boundaries:
         alike = of.kinds[line.left].motion_type == of.kinds[line.right].motion_type
         style: dict[str, Any] = {"ls": (0, (4, 2)), "lw": 1.0 * scale} if alike else {"lw": 1.6 * scale}
         axes.plot(*of.values(line.places).T, color=LINE, solid_capstyle="round", zorder=4, **style)
-
-
-def _shaded_rgb(rgb: Sequence[float], by: float) -> tuple[float, ...]:
-    return tuple(c + (1 - c) * by for c in rgb)
 
 
 def _closed(of: Map, loop: Floats) -> Path:
@@ -318,12 +314,8 @@ def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: f
     left = box.x1 + 0.18 * scale / figure.get_figwidth()
     keys: list[Any] = []
     for kind, share in of.areas.items():
-        own = look(of, kind)
-        if heights is not None:
-            own["facecolor"] = _shaded_rgb(own["facecolor"], 0.55)
-        own |= {"lw": 0.8 * scale}
-        patch = Patch(label=f"{of.name(kind)}  {_percent(share)}", **own)
-        keys.append(patch)
+        own = look(of, kind, faint=heights is not None) | {"lw": 0.8 * scale}
+        keys.append(Patch(label=f"{of.name(kind)}  {_percent(share)}", **own))
     if heights is not None:
         unit = f" [{_unit(heights.unit)}]" if heights.unit else ""
         keys.append(

@@ -93,10 +93,10 @@ def measure_heights(
         (50.0, 100.0, 150.0, 200.0, 250.0)
     """
     chosen = with_contours(measures)
-    _check_take(take)
+    check_take(take)
     if isinstance(take, (int, np.integer)):
         refuse_missing_circuit(of, int(take))
-    wanted = None if levels is None else _levels(levels)
+    wanted = None if levels is None else levels_of(levels)
     nodes, kinds, triangles = _net(of)
     table = of.plane.values_at(nodes, chosen, take)
     (own,) = of.plane.values_at(of.shares_of(np.array([[of.design.x, of.design.y]])), chosen, take)
@@ -134,11 +134,12 @@ def with_contours(measures: Iterable[str | Measure | Callable[[Motion], float]])
     return chosen
 
 
-def _check_take(take: object) -> None:
+def check_take(take: object, key: str = "take") -> None:
+    """Raises `RequestError` for what chooses no circuit."""
     counts = isinstance(take, (int, np.integer)) and not isinstance(take, bool) and take >= 0
     if take not in ("highest", "lowest") and not counts:
         raise RequestError(
-            f"take: {shown(take)} is not offered; give highest, lowest, or the index of a circuit, from 0"
+            f"{key}: {shown(take)} is not offered; give highest, lowest, or the index of a circuit, from 0"
         )
 
 
@@ -153,13 +154,15 @@ def refuse_missing_circuit(of: Map, take: int) -> None:
         )
 
 
-def _levels(levels: Sequence[float]) -> list[float]:
+def levels_of(levels: Sequence[float] | str, key: str = "levels") -> list[float]:
+    """Finite numbers, rising, of some or of a word as '20,40,60'; raises `RequestError` for what are none."""
+    given = [part for part in levels.split(",") if part.strip()] if isinstance(levels, str) else levels
     try:
-        values = sorted({float(level) for level in levels})
+        values = sorted({float(level) for level in given})
     except (TypeError, ValueError):
-        raise RequestError(f"levels: {shown(levels)} are not numbers; give some, as in 20,40,60") from None
+        values = []
     if not values or not all(map(math.isfinite, values)):
-        raise RequestError(f"levels: {shown(levels)} are not finite numbers; give some, as in 20,40,60")
+        raise RequestError(f"{key}: {shown(levels)} are not finite numbers; give some, as in 20,40,60")
     return values
 
 

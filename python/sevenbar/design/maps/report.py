@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
 from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map, NearestChange
@@ -19,7 +18,7 @@ from sevenbar.design.maps.figures import draw
 from sevenbar.design.maps.heights import Heights
 from sevenbar.reporting.files import Report, Write, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
-from sevenbar.reporting.page import Facts, number_table, opening
+from sevenbar.reporting.page import Facts, number_table, opening, page
 from sevenbar.text.printing import text_of
 from sevenbar.text.words import say
 
@@ -125,22 +124,12 @@ def text(findings: MapFindings) -> RenderableType:
         facts.add("", f"{name} {value}")
         if not np.isfinite(found.values).any():
             facts.add("", say("{measure}: no linkage on the map has it", measure=name), "yellow")
-    shares = number_table(
-        ["on the map", "share"], [[of.name(kind), f"{100 * share:.3f} %"] for kind, share in of.areas.items()]
-    )
-    parts: list[RenderableType] = [
-        Text(of.linkage.heading, style="bold underline"),
-        facts.grid,
-        Text(),
-        shares,
-    ]
+    shares = [[of.name(kind), f"{100 * share:.3f} %"] for kind, share in of.areas.items()]
+    tables = [number_table(["on the map", "share"], shares)]
     if design.inside:
         rows = [_row(of, step) for step in design.steps]
-        parts += [
-            Text(),
-            number_table(["the design changes", "by", "at", "and becomes"], rows, words=(3,)),
-        ]
-    return Group(*parts)
+        tables.append(number_table(["the design changes", "by", "at", "and becomes"], rows, words=(3,)))
+    return page(of.linkage.heading, facts, *tables)
 
 
 def _precision(of: Map) -> str:

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Booleans, Floats, finite_array
+from sevenbar.arrays import Booleans, Floats, finite_array, whole_number
 from sevenbar.curves.stationary import highest_between
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError, shown
@@ -151,9 +151,7 @@ def cycle_of(
     if motion.law is None and order != "position" and not chosen.goes_round:
         raise RequestError(_unbounded(motion, chosen))
     branches = int(chosen.branch.max(initial=0)) + 1
-    if isinstance(branch, bool) or not isinstance(branch, (int, np.integer)) or not 0 <= branch < branches:
-        allowed = f"0 to {branches - 1}" if branches > 1 else "0"
-        raise RequestError(f"branch: {shown(branch)} is not a pass of circuit {circuit}; give {allowed}")
+    branch = whole_number("branch", branch, 0, branches - 1, f"a pass of circuit {circuit}")
     if motion.law is None and chosen.goes_round:
         turn = math.copysign(math.tau * chosen.turns, motion.speed)
         inputs = chosen.input[0] + turn * np.arange(rows * chosen.turns) / (rows * chosen.turns)
@@ -188,10 +186,9 @@ def input_text(motion: Motion, value: float) -> str:
 
 def _refuse_link(motion: Motion, link: object) -> None:
     count = len(motion.linkage.joints)
-    if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
-        raise RequestError(f"link: {shown(link)} is not a link; give 1 to {count - 1}")
     if link == count:
         raise RequestError(f"link: {link} is the ground, which stands still; give 1 to {count - 1}")
+    whole_number("link", link, 1, count - 1, "a link")
 
 
 def link_rates(circuit: Circuit, rows: Booleans, link: int) -> LinkRates:

@@ -18,9 +18,9 @@ from sevenbar.design.points.least import ZERO, LeastPoint
 from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import AccelerationPoles
 from sevenbar.drawing.asked import asked_view
-from sevenbar.drawing.figure import input_label, page_figure, slides
+from sevenbar.drawing.figure import fit_letters, headline, input_label, page_figure, slides
 from sevenbar.drawing.names import short
-from sevenbar.drawing.page import place_picture
+from sevenbar.drawing.page import place_picture, write_title_over_panels
 from sevenbar.drawing.space import measuring
 from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, OTHER, letters, styled
 from sevenbar.drawing.ticks import DegreeLocator
@@ -42,7 +42,15 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
     cycle, linkage = found.cycle, found.cycle.motion.linkage
     with styled():
         figure = page_figure(11.0, 5.0)
-        axes = figure.add_axes((0.065, 0.12, 0.44, 0.70))
+        rms = found.measure == "rms"
+        what = {"link": found.link, "number": cycle.circuit.index, "quantity": say(found.of)}
+        which = (
+            say("link {link}, circuit {number}: least root mean square {quantity}", **what)
+            if rms
+            else say("link {link}, circuit {number}: least greatest {quantity}", **what)
+        )
+        heads, top = write_title_over_panels(figure, f"{short(linkage.heading, 60)}\n{which}")
+        axes = figure.add_axes((0.065, 0.12, 0.44, top - 0.12))
         across = shown_inputs(cycle, cycle.rates.input)
         for i, point in enumerate(found.before[:MOST_LINES]):
             look: dict[str, Any] = {"color": _other(i), "ls": LINE_STYLES[1 + i % 3], "lw": 1.4}
@@ -50,7 +58,6 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
                 across, _sizes(cycle, found.of, np.array(point.at)), label=short(point.name, 24), **look
             )
         axes.plot(across, _sizes(cycle, found.of, found.at), color=FOUND, lw=1.8, label=short(name, 24))
-        rms = found.measure == "rms"
         bound = say("least root mean square") if rms else say("lower bound of the greatest")
         axes.axhline(found.value, color=BOUND, lw=1.0, ls=(0, (4, 2)), label=bound)
         if len(found.inputs):
@@ -60,20 +67,15 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
         # a point that stands still is at the foot of what others of the box have
         axes.set_ylim(0, None if found.value > ZERO * found.scale else found.scale)
         axes.set_ylabel(f"{say(found.of)} [{found.unit.replace('^2', '²').replace('^3', '³')}]")
-        axes.set_title("(a) " + say("over the cycle"))
+        _head_of_panel(figure, 0.285, heads, "(a) " + say("over the cycle"), 0.44)
         axes.legend(frameon=False, fontsize=letters() - 0.5)
-        _poles_in_the_link(figure, found, poles, name)
-        what = {"link": found.link, "number": cycle.circuit.index, "quantity": say(found.of)}
-        which = (
-            say("link {link}, circuit {number}: least root mean square {quantity}", **what)
-            if rms
-            else say("link {link}, circuit {number}: least greatest {quantity}", **what)
-        )
-        figure.suptitle(f"{short(linkage.heading, 60)}\n{which}")
+        _poles_in_the_link(figure, found, poles, name, heads)
     return figure
 
 
-def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPoles, name: str) -> None:
+def _poles_in_the_link(
+    figure: Figure, found: LeastPoint, poles: AccelerationPoles, name: str, heads: float
+) -> None:
     low, high = found.low, found.high
     corners = np.array(list(product(*zip(low, high, strict=True))))
     away = np.maximum(low - poles.at, poles.at - high).max(axis=1)
@@ -84,7 +86,7 @@ def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPol
     places = np.concatenate(shown)
     linkage = found.cycle.motion.linkage
     width, height = figure.get_size_inches()
-    room = (0.54 * width, 0.55, 0.46 * width, 0.76 * height)
+    room = (0.54 * width, 0.55, 0.46 * width, heads * height - 0.55)
     view = view_of(_in_space(), linkage, places)
     space = place_picture(figure, places, room, linkage.length_unit, view, letters="uvw")
     axes: Any = space.axes
@@ -105,7 +107,7 @@ def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPol
         counts = {"count": np.count_nonzero(near), "all": len(near)}
         where = say("in the link: the box; {count} of {all} poles near the box", **counts)
     middle = (room[0] + room[2] / 2) / width
-    figure.text(middle, 0.845, f"(b) {where}", fontsize=letters() + 1, ha="center", va="bottom")
+    _head_of_panel(figure, middle, heads, f"(b) {where}", 0.45)
     _legend_below(figure, axes, middle, 3)
 
 
@@ -118,7 +120,12 @@ def nearest_figure(found: NearestPath, name: str) -> Figure:
         both = np.concatenate([path, found.wanted])
         width, height = figure.get_size_inches()
         view = view_of(None, linkage, both)
-        room = (0.1, 0.3, 0.5 * width - 0.1, 0.82 * height - 0.3)
+        which = say(
+            "link {link}, circuit {number}: path nearest the curve, rms {rms:.4g} {unit}",
+            link=found.link, number=cycle.circuit.index, rms=found.rms, unit=linkage.length_unit,
+        )  # fmt: skip
+        heads, top = write_title_over_panels(figure, f"{short(linkage.heading, 60)}\n{which}")
+        room = (0.1, 0.3, 0.5 * width - 0.1, top * height - 0.3)
         space = place_picture(figure, both, room, linkage.length_unit, view)
         space.line(
             _closed(path, cycle), color=FOUND, lw=1.4, label=say("path of {name}", name=short(name, 24))
@@ -126,20 +133,15 @@ def nearest_figure(found: NearestPath, name: str) -> Figure:
         space.line(found.wanted, ls="", marker="o", color=OTHER, mfc="none", ms=4, label=say("wanted"))
         _legend_below(figure, space.axes, 0.27, 2)
         where = "(a) " + (say("in its plane") if view.flat else say("in space"))
-        figure.text(0.27, 0.835, where, fontsize=letters() + 1, ha="center", va="bottom")
-        below = figure.add_axes((0.59, 0.12, 0.39, 0.70))
+        _head_of_panel(figure, 0.27, heads, where, 0.5)
+        below = figure.add_axes((0.59, 0.12, 0.39, top - 0.12))
         below.plot(np.arange(1, len(found.distances) + 1), found.distances, "o-", color=FOUND, ms=3, lw=1.0)
         below.grid(lw=0.6)
         below.set_ylim(bottom=0)
         below.xaxis.set_major_locator(MaxNLocator(integer=True))
         below.set_xlabel(say("wanted place"))
         below.set_ylabel(say("distance [{unit}]", unit=linkage.length_unit))
-        below.set_title("(b) " + say("distance of the path from it"))
-        which = say(
-            "link {link}, circuit {number}: path nearest the curve, rms {rms:.4g} {unit}",
-            link=found.link, number=cycle.circuit.index, rms=found.rms, unit=linkage.length_unit,
-        )  # fmt: skip
-        figure.suptitle(f"{short(linkage.heading, 60)}\n{which}")
+        _head_of_panel(figure, 0.785, heads, "(b) " + say("distance of the path from it"), 0.39)
     return figure
 
 
@@ -172,8 +174,14 @@ def inertia_figure(found: Inertia) -> Figure:
         _input_axis(force, cycle, across)
         figure.legend(loc="outside lower center", ncols=3, frameon=False)
         what = say("circuit {number}: what masses require of the input", number=cycle.circuit.index)
-        figure.suptitle(f"{short(linkage.heading, 60)}\n{what}")
+        headline(figure, f"{short(linkage.heading, 60)}\n{what}")
     return figure
+
+
+def _head_of_panel(figure: Figure, across: float, up: float, text: str, width: float) -> None:
+    """The title of a panel about a place of the page, within a width [shares of the page's]."""
+    head = figure.text(across, up, text, fontsize=letters() + 1, ha="center", va="bottom")
+    fit_letters(head, width * figure.get_figwidth())
 
 
 def _in_space() -> str | tuple[float, float]:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Floats, finite_array, is_number
 from sevenbar.design.points.cycle import Cycle, cycle_of, driven
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.bodies import Body
@@ -159,7 +159,6 @@ def _masses(motion: Motion, masses: Mapping[str, float] | Sequence[Mass]) -> tup
         raise RequestError("masses: none given; give one, as in P=2.5")
     for mass in checked:
         value = mass.mass
-        number = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
-        if not number or not math.isfinite(value) or value <= 0:
+        if not is_number(value) or not math.isfinite(value) or value <= 0:
             raise RequestError(f"mass of {mass.name}: {shown(value)} is not a mass; give kilograms > 0")
     return tuple(checked)

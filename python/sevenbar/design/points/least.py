@@ -22,7 +22,7 @@ from sevenbar.design.points.cone import ConeSolution, least_greatest
 from sevenbar.design.points.cycle import ORDERS, Cycle, box_of, cycle_of
 from sevenbar.design.points.polish import Polished, polished
 from sevenbar.design.points.squares import least_squares_in
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import check_word
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
@@ -165,10 +165,8 @@ def least_point(
         >>> bool(mean < greatest)
         True
     """
-    if of not in ORDERS[1:]:
-        raise RequestError(f"of: {shown(of)} is not offered; give velocity, acceleration or jerk")
-    if measure not in ("greatest", "rms"):
-        raise RequestError(f"measure: {shown(measure)} is not offered; give greatest or rms")
+    check_word("of", of, ORDERS[1:])
+    check_word("measure", measure, ("greatest", "rms"))
     low, high = box_of(box)
     cycle = cycle_of(motion, link, circuit, branch, order=of)
     refuse_idle_link(motion.linkage, cycle.link, "the motion of a point on it")

@@ -22,7 +22,7 @@ from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.points.cone import least_greatest
 from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, input_text
 from sevenbar.design.points.squares import least_squares_in
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_word
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
@@ -111,8 +111,7 @@ def nearest_path_point(
     """
     low, high = box_of(box)
     wanted = _places(curve)
-    if measure not in ("rms", "greatest"):
-        raise RequestError(f"measure: {shown(measure)} is not offered; give rms or greatest")
+    check_word("measure", measure, ("rms", "greatest"))
     cycle = cycle_of(motion, link, circuit, branch, order="position")
     refuse_idle_link(motion.linkage, cycle.link, "a path on it")
     if inputs is None:

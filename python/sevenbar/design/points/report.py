@@ -7,8 +7,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
 from sevenbar.arrays import Floats
 from sevenbar.design.points.cycle import Cycle, input_text, shown_inputs
@@ -20,7 +19,7 @@ from sevenbar.design.points.poles import poles_of
 from sevenbar.drawing.figure import slides
 from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
-from sevenbar.reporting.page import Facts, drive_text, number_table, opening
+from sevenbar.reporting.page import Facts, drive_text, number_table, opening, page
 from sevenbar.text.printing import text_of
 from sevenbar.text.words import retold, say
 
@@ -81,14 +80,14 @@ def least_text(found: LeastPoint) -> RenderableType:
         )
     for note in notes(found.cycle):
         facts.add("note", note)
-    parts: list[RenderableType] = [_title(found.cycle), facts.grid]
+    tables = []
     if found.before:
         rows = [[p.name, _place(p.at), f"{p.value:.6g}", _times(p.value, found)] for p in found.before]
         rows.append([say("found"), _place(found.at), f"{found.value:.6g}", ""])
         size = say("root mean square") if found.measure == "rms" else say("greatest")
         head = ["point", "at", f"{size} [{unit}]", "times"]
-        parts += [Text(), number_table(head, rows, words=[1])]
-    return Group(*parts)
+        tables.append(number_table(head, rows, words=[1]))
+    return page(_heading(found.cycle), facts, *tables)
 
 
 def _met(found: LeastPoint) -> str:
@@ -132,7 +131,7 @@ def nearest_text(found: NearestPath) -> RenderableType:
         facts.add("optimum", best)
     for note in notes(found.cycle):
         facts.add("note", note)
-    return Group(_title(found.cycle), facts.grid)
+    return page(_heading(found.cycle), facts)
 
 
 def inertia_text(found: Inertia) -> RenderableType:
@@ -160,7 +159,7 @@ def inertia_text(found: Inertia) -> RenderableType:
             cells += [f"{sizes[place]:.6g}", input_text(motion, float(found.input[place]))]
         rows.append(cells)
     head = ["mass", "link", "kg", "greatest force [N]", "at", "least force [N]", "at"]
-    return Group(_title(found.cycle), facts.grid, Text(), number_table(head, rows))
+    return page(_heading(found.cycle), facts, number_table(head, rows))
 
 
 def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
@@ -178,8 +177,8 @@ def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
     return text
 
 
-def _title(cycle: Cycle) -> Text:
-    return Text(cycle.motion.linkage.heading, style="bold underline")
+def _heading(cycle: Cycle) -> str:
+    return cycle.motion.linkage.heading
 
 
 def _whose(cycle: Cycle) -> str:

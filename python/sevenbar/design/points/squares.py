@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError
+from sevenbar.errors import of_extra
 
 
 def least_squares_in(constant: Floats, gradient: Floats, low: Floats, high: Floats) -> tuple[Floats, float]:
@@ -15,12 +15,8 @@ def least_squares_in(constant: Floats, gradient: Floats, low: Floats, high: Floa
 
     The mean square f is convex, so that no point y has less than `f(x) + grad f(x) . (y - x)`.
     """
-    try:
+    with of_extra("design", "least squares in a box need scipy"):
         from scipy.optimize import lsq_linear
-    except ImportError:
-        raise MissingExtraError(
-            "least squares in a box need scipy; install it with: pip install 'sevenbar[design]'"
-        ) from None
     centre, half = (low + high) / 2, (high - low) / 2
     share = 1 / math.sqrt(len(constant))
     matrix = share * (gradient * half).reshape(-1, 3)

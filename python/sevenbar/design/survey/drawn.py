@@ -5,10 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 from abc import ABC, abstractmethod
-from typing import Any
+from typing import Any, ClassVar
 
+from sevenbar.arrays import whole_number
 from sevenbar.design.survey.tally import Kept, SurveyTally
-from sevenbar.sweep.axes import whole_number
+
+#: The format of a survey's description.
+FORMAT = 1
 
 #: Most linkages: indices beyond are no whole numbers in every program's JSON.
 MOST = 2**50
@@ -23,15 +26,10 @@ class Drawn(ABC):
     count: int
     seed: int
 
-    @property
-    @abstractmethod
-    def part_size(self) -> int:
-        """Linkages of a part."""
-
-    @property
-    @abstractmethod
-    def verdicts(self) -> tuple[str, ...]:
-        """What may be said of a linkage; the first is that it does what is wanted."""
+    #: Linkages of a part.
+    part_size: ClassVar[int]
+    #: What may be said of a linkage; the first is that it does what is wanted.
+    verdicts: ClassVar[tuple[str, ...]]
 
     @property
     @abstractmethod

@@ -8,22 +8,23 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from sevenbar.design.survey.drawn import Drawn
 from sevenbar.design.survey.tally import SurveyTally
-from sevenbar.errors import OutputError, shown
-from sevenbar.sweep.parts import differences, hold_folder, other_maker
+from sevenbar.errors import OutputError
+from sevenbar.sweep.held_folder import HeldFolder, other_maker
 
 #: The description's file, and the journal's.
 DESCRIPTION, JOURNAL = "survey.json", "journal.jsonl"
 
 
-class Journal:
+class Journal(HeldFolder):
     """The parts of a survey that are done, in a folder held against a second run while it is open."""
+
+    description, what = DESCRIPTION, "survey"
 
     def __init__(
         self,
@@ -39,30 +40,22 @@ class Journal:
         Raises `OutputError` for a folder of something else, for one with parts where `resume` is not given,
         and for parts of another maker where `mixed` is not.
         """
-        self.folder, self._task = folder, task
+        super().__init__(folder, task)
+        self._task = task
         self.tallies: dict[int, SurveyTally] = {}
-        self._lock: int | None = None
         self._file: Any = None
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            self._lock = hold_folder(folder)
-            names = sorted(path.name for path in folder.iterdir())
-            if DESCRIPTION in names:
+        with self._opened() as described:
+            if described:
                 self._take_up(makers, resume=resume, mixed=mixed)
-            elif names:
-                raise OutputError(
-                    f"{folder}: holds {shown(names[0])} and no {DESCRIPTION}; "
-                    "give an empty folder or a new one"
-                )
             else:
-                self._describe(makers)
+                mark = {"parts": task.parts, "mark": task.digest()}
+                self._describe({**task.request(), **mark, "made_by": [dict(one) for one in makers]})
             self._file = (folder / JOURNAL).open("ab")
-        except OSError as error:
-            self.close()
-            raise self._unwritable(error) from None
-        except BaseException:
-            self.close()
-            raise
+
+    @property
+    def done(self) -> Collection[int]:
+        """The parts that are there."""
+        return self.tallies.keys()
 
     def keep(self, part: int, content: bytes, maker: Mapping[str, str]) -> None:
         """Adds a finished part; raises `OutputError` where it cannot be written."""
@@ -80,46 +73,19 @@ class Journal:
         if self._file is not None:
             self._file.close()
             self._file = None
-        if self._lock is not None:
-            os.close(self._lock)
-            self._lock = None
-
-    def _describe(self, makers: Sequence[Mapping[str, str]]) -> None:
-        description = {
-            **self._task.request(),
-            "parts": self._task.parts,
-            "mark": self._task.digest(),
-            "made_by": [dict(one) for one in makers],
-        }
-        aside = self.folder / f".{DESCRIPTION}.aside"
-        try:
-            aside.write_text(json.dumps(description, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-            aside.replace(self.folder / DESCRIPTION)
-        except BaseException:
-            with suppress(OSError):
-                aside.unlink(missing_ok=True)
-            raise
+        super().close()
 
     def _take_up(self, makers: Sequence[Mapping[str, str]], *, resume: bool, mixed: bool) -> None:
-        path = self.folder / DESCRIPTION
+        path = self.path / DESCRIPTION
         try:
             there = json.loads(path.read_text(encoding="utf-8"))
             known = {key: there[key] for key in self._task.request()}
         except (ValueError, KeyError, TypeError):
             raise OutputError(f"{path}: is no description of a survey; give another folder") from None
-        unlike = differences(known, self._task.request())
-        if unlike:
-            more = f", and {len(unlike) - 1} more differ" if len(unlike) > 1 else ""
-            raise OutputError(
-                f"{self.folder}: holds another survey: {unlike[0]}{more}; "
-                "give another folder, or the options of that survey"
-            )
+        self._refuse_another(known)
         lines = self._whole_lines()
-        if lines and len(lines) < self._task.parts and not resume:
-            raise OutputError(
-                f"{self.folder}: {len(lines)} of {self._task.parts} parts are there; "
-                "give --resume to go on, or another folder"
-            )
+        if not resume:
+            self._refuse_unfinished(len(lines))
         for number, line in enumerate(lines, 1):
             try:
                 row = json.loads(line)
@@ -129,17 +95,17 @@ class Journal:
                     raise ValueError
             except (ValueError, KeyError, TypeError, IndexError):
                 raise OutputError(
-                    f"{self.folder / JOURNAL}: line {number} is no part of this survey; "
+                    f"{self.path / JOURNAL}: line {number} is no part of this survey; "
                     "take the line out and give --resume"
                 ) from None
             strangers = [dict(one) for one in makers if dict(one) != by]
             if strangers and len(lines) < self._task.parts and not mixed:
-                raise OutputError(f"{self.folder}: {other_maker(by, strangers[0])}")
+                raise OutputError(f"{self.path}: {other_maker(by, strangers[0])}")
             self.tallies[part] = tally
 
     def _whole_lines(self) -> list[bytes]:
         """The lines of the journal; one without an end is cut off."""
-        path = self.folder / JOURNAL
+        path = self.path / JOURNAL
         if not path.exists():
             return []
         content = path.read_bytes()
@@ -147,11 +113,3 @@ class Journal:
         if len(whole) < len(content):
             os.truncate(path, len(whole))
         return whole.splitlines()
-
-    def _unwritable(self, error: OSError) -> OutputError:
-        reason = (error.strerror or str(error)).lower()
-        kept = f"; {len(self.tallies)} of {self._task.parts} parts are kept" if self.tallies else ""
-        return OutputError(
-            f"{self.folder}: cannot be written: {reason}; "
-            f"make room or give a folder that can be written{kept}"
-        )

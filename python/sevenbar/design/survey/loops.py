@@ -18,7 +18,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.candidates import Fault, size_fault
-from sevenbar.design.survey.drawn import Drawn
+from sevenbar.design.survey.drawn import FORMAT, Drawn
 from sevenbar.design.survey.tally import BEST, Kept, SurveyTally
 from sevenbar.design.task.problem import TaskModel, TaskProblem
 from sevenbar.design.task.search import DesignsFound, designed
@@ -26,12 +26,6 @@ from sevenbar.design.task.starts import seeds_at
 from sevenbar.design.task.task import DesignTask
 from sevenbar.sweep.sampling import MOST_SOBOL, sobol_points
 from sevenbar.text.progress import Progress, silent
-
-#: The format of a survey's description.
-FORMAT = 1
-
-#: Linkages of a part: what a processor judges in some seconds.
-PART = 256
 
 #: What may be said of a linkage; the first is that it does what is wanted.
 VERDICTS: tuple[str, ...] = ("found", *get_args(Fault))
@@ -58,22 +52,16 @@ class LoopSurvey(Drawn):
     the weighted mean squares of what is left and of what the musts lack. Raises `RequestError`.
     """
 
+    #: What a processor judges in some seconds.
+    part_size = 256
+    verdicts = VERDICTS
+
     task: DesignTask
     count: int = 10**5
     seed: int = 0
 
     def __post_init__(self) -> None:
         self.check_counts(MOST_SOBOL)
-
-    @property
-    def part_size(self) -> int:
-        """Linkages of a part."""
-        return PART
-
-    @property
-    def verdicts(self) -> tuple[str, ...]:
-        """What may be said of a linkage; the first is that it does what is wanted."""
-        return VERDICTS
 
     @property
     def heading(self) -> str:
@@ -109,10 +97,10 @@ class LoopSurvey(Drawn):
                     own.append(value)
             place = self._cell(values)
             if place not in best or kept.order < best[place].order:
-                best[place] = _at(kept, place)
+                best[place] = replace(kept, place=place)
             number = VERDICTS.index(verdict)
             if number and (number not in nearest or kept.order < nearest[number].order):
-                nearest[number] = _at(kept, number)
+                nearest[number] = replace(kept, place=number)
         return SurveyTally(
             verdicts,
             dict(sorted(types.items())),
@@ -144,7 +132,7 @@ class LoopSurvey(Drawn):
             "follow": task.follow,
             "count": self.count,
             "seed": self.seed,
-            "part_size": PART,
+            "part_size": self.part_size,
         }
         plain: dict[str, Any] = json.loads(json.dumps(asked, default=np.ndarray.tolist))
         return plain
@@ -165,10 +153,6 @@ class LoopSurvey(Drawn):
             return designed(self.task, count=count, starts=0, given=given, progress=progress)
         except KeyboardInterrupt:
             return DesignsFound(self.task, (), (), 0, "stopped before the first design")
-
-
-def _at(kept: Kept, place: int) -> Kept:
-    return replace(kept, place=place)
 
 
 def _spread(values: Sequence[float], step: float) -> tuple[int, ...]:

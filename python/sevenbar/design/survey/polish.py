@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -237,29 +236,17 @@ def draft_of(numbers: Floats, branch: int, sense: float, name: str) -> Draft:
     first = poses(numbers, np.zeros(1), branch)
     assert first is not None
     lengths = numbers[:6] * scale_of(numbers)
-    m, n, l1, _, l3, d = lengths
+    m, n, l1, _, l3, d = lengths.tolist()
     s, c = math.sin(numbers[ANGLE]), math.cos(numbers[ANGLE])
     a, b = float(numbers[START]), float(first.output[0])
     up, along = l3 * math.sin(b), l3 * math.cos(b)
-    joints: list[dict[str, Any]] = [
+    joints = [
         {"name": "crank", "kind": "R", "at": [0.0, 0.0, n], "axis": [0.0, 0.0, 1.0]},
         {"name": "A", "kind": "S", "at": [l1 * math.cos(a), l1 * math.sin(a), n]},
         {"name": "B", "kind": "S", "at": [m * s - c * up, d + along, m * c + s * up]},
         {"name": "rocker", "kind": "R", "at": [m * s, d, m * c], "axis": [sense * s, 0.0, sense * c]},
     ]
-    for joint in joints:
-        for key in ("at", "axis"):
-            if key in joint:
-                joint[key] = [float(x) for x in joint[key]]
-    raw: dict[str, Any] = {
-        "format": 1,
-        "name": name,
-        "length_unit": "mm",
-        "angle_unit": "deg",
-        "drive": {"joint": "crank", "output": "rocker"},
-        "joint": joints,
-    }
-    return Draft("", raw, name)
+    return Draft.made(name, "mm", drive={"joint": "crank", "output": "rocker"}, joint=joints)
 
 
 def judged(task: SurveyTask, numbers: Floats, kept: Kept) -> Candidate | Refusal:
@@ -332,7 +319,7 @@ def swung(want: SwingWish, found: Candidate) -> Candidate:
         "input_at_low_deg": math.degrees(circuit.angle.lowest_at % math.tau),
         "input_at_high_deg": math.degrees(circuit.angle.highest_at % math.tau),
     }
-    return replace(found, claim=replace(found.claim, figures=figures), error_greatest=error, error_rms=error)
+    return replace(found, claim=replace(found.claim, figures=figures, errors=np.array([error])))
 
 
 def _errors(task: SurveyTask, dense: Floats, angles: Floats) -> tuple[Floats, dict[str, float]]:

@@ -7,18 +7,18 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
 from sevenbar.design.candidates import spoken_tally
 from sevenbar.design.files import design_files
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.task import SurveyTask
+from sevenbar.design.tables import columns_table, plain_designs
 from sevenbar.design.task.report import TaskDesigns
 from sevenbar.design.wish import Wish
 from sevenbar.kinematics.solvers.surveys import NUMBERS
 from sevenbar.reporting.files import Report
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, page
 from sevenbar.text.words import retold, retold_parts, say
 
 #: Columns of the printed table, by their names in `Candidate.columns`, those that a task has.
@@ -64,18 +64,9 @@ def text(count: int, found: SurveyResult) -> RenderableType:
     if found.refusals:
         reasons = spoken_tally(found.refusals)
         facts.add("of the best", say("{reasons} refused after polishing", reasons=reasons))
-    parts: list[RenderableType] = [Text(say("Survey of RSSRs"), style="bold underline"), facts.grid]
-    rows = [candidate.columns for candidate in found.candidates[:count]]
-    if rows:
-        for names in (PRINTED, NUMBER_COLUMNS):
-            own = [name for name in names if name in rows[0]]
-            table = number_table(
-                ["design", *(names[name] for name in own)],
-                [[str(i), *(_cell(row[name]) for name in own)] for i, row in enumerate(rows, 1)],
-                words=[1 + own.index("motion_type")] if "motion_type" in own else [],
-            )
-            parts += [Text(), table]
-    return Group(*parts)
+    best = found.candidates[:count]
+    tables = (columns_table(best, heads) for heads in (PRINTED, NUMBER_COLUMNS)) if best else ()
+    return page(say("Survey of RSSRs"), facts, *tables)
 
 
 def tally_facts(found: SurveyResult) -> list[tuple[str, str]]:
@@ -115,8 +106,8 @@ def as_dict(found: SurveyResult) -> dict[str, Any]:
     return {
         **tally_dict(found),
         "polished": found.polished,
-        "refused": [{"fault": r.fault, "detail": r.detail} for r in found.refusals],
-        "designs": [{"design": i, "name": c.name, **c.columns} for i, c in enumerate(found.candidates, 1)],
+        "refused": list(map(vars, found.refusals)),
+        "designs": plain_designs(found),
     }
 
 
@@ -129,10 +120,6 @@ def _spoken(words: str) -> str:
 def _axes(task: SurveyTask) -> str:
     low, high = map(math.degrees, task.table["angle"])
     return f"at {low:g} deg" if low == high else f"at {low:g}..{high:g} deg"
-
-
-def _cell(value: object) -> str:
-    return f"{value:.5g}" if isinstance(value, float) else say(str(value))
 
 
 def _head(command: str, found: SurveyResult) -> list[str]:

@@ -20,7 +20,7 @@ from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.tally import BEST, SurveyTally
 from sevenbar.design.survey.task import SurveyTask
 from sevenbar.errors import RequestError
-from sevenbar.sweep.parts import other_maker
+from sevenbar.sweep.held_folder import refuse_unlike
 from sevenbar.sweep.plan import maker
 from sevenbar.sweep.run import Made, made_by_processes, made_on_threads, thread_count
 from sevenbar.text.progress import Progress, silent
@@ -102,9 +102,7 @@ def _judged(
     progress: Progress,
 ) -> SurveyTally:
     """The tally of all parts, or of those that were done when Ctrl+C came."""
-    unlike = [one for one in makers if one != makers[0]]
-    if unlike and not mixed:
-        raise RequestError(f"scheduler: {other_maker(makers[0], unlike[0])}")
+    refuse_unlike(makers, mixed=mixed)
     journal = None if folder is None else Journal(folder, task, makers, resume=resume, mixed=mixed)
     tallies = {} if journal is None else dict(journal.tallies)
     total = reduce(add, tallies.values()) if tallies else None

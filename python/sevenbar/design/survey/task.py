@@ -10,19 +10,13 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats, real_array
-from sevenbar.design.limits import MOST_RATIO, MOTION_TYPES, USUAL_SIZE
-from sevenbar.design.survey.drawn import Drawn
+from sevenbar.design.limits import MOST_RATIO, USUAL_SIZE, Limits
+from sevenbar.design.survey.drawn import FORMAT, Drawn
 from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.wish import Wish
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import RequestError, check_word, shown, suggestion
 from sevenbar.kinematics.solvers.batches import CODES
 from sevenbar.kinematics.solvers.surveys import NUMBERS, VERDICTS, CoreSurvey, core_survey
-
-#: The format of a survey's description.
-FORMAT = 1
-
-#: Linkages of a part: what a processor judges in some tenths of a second.
-PART = 2**18
 
 #: Readings at which linkages are compared: about so far apart [rad], and how many.
 READING_STEP, FEWEST_READINGS, MOST_READINGS = math.radians(7.5), 7, 16
@@ -64,10 +58,26 @@ class Travel:
 
 @dataclass(frozen=True, eq=False)
 class SwingWish:
-    """The output of a crank-rocker swings through `angle` [rad], slower one way by `time_ratio` >= 1."""
+    """The output of a crank-rocker swings through `angle` [rad], slower one way by `time_ratio` >= 1.
+
+    Raises `RequestError`.
+    """
 
     angle: float
     time_ratio: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not 0 < self.angle < math.tau:
+            raise RequestError(
+                f"swing: {math.degrees(self.angle):g} deg is no swing of a rocker; "
+                "give an angle between 0 and 360 deg"
+            )
+        # beyond it the crank would stand still for all purposes on its quick way
+        if not 1 <= self.time_ratio <= MOST_RATIO:
+            raise RequestError(
+                f"time ratio: {self.time_ratio:g} is not offered; it is the slower stroke over the quicker: "
+                f"give 1 to {MOST_RATIO:g}"
+            )
 
     @property
     def slow(self) -> float:
@@ -90,6 +100,10 @@ class SurveyTask(Drawn):
     range that is used, `motion_type`, `ratio` (longest length over shortest link), and turn its balls no
     further than `ball_angle` [rad] from the best seat of each. Raises `RequestError`.
     """
+
+    #: What a processor judges in some tenths of a second.
+    part_size = 2**18
+    verdicts = VERDICTS
 
     want: Wish | Travel | SwingWish
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -130,11 +144,7 @@ class SurveyTask(Drawn):
         if not 0 < self.tolerance <= math.pi:
             degrees = math.degrees(self.tolerance)
             raise RequestError(f"tolerance: {degrees:g} deg is none; give an angle > 0")
-        if not 0 <= self.transmission_lowest < math.pi / 2:
-            degrees = math.degrees(self.transmission_lowest)
-            raise RequestError(
-                f"transmission: {degrees:g} deg is no limit; give an angle from 0 to below 90 deg"
-            )
+        Limits(self.transmission_lowest, motion_type=self.motion_type)
         # the core's smallest cones are those within half a space
         if not (0 < self.ball_angle <= math.pi / 2 or self.ball_angle == math.pi):
             degrees = math.degrees(self.ball_angle)
@@ -143,31 +153,13 @@ class SurveyTask(Drawn):
             )
         if not self.ratio > 1:
             raise RequestError(f"ratio: {self.ratio:g} is no ratio of lengths; give a number > 1")
-        for name, word, words in (
-            ("motion type", self.motion_type, MOTION_TYPES),
-            ("rank", self.rank, RANKS),
-        ):
-            if word is not None and word not in words:
-                raise RequestError(
-                    f"{name}: {shown(word)} is not offered; "
-                    f"{suggestion(word, words)}give one of {', '.join(words)}"
-                )
+        check_word("rank", self.rank, RANKS)
         _check_want(self.want, self.motion_type)
 
     @property
     def table(self) -> dict[str, tuple[float, float]]:
         """The bounds of all numbers."""
         return {name: self.bounds.get(name, USUAL_BOUNDS[name]) for name in NUMBERS}
-
-    @property
-    def part_size(self) -> int:
-        """Linkages of a part."""
-        return PART
-
-    @property
-    def verdicts(self) -> tuple[str, ...]:
-        """What may be said of a linkage; the first is that it does what is wanted."""
-        return VERDICTS
 
     def tally(self, part: int) -> SurveyTally:
         """The tally of a part."""
@@ -226,7 +218,7 @@ class SurveyTask(Drawn):
             "motion_type": self.motion_type,
             "ratio": self.ratio,
             "rank": self.rank,
-            "part_size": PART,
+            "part_size": self.part_size,
         }
 
     @property
@@ -278,15 +270,15 @@ def _check_want(want: Wish | Travel | SwingWish, motion_type: str | None) -> Non
                     "give two angles less than 360 deg apart, as in 0:90deg"
                 )
     else:
-        if not 0 < want.angle < math.tau or not 1 <= want.time_ratio <= MOST_RATIO:
-            raise RequestError(
-                f"swing: {want.title} is not offered; give a swing between 0 and 360 deg, "
-                f"a time ratio from 1 to {MOST_RATIO:g}"
-            )
-        if motion_type not in (None, "crank-rocker"):
-            raise RequestError(
-                f"motion type: a {motion_type} has no swing with a time ratio; give crank-rocker, or none"
-            )
+        refuse_without_swing(motion_type)
+
+
+def refuse_without_swing(motion_type: str | None) -> None:
+    """Raises `RequestError` for a motion type that has no swing with a time ratio."""
+    if motion_type not in (None, "crank-rocker"):
+        raise RequestError(
+            f"motion type: a {motion_type} has no swing with a time ratio; give crank-rocker, or none"
+        )
 
 
 def drawn_numbers(task: SurveyTask, indices: Sequence[int]) -> Floats:

@@ -229,19 +229,9 @@ def _of_figures(model: TaskModel, draft: Draft, solution: Solved, motion: Motion
     wanted = [want for want in model.figure_wants if not isinstance(want.value, str)]
     errors = np.array([(values[want.name] - float(want.value)) / want.unit for want in wanted] or [0.0])
     lowest = motion.circuits[circuit].transmission
-    lengths = [abs(d.value) for d in draft.dimensions if d.kind == "length"]
-    candidate = Candidate(
-        draft,
-        Claim(none, none, errors, "", {}, whole_turn=True),
-        float(np.abs(errors).max()),
-        float(np.sqrt((errors**2).mean())),
-        motion.motion_type,
-        None if lowest is None else lowest.lowest,
-        max(lengths),
-        circuit,
-        0,
-        none,
-    )
+    claim = Claim(none, none, errors, "", {}, whole_turn=True)
+    least = None if lowest is None else lowest.lowest
+    candidate = Candidate(draft, claim, motion.motion_type, least, circuit, 0, none)
     return within_limits(candidate, model.task.limits)
 
 

@@ -28,7 +28,7 @@ from sevenbar.design.task.task import (
     StraightWant,
     Want,
 )
-from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
+from sevenbar.design.task.wanted_path import turning_back, wanted_inputs, wanted_places
 from sevenbar.errors import NotCoveredError, Problem, RequestError, shown, suggestion
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
@@ -86,11 +86,8 @@ def contradictions(task: DesignTask) -> Iterator[Problem]:
             f"a box stands in space, and with placement {task.placement!r} the linkage may stand anywhere; "
             "leave one of the two out",
         )
-    if task.limits.transmission_lowest and task.draft.linkage.form != "rssr":
-        yield Problem(
-            "limits.transmission",
-            "its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out",
-        )
+    if flaw := task.limits.flaw(task.draft.linkage.form):
+        yield Problem("limits.transmission", flaw)
 
 
 def start_flaws(task: DesignTask) -> Iterator[Problem]:
@@ -367,12 +364,8 @@ def _idle(linkage: Linkage, link: int, what: str) -> Flaws:
 
 
 def _going_one_way(values: Floats, key: str, what: str) -> Flaws:
-    steps = np.diff(values)
-    if (steps > 0).all() or (steps < 0).all():
-        return
-    back = np.flatnonzero(np.sign(steps) != np.sign(steps[0])) if steps[0] else np.array([0])
-    number = int(back[0]) + 2
-    yield key, f"the {what} {number} turns back; inputs must rise, or fall, from one to the next"
+    if number := turning_back(values):
+        yield key, f"the {what} {number} turns back; inputs must rise, or fall, from one to the next"
 
 
 def _placing(task: DesignTask) -> int:

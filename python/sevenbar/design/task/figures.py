@@ -13,7 +13,7 @@ from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.path_page import PathPage, path_page
 from sevenbar.design.task.task import DwellWant, FunctionWant, PathWant, PoseWant
 from sevenbar.design.task.words import must_words
-from sevenbar.drawing.figure import page_figure
+from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, OTHER, styled
 from sevenbar.text.words import say
@@ -81,7 +81,7 @@ def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -
             "error at most {greatest:.3g} {unit}, RMS {rms:.3g} {unit}",
             greatest=up * met.greatest, rms=up * met.rms, unit=units[1],
         )  # fmt: skip
-        figure.suptitle(f"{_title(along)}\n{say('want {number}', number=place + 1)}: {reached}")
+        headline(figure, f"{_title(along)}\n{say('want {number}', number=place + 1)}: {reached}")
         handles, labels = top.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
     return figure
@@ -144,7 +144,7 @@ def musts_figure(along: DesignAlong) -> Figure | None:
         every[-1].set_xlabel(
             say("input: {joint}", joint=f"{linkage.drive.joint} [{_unit(along, linkage.drive.joint)}]")
         )
-        figure.suptitle(f"{_title(along)}\n{say('what must hold, with its room')}")
+        headline(figure, f"{_title(along)}\n{say('what must hold, with its room')}")
     return figure
 
 

@@ -1,11 +1,12 @@
-"""Trade-offs of two wants: designs of which none is better in both, by bounding one and improving the other.
+"""Trade-offs of two wants: the designs of which none is better in both, found by bounding one want.
 
-With f the greatest error of a want, or what a measure is off, each point of the front solves
+With f the greatest error of a want, or the distance of a measure from its value, each point of the front
+solves
 
     least f1    with f2 <= e                                                                          (1)
 
-for a bound e between what f2 is where f1 alone is best, and its own best (the epsilon constraint). Each
-begins at the designs found before it, next to it along the front.
+for a bound e between the value of f2 where f1 alone is best, and the best value of f2 (the epsilon
+constraint). Each search begins at the neighbouring designs found so far.
 
 Source: Y. Haimes, L. Lasdon and D. Wismer, "On a bicriterion formulation of the problems of integrated system
 identification and system optimization", IEEE Trans. Systems, Man, and Cybernetics 1 (1971), 296-297.
@@ -23,7 +24,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.contradictions import refuse_contradictions
-from sevenbar.design.task.search import STARTS, DesignsFound, designed
+from sevenbar.design.task.search import STARTS, DesignsFound, designed, named
 from sevenbar.design.task.task import (
     DesignTask,
     FigureMust,
@@ -39,10 +40,10 @@ from sevenbar.text.progress import Progress, silent
 #: Points of a front, by default and at most.
 POINTS, MOST_POINTS = 9, 50
 
-#: The weight of a want that is bounded, not improved: enough to choose among equals.
+#: The weight of the want that is bounded and not improved: enough to choose among equals.
 BESIDES = 1e-6
 
-#: Two points are one, and one is as good as the other, within this share of the front's extent.
+#: Two points closer than this share of the front's extent are the same, and count as equally good.
 SAME = 1e-4
 
 #: Ends of a front this many times apart are joined by bounds in equal ratios.
@@ -75,17 +76,7 @@ class ParetoFront:
     @property
     def found(self) -> DesignsFound:
         """The designs as those of a search."""
-        title = self.task.draft.linkage.name
-        designs = tuple(
-            replace(
-                point.design,
-                candidate=replace(
-                    point.design.candidate,
-                    draft=point.design.draft.with_value(("name",), f"{title}, front {i}"),
-                ),
-            )
-            for i, point in enumerate(self.points, 1)
-        )
+        designs = named(self.task, [point.design for point in self.points], "front")
         return DesignsFound(self.task, designs, (), self.solved, self.unfinished)
 
     @property
@@ -156,6 +147,8 @@ def _place(task: DesignTask, key: str, given: int | str) -> int:
         return names.index(given)
     number = int(given) if isinstance(given, int) or given.strip().isdecimal() else 0
     if not 1 <= number <= count:
+        if count == 1:
+            raise RequestError("pareto: this task has one want; a trade-off needs two")
         named = "".join(f", or {name}" for name in names if name)
         raise RequestError(f"{key}: {shown(given)} is no want of the task; give 1 to {count}{named}")
     return number - 1

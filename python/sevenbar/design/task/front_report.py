@@ -9,21 +9,21 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
 from sevenbar.arrays import Floats
+from sevenbar.design.tables import design_table
 from sevenbar.design.task.front import ParetoFront
 from sevenbar.design.task.report import TaskDesigns, as_dict, task_report
 from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
 from sevenbar.design.task.words import task_facts, want_words
-from sevenbar.drawing.figure import page_figure
+from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, styled
 from sevenbar.kinematics.measures import measures_named
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.folder import write_csv
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, page
 from sevenbar.text.words import say
 
 
@@ -80,8 +80,7 @@ def _write_table(found: FrontFound, path: Path) -> None:
 def _text(found: FrontFound) -> RenderableType:
     front = found.front
     facts = Facts()
-    for label, words in task_facts(found.task):
-        facts.add(label, words, "bold" if label == "wanted" else "")
+    facts.add_all(task_facts(found.task), bold=["wanted"])
     both = " and ".join(str(place + 1) for place in front.wants)
     facts.add(
         "front", f"of wants {both}: {len(front.points)} points of {front.solved} searches, seed {found.seed}"
@@ -93,19 +92,16 @@ def _text(found: FrontFound) -> RenderableType:
     heads = [f"{name.replace('_', ' ')}\n[{unit}]" if unit else name for name, unit in found.axes]
     rows = [
         [
-            str(i),
             *(f"{value:.5g}" for value in pair),
             f"{point.design.optimality:.1e}",
             f"{point.design.candidate.size:.5g}",
             point.design.candidate.motion_type,
         ]
-        for i, (pair, point) in enumerate(zip(found.values, front.points, strict=True), 1)
+        for pair, point in zip(found.values, front.points, strict=True)
     ]
     unit = found.task.draft.linkage.length_unit
-    table = number_table(
-        ["design", *heads, "KKT\nresidual", f"size\n[{unit}]", "motion type"], rows, words=[5]
-    )
-    return Group(Text(f"Front: {found.name}", style="bold underline"), facts.grid, Text(), table)
+    heads += ["KKT\nresidual", f"size\n[{unit}]", "motion type"]
+    return page(f"Front: {found.name}", facts, design_table(heads, rows, words=heads[-1:]))
 
 
 def _as_dict(found: FrontFound) -> dict[str, Any]:
@@ -138,5 +134,5 @@ def front_figure(found: FrontFound) -> Any:
         axes.set_ylabel(labels[1])
         axes.xaxis.set_major_locator(MaxNLocator(7))
         axes.grid(lw=0.6)
-        figure.suptitle(f"{short(found.name, 60)}\n{say('none is better in both')}")
+        headline(figure, f"{short(found.name, 60)}\n{say('none is better in both')}")
     return figure

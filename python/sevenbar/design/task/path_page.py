@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.asked import asked_view
-from sevenbar.drawing.figure import page_figure
+from sevenbar.drawing.figure import fit_letters, headline, page_figure
 from sevenbar.drawing.page import place_picture
 from sevenbar.drawing.style import COMPUTED, OTHER, letters, styled
 from sevenbar.drawing.view import view_of
@@ -38,6 +38,9 @@ NUMBERED = 6
 
 #: A path narrower than this part of its extent is seen from its edge.
 EDGE = 0.1
+
+#: What the title of the errors may take of the page's width.
+HEAD = 0.39
 
 #: Colour of the error's bars.
 BAR = "#404040"
@@ -104,16 +107,17 @@ def path_page(linkage: Linkage, page: PathPage) -> Figure:
         below.yaxis.set_major_locator(MaxNLocator(4))
         below.grid(axis="y", lw=0.6)
         below.set_axisbelow(True)
-        below.set_title(
+        head = below.set_title(
             "(e) "
             + say(
                 "error: greatest {greatest:.3g} {unit}, root mean square {rms:.3g} {unit}",
                 greatest=float(np.abs(errors).max()), rms=float(np.sqrt((errors**2).mean())), unit=unit,
             )
         )  # fmt: skip
+        fit_letters(head, HEAD * width)
         handles, labels = space.axes.get_legend_handles_labels()
         figure.legend(handles[::-1], labels[::-1], loc="center", bbox_to_anchor=(0.90, 0.325), frameon=False)
-        figure.suptitle(page.title)
+        headline(figure, page.title)
     return figure
 
 

@@ -13,6 +13,7 @@ from rich.text import Text
 
 from sevenbar.design.candidates import Candidate
 from sevenbar.design.files import design_files
+from sevenbar.design.tables import plain_designs, sheets
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.figures import musts_figure, want_figure
@@ -20,7 +21,7 @@ from sevenbar.design.task.search import DesignsFound
 from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust
 from sevenbar.design.task.words import must_words, task_facts, want_words
 from sevenbar.reporting.files import Report, figure_files
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, page
 
 #: Numbers in a printed table, side by side.
 ACROSS = 7
@@ -147,29 +148,13 @@ def _head(command: str, found: TaskDesigns) -> list[str]:
 def text(found: TaskDesigns) -> RenderableType:
     """The designs for people."""
     facts = Facts()
-    for label, words in _facts(found):
-        facts.add(label, words, "bold" if label in ("wanted", "answer") else "")
+    facts.add_all(_facts(found), bold=("wanted", "answer"))
     if found.unfinished:
         facts.add("unfinished", found.unfinished, "bold yellow")
-    parts: list[RenderableType] = [
-        Text(f"Design: {found.name}", style="bold underline"),
-        facts.grid,
-    ]
-    for table in _tables(found) if found.found.designs else ():
-        parts += [Text(), table]
-    free = found.task.free
-    for begin in range(0, len(free) if found.found.designs else 0, ACROSS):
-        some = free[begin : begin + ACROSS]
-        units = [found.task.draft.dimension(one.name).unit for one in some]
-        heads = [f"{one.name}\n[{unit}]" if unit else one.name for one, unit in zip(some, units, strict=True)]
-        rows = [
-            [str(i), *(_bounded(design, begin + k, one.low, one.high) for k, one in enumerate(some))]
-            for i, design in enumerate(found.found.designs, 1)
-        ]
-        parts += [Text(), number_table(["design", *heads], rows)]
+    tables = _tables(found) if found.found.designs else []
     if any(_on_bound(design, found.task) for design in found.found.designs):
-        parts.append(Text("* on its bound", style="dim"))
-    return Group(*parts)
+        tables[-1] = Group(tables[-1], Text("* on its bound", style="dim"))
+    return page(f"Design: {found.name}", facts, *tables)
 
 
 def _on_bound(design: TaskDesign, task: DesignTask) -> bool:
@@ -187,7 +172,7 @@ def _bounded(design: TaskDesign, place: int, low: float, high: float) -> str:
 
 
 def _tables(found: TaskDesigns) -> list[RenderableType]:
-    """Tables with a line for each design: how well each want is met; the musts, the optimum, what it is."""
+    """Tables with a line for each design: how well each want is met, what it is, its free numbers."""
     task, designs, unit = found.task, found.found.designs, found.task.draft.linkage.length_unit
     met: list[tuple[str, list[str]]] = []
     for number, (place, _) in enumerate(task.sampled):
@@ -208,14 +193,12 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
         ("motion type", [design.candidate.motion_type for design in designs]),
         ("circuit", [str(design.candidate.circuit) for design in designs]),
     ]
-    parts = [met[i : i + ACROSS] for i in range(0, len(met), ACROSS)]
-    return [_columns(part, ()) for part in parts] + [_columns(rest, [len(rest) - 1])]
-
-
-def _columns(columns: Sequence[tuple[str, list[str]]], words: Sequence[int]) -> RenderableType:
-    """A table of columns, a line for each design."""
-    rows = [[str(i), *cells] for i, cells in enumerate(zip(*(own for _, own in columns), strict=True), 1)]
-    return number_table(["design", *(head for head, _ in columns)], rows, words=words)
+    free: list[tuple[str, list[str]]] = []
+    for k, one in enumerate(task.free):
+        own = task.draft.dimension(one.name).unit
+        cells = [_bounded(design, k, one.low, one.high) for design in designs]
+        free.append((f"{one.name}\n[{own}]" if own else one.name, cells))
+    return [*sheets(met, ACROSS), *sheets(rest, len(rest), words=["motion type"]), *sheets(free, ACROSS)]
 
 
 def as_dict(found: TaskDesigns) -> dict[str, Any]:
@@ -236,12 +219,10 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
         "begun": found.found.starts,
         "seed": found.seed,
         "unfinished": found.unfinished or None,
-        "refused": [{"fault": r.fault, "detail": r.detail} for r in found.found.refusals],
+        "refused": list(map(vars, found.found.refusals)),
         "designs": [
             {
-                "design": i,
-                "name": candidate.name,
-                **candidate.columns,
+                **own,
                 "wants": [
                     {"want": place + 1, "greatest": met.greatest, "rms": met.rms, "unit": met.unit}
                     for (place, _), met in zip(task.sampled, design.met, strict=True)
@@ -249,9 +230,7 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
                 "musts": _rooms(task, design),
                 "values": dict(zip(task.names, map(float, design.values), strict=True)),
             }
-            for i, (design, candidate) in enumerate(
-                zip(found.found.designs, found.candidates, strict=True), 1
-            )
+            for own, design in zip(plain_designs(found), found.found.designs, strict=True)
         ],
         **found.plain,
     }

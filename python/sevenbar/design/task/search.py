@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.design.candidates import Candidate, Refusal, least_error, likeness, tally
+from sevenbar.design.candidates import Candidate, Refusal, distinct, least_error, likeness, renamed, tally
 from sevenbar.design.course import SearchCourse
+from sevenbar.design.extra import need_scipy
 from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.solve import LOOK, Solved, solved
@@ -24,9 +25,6 @@ STARTS = 256
 
 #: Of the starts so many for each design wanted are tried closer, and of these so many solved at most.
 TRIED, TAKEN = 8, 3
-
-#: Two designs are one where no dimension, relative to the longest [or rad], differs by more.
-SAME = 0.05
 
 #: A look leads to a design that is kept where no dimension differs by more; and it is left where its least
 #: squares are more than so many times those of the designs that are kept.
@@ -131,6 +129,7 @@ def designed(
         >>> best.met[0].greatest < 1e-9
         True
     """
+    need_scipy()
     model = TaskModel(task)
     course = SearchCourse(starts + 1 + len(given) + (TRIED + TAKEN) * count, progress)
     kept: list[TaskDesign] = []
@@ -145,8 +144,8 @@ def designed(
         if not kept:
             raise
         unfinished = course.unfinished
-    best = distinct_designs(kept)[:count]
-    return DesignsFound(task, tuple(named(task, best)), tuple(refusals), found, unfinished)
+    best = distinct(kept, scale_free=False, count=count)
+    return DesignsFound(task, named(task, best), tuple(refusals), found, unfinished)
 
 
 def _search(
@@ -172,7 +171,7 @@ def _search(
             return
     tried.sort(key=lambda look: (look.room < -0.01, look.cost))
     for i, look in enumerate(tried):
-        if len(distinct_designs(kept)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
+        if len(distinct(kept, scale_free=False)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
             break
         _take(model, look, count, kept, refusals)
         course.step(_best(model.task, kept), done=int(course.done < course.total))
@@ -187,7 +186,7 @@ def _best(task: DesignTask, kept: Sequence[TaskDesign]) -> str:
 
 def _worst(kept: Sequence[TaskDesign], count: int) -> float:
     """The cost of the last of so many distinct designs; infinite while there are fewer."""
-    found = distinct_designs(kept)[:count]
+    found = distinct(kept, scale_free=False, count=count)
     return found[-1].cost if len(found) == count else math.inf
 
 
@@ -223,24 +222,7 @@ def _first_look(model: TaskModel, one: TaskSeed) -> Solved | None:
     return look if other is None or other.cost > look.cost else other
 
 
-def distinct_designs(designs: Sequence[TaskDesign]) -> list[TaskDesign]:
-    """The designs that differ, the first of those that are alike."""
-    kept: list[TaskDesign] = []
-    for one in designs:
-        own = likeness(one.draft, scale_free=False)
-        others = (likeness(other.draft, scale_free=False) for other in kept)
-        if all(np.abs(own - other).max() > SAME for other in others):
-            kept.append(one)
-    return kept
-
-
-def named(task: DesignTask, designs: Sequence[TaskDesign]) -> list[TaskDesign]:
+def named(task: DesignTask, designs: Sequence[TaskDesign], word: str = "design") -> tuple[TaskDesign, ...]:
     """The designs with the names `title, design 1`, .. in their order."""
-    title = task.draft.linkage.name
-    return [
-        replace(
-            one,
-            candidate=replace(one.candidate, draft=one.draft.with_value(("name",), f"{title}, design {i}")),
-        )
-        for i, one in enumerate(designs, 1)
-    ]
+    candidates = renamed((one.candidate for one in designs), task.draft.linkage.name, word)
+    return tuple(replace(one, candidate=own) for one, own in zip(designs, candidates, strict=True))

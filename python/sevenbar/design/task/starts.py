@@ -12,6 +12,7 @@ from sevenbar.design.task.match import STILL, Placing
 from sevenbar.design.task.passes import InputPass, passes
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.wants.figures import figure_left
+from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Begun
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.sweep.sampling import sobol_points
@@ -92,7 +93,7 @@ def _with_figures(model: TaskModel, seed: TaskSeed) -> list[TaskSeed]:
 def _on_pass(model: TaskModel, values: Floats, one: InputPass) -> list[TaskSeed]:
     """The wants on one pass, each at its best; the first one, which places the linkage, in all its ways."""
     scaled = model.task.placement == "free with scale"
-    order = sorted(range(len(model.wanted)), key=lambda i: not hasattr(model.wanted[i], "places"))
+    order = sorted(range(len(model.wanted)), key=lambda i: not isinstance(model.wanted[i], PlacesWanted))
     firsts = model.wanted[order[0]].begun(one, None if model.placed else STILL, scaled=scaled)
     found: list[TaskSeed] = []
     for first in firsts:

@@ -42,6 +42,15 @@ def wanted_places(points: npt.ArrayLike) -> tuple[Floats, bool]:
     return wanted, closed
 
 
+def turning_back(values: Floats) -> int | None:
+    """The number, from 1, of the first value that goes back; `None` where they rise or fall throughout."""
+    steps = np.diff(values)
+    if (steps > 0).all() or (steps < 0).all():
+        return None
+    back = np.flatnonzero(np.sign(steps) != np.sign(steps[0])) if steps[0] else [0]
+    return int(back[0]) + 2
+
+
 def wanted_inputs(timing: npt.ArrayLike | None, wanted: Floats, closed: bool) -> Floats | None:
     """The inputs of the points, that of the closing one left out."""
     if timing is None:
@@ -55,10 +64,8 @@ def wanted_inputs(timing: npt.ArrayLike | None, wanted: Floats, closed: bool) ->
         raise RequestError(
             f"timing: {inputs.size} inputs for {len(wanted)} points; give one for each, in their order"
         )
-    steps = np.diff(inputs)
-    if not ((steps > 0).all() or (steps < 0).all()):
-        i = int(np.flatnonzero(np.sign(steps) != np.sign(steps[0]))[0]) if steps[0] else 0
+    if number := turning_back(inputs):
         raise RequestError(
-            f"timing: the input of point {i + 2} turns back; inputs must rise, or fall, from point to point"
+            f"timing: the input of point {number} turns back; inputs must rise, or fall, from point to point"
         )
     return closing

@@ -10,14 +10,14 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.words import output_unit, output_values, output_words
-from sevenbar.drawing.figure import key_below, page_figure, tidy
+from sevenbar.drawing.figure import headline, key_below, page_figure, tidy
 from sevenbar.drawing.names import quantity_label, short
 from sevenbar.drawing.space import measuring
 from sevenbar.drawing.style import COMPUTED, OTHER, letters, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.text.words import say
 
-#: Bars beyond the first so many share one, and their height [inch].
+#: Bars beyond the first so many share one, and their height [inch] for letters of 9 points.
 MOST_BARS, BAR = 14, 0.28
 
 LINEAR, EXACT, BAND = COMPUTED, OTHER, "#e2dff2"
@@ -33,7 +33,8 @@ def shares_figure(linear: Linear) -> Figure:
         labels = [*labels[: MOST_BARS - 1], say("{count} others together", count=rest)]
         shares = [*shares[: MOST_BARS - 1], sum(shares[MOST_BARS - 1 :])]
     with styled():
-        figure = page_figure(6.4, 1.5 + BAR * len(labels), pads=(0.06, 0.06))
+        figure = page_figure(6.4, 1.0, pads=(0.06, 0.06))
+        figure.set_figheight((1.5 + BAR * len(labels)) * letters() / 9.0)
         axes = figure.subplots()
         axes.barh(range(len(labels)), shares, color=LINEAR, height=0.62)
         axes.set_yticks(range(len(labels)), labels)
@@ -50,7 +51,7 @@ def shares_figure(linear: Linear) -> Figure:
         axes.grid(axis="x", lw=0.6)
         axes.set_axisbelow(True)
         axes.spines[["top", "right"]].set_visible(False)
-        figure.suptitle(f"{short(linear.found.linkage.heading, 60)}\n{say('which tolerance matters most')}")
+        headline(figure, f"{short(linear.found.linkage.heading, 60)}\n{say('which tolerance matters most')}")
     return figure
 
 
@@ -75,7 +76,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
         )
         key_below(figure, grid[0].get_legend_handles_labels()[0])
         what = say("what the tolerances do, circuit {number}", number=linear.found.circuit.index)
-        figure.suptitle(f"{short(linear.found.linkage.heading, 60)}\n{what}")
+        headline(figure, f"{short(linear.found.linkage.heading, 60)}\n{what}")
         tidy(figure)
     return figure
 

@@ -11,10 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from sevenbar.arrays import is_number
 from sevenbar.design.tolerance.linear import Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_word, shown
 from sevenbar.kinematics.linkage import Linkage
 
 #: By which sum the wanted error is met.
@@ -54,12 +55,9 @@ def tolerances_for(
         >>> round(float(found.worst.max()), 12)
         0.001
     """
-    if isinstance(wanted, bool) or not (
-        isinstance(wanted, int | float) and math.isfinite(wanted) and wanted > 0
-    ):
+    if not (is_number(wanted) and math.isfinite(wanted) and wanted > 0):
         raise RequestError(f"wanted: {shown(wanted)} is not an error; give one greater than 0")
-    if sum not in SUMS:
-        raise RequestError(f"sum: {shown(sum)} is not offered; give {' or '.join(SUMS)}")
+    check_word("sum", sum, SUMS)
     found = of if isinstance(of, Sensitivities) else sensitivities(of)
 
     def estimate(chosen: Tolerances) -> Linear:

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.table import Table
-from rich.text import Text
 
 from sevenbar.arrays import counted
 from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
@@ -23,7 +22,7 @@ from sevenbar.design.tolerance.worst import WorstCase
 from sevenbar.kinematics.measures import MEASURES
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
-from sevenbar.reporting.page import Facts, drive_text, number_table
+from sevenbar.reporting.page import Facts, drive_text, number_table, page
 from sevenbar.text.words import retold, say, spoken
 
 #: Dimensions of a corner design that the page names; the JSON has all.
@@ -76,11 +75,8 @@ def text(findings: Findings) -> RenderableType:
         facts.add("", exact.verdict, style="bold")
     for note in linear.left_out():
         facts.add("note", retold(note))
-    title = Text(found.linkage.heading, style="bold underline")
-    parts: list[RenderableType] = [title, facts.grid, Text(), _effects_table(linear)]
-    if found.measures:
-        parts += [Text(), _measures_table(linear)]
-    return Group(*parts)
+    measures = [_measures_table(linear)] if found.measures else []
+    return page(found.linkage.heading, facts, _effects_table(linear), *measures)
 
 
 def as_dict(findings: Findings) -> dict[str, Any]:

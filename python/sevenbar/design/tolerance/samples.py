@@ -20,12 +20,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, whole_number
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
-from sevenbar.errors import RequestError, SevenbarError, shown
+from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
@@ -159,15 +159,13 @@ def monte_carlo(
         >>> found.lost, found.holds
         (0, True)
     """
-    if isinstance(count, bool) or not isinstance(count, int | np.integer) or not 2 <= count <= MOST:
-        raise RequestError(f"count: {shown(count)} samples tell nothing; give 2 to {MOST}")
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise RequestError(f"seed: {shown(seed)} is not a seed; give a whole number that is not negative")
+    count = whole_number("count", count, 2, MOST, "a number of samples")
+    seed = whole_number("seed", seed, 0, None, "a seed")
     if isinstance(given, Linear):
         linear = given
     else:
         linear = linear_estimate(of, given, distribution=distribution, output=output, quantity=quantity)
-    changes = linear.tolerances.drawn(int(count), linear.distribution, np.random.default_rng(seed))
+    changes = linear.tolerances.drawn(count, linear.distribution, np.random.default_rng(seed))
     designs = ChangedDesigns(linear)
     exact = np.empty((changes.shape[1], len(linear.rows)))
     gap = np.zeros(changes.shape[1], dtype=bool)
@@ -191,8 +189,8 @@ def monte_carlo(
         )
     return MonteCarlo(
         linear=linear,
-        seed=int(seed),
-        count=int(count),
+        seed=seed,
+        count=count,
         lost=int(lost.sum()),
         looked_at=looked_at,
         reasons=reasons,

@@ -10,7 +10,7 @@ import numpy as np
 from sevenbar.arrays import Booleans, Floats, Integers, Words, short_way
 from sevenbar.description.draft import Draft
 from sevenbar.design.tolerance.outputs import Output, outputs_of, slopes_of, values_of
-from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
+from sevenbar.errors import NotCoveredError, RequestError, check_word, shown, suggestion
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable, chosen_circuit
 from sevenbar.kinematics.dynamics.force_measures import force_slopes
@@ -85,8 +85,7 @@ class Sensitivities(Printed):
 
         Raises `RequestError` for one that does not exist.
         """
-        if quantity not in ESTIMATED:
-            raise RequestError(f"quantity: {shown(quantity)} is not offered; give {', '.join(ESTIMATED)}")
+        check_word("quantity", quantity, ESTIMATED)
         name = self.output_name if output is None else output
         for k, one in enumerate(self.outputs):
             if name == one.name and quantity in ("position", one.quantity):

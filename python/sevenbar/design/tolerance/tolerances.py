@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import RequestError, check_word, shown, suggestion
 from sevenbar.kinematics.numbers.dimensions import Dimension
 from sevenbar.text.ranges import split_name
 from sevenbar.text.units import LENGTHS
@@ -57,12 +57,7 @@ class Tolerances:
 
     def deviations(self, distribution: str) -> Floats:
         """The standard deviations (dimensions,) of errors spread so; `RequestError` for an unknown word."""
-        if distribution not in DEVIATIONS:
-            near = suggestion(str(distribution), DEVIATIONS)
-            raise RequestError(
-                f"distribution: {shown(distribution)} is not offered; {near}"
-                f"give one of {', '.join(DEVIATIONS)}"
-            )
+        check_word("distribution", distribution, DEVIATIONS)
         return self.widths * DEVIATIONS[distribution]
 
     def drawn(self, count: int, distribution: str, random: np.random.Generator) -> Floats:

@@ -17,10 +17,8 @@ def output_words(linear: Linear) -> str:
     one = linear.found.outputs[linear.found.place(linear.output, linear.quantity)]
     if not one.joint:
         return one.name
-    turns = one.unit == "rad"
-    if one.quantity == "position":
-        return say("{quantity} of {joint}", quantity=say("angle" if turns else "position"), joint=one.owner)
-    return say("{quantity} of {joint}", quantity=say(one.quantity), joint=one.owner)
+    word = "angle" if one.quantity == "position" and one.unit == "rad" else one.quantity
+    return say("{quantity} of {joint}", quantity=say(word), joint=one.owner)
 
 
 def output_unit(linear: Linear) -> str:

@@ -6,27 +6,32 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Integers, Words, counted, finite_array
+from sevenbar.arrays import Floats, Integers, Words, counted, finite_array, whole_number
 from sevenbar.errors import RequestError, ends_here, shown
-from sevenbar.forces.bodies import Body
-from sevenbar.forces.counterweights import Balance
-from sevenbar.forces.free_motion.equilibria import Equilibrium
-from sevenbar.forces.free_motion.result import FreeMotion
-from sevenbar.forces.loading import Load, Spring
-from sevenbar.forces.result import Forces
-from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
-from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange, WithExtents
-from sevenbar.kinematics.circuits.instant_centres import InstantCentres, instant_centres
-from sevenbar.kinematics.circuits.link_motion import LinkMotion, link_motion
-from sevenbar.kinematics.loop.geometry import Point
+from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Tally, Trace
+from sevenbar.kinematics.circuits.with_extents import WithExtents
 from sevenbar.kinematics.loop.rigid import placed, pose
-from sevenbar.kinematics.loop.screw_axes import ScrewAxes, Twists, screw_axes
 from sevenbar.text.printing import Printed
+
+# what a circuit gives when it is asked is imported by the answer, not with every circuit
+if TYPE_CHECKING:
+    from sevenbar.forces.acting import Load, Spring
+    from sevenbar.forces.bodies import Body
+    from sevenbar.forces.counterweights import Balance
+    from sevenbar.forces.free_motion.equilibria import Equilibrium
+    from sevenbar.forces.free_motion.result import FreeMotion
+    from sevenbar.forces.result import Forces
+    from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
+    from sevenbar.kinematics.circuits.instant_centres import InstantCentres
+    from sevenbar.kinematics.circuits.link_motion import LinkMotion
+    from sevenbar.kinematics.circuits.sensitivity_values import Sensitivity
+    from sevenbar.kinematics.loop.geometry import Point
+    from sevenbar.kinematics.loop.screw_axes import ScrewAxes, Twists
 
 #: An output that moves less than this compared with the input [rad, or relative to the size] rests.
 AT_REST = 1e-12
@@ -49,6 +54,10 @@ class Answers(Protocol):
 
     def advantage(self, circuit: Circuit) -> Extremes | None:
         """The lowest and the highest mechanical advantage."""
+        ...
+
+    def sensitivity(self, circuit: Circuit) -> Sensitivity:
+        """Derivatives of its joints and the named points by every number of the description."""
         ...
 
     def counterweights(
@@ -161,7 +170,6 @@ class Circuit(Printed, WithExtents):
     speed: float
     _point: Callable[[int, Floats], Trace] = field(repr=False)
     _frames: Floats = field(repr=False)
-    _sensitivity: Callable[[Circuit], Sensitivity] = field(repr=False)
     _answers: Answers = field(repr=False)
     #: The extremes of the transmission angle where the closed form has them.
     _transmission: Extremes | None = field(repr=False)
@@ -311,7 +319,7 @@ class Circuit(Printed, WithExtents):
             >>> found.names, found.position.shape
             (('M', 'N', 'L1', 'L2', 'L3', 'D'), (12, 8, 6))
         """
-        return self._sensitivity(self)
+        return self._answers.sensitivity(self)
 
     @ends_here
     def forces(
@@ -467,6 +475,8 @@ class Circuit(Printed, WithExtents):
         >>> bool(np.allclose(crank.velocity, (0, 0, 10)))
         True
         """
+        from sevenbar.kinematics.circuits.link_motion import link_motion
+
         self._frame(link)
         return link_motion(partial(self._point, int(link)), self.size)
 
@@ -484,6 +494,8 @@ class Circuit(Printed, WithExtents):
             >>> circuit.screw_axes(1).direction[0].tolist()  # the crank turns about its axis
             [0.0, 0.0, 1.0]
         """
+        from sevenbar.kinematics.loop.screw_axes import screw_axes
+
         self._frame(link)
         other = len(self._frames) if relative_to is None else relative_to
         if relative_to is not None:
@@ -507,19 +519,20 @@ class Circuit(Printed, WithExtents):
 
         Source: docs/theory_measures.md, (10).
         """
+        from sevenbar.kinematics.circuits.instant_centres import instant_centres
+
         return instant_centres(self.screw_axes, len(self._frames), self._answers.plane_coordinates)
 
     def _twists(self, link: int) -> tuple[Twists, Words]:
         """How a link moves, by the frame in which its points are written; and the status of each row."""
+        from sevenbar.kinematics.loop.screw_axes import Twists
+
         origin, turning = self.point(link, (0.0, 0.0, 0.0)), self.link_motion(link)
         frame = pose(turning.rotation @ self._frame(link)[:3, :3], origin.position)
         return Twists(frame, turning.velocity, origin.velocity), origin.status
 
     def _frame(self, link: object) -> Floats:
         count = len(self._frames)
-        if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
-            raise RequestError(
-                f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground"
-            )
-        frame: Floats = self._frames[int(link) - 1]
+        number = whole_number("link", link, 1, count, "a link", ", the last is the ground")
+        frame: Floats = self._frames[number - 1]
         return frame

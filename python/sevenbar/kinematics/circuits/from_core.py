@@ -5,23 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import sevenbar._core as _core
 from sevenbar.arrays import Booleans, Floats, Integers, Words
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.circuit_values import (
-    STATUSES,
-    DeadCentre,
-    Extremes,
-    Sensitivity,
-    Tally,
-    Trace,
-)
+from sevenbar.kinematics.circuits.circuit_values import STATUSES, DeadCentre, Extremes, Tally, Trace
 from sevenbar.kinematics.circuits.motion import ChangePoint, Solvable
 from sevenbar.kinematics.circuits.search import Count, OpenRange, Search
-from sevenbar.kinematics.loop.law import Law
+
+if TYPE_CHECKING:
+    from sevenbar.kinematics.loop.law import Law
 
 _STATUS_WORDS = np.array(STATUSES)
 
@@ -79,7 +75,6 @@ def circuit_from(
     law: Law | None,
     size: float,
     point: Callable[[Integers, Words, int, Floats], Trace],
-    sensitivity: Callable[[Circuit], Sensitivity],
     rows: CoreRows | None = None,
 ) -> Circuit:
     """A circuit as the core has it.
@@ -138,7 +133,6 @@ def circuit_from(
         size=size,
         speed=speed if law is None else math.nan,
         _point=partial(point, order, status),
-        _sensitivity=sensitivity,
         _frames=linkage.point_frames,
         _answers=linkage.answers,
         _transmission=_extremes(raw.transmission),

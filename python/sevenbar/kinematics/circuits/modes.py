@@ -55,6 +55,9 @@ class Modes(Printed):
     open_by: Floats = field(default_factory=lambda: np.empty(0))
     #: The closure error [rad, relative to the size] up to which they agree; NaN where nothing is redundant.
     agree: float = math.nan
+    #: A pose (columns,) on a curve of poses that all close at this input: the other joints can still move.
+    #: `q` has isolated modes only, none of that curve. `None` where no such curve was found.
+    on_curve: Floats | None = None
 
     @property
     def status(self) -> Words:

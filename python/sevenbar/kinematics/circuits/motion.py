@@ -12,16 +12,12 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError, RequestError, shown
+from sevenbar.arrays import Floats, whole_number, within_turn
+from sevenbar.errors import RequestError, of_extra
 from sevenbar.kinematics.circuits.circuit import Answers, Circuit
-from sevenbar.kinematics.circuits.extents import JointRange
-from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.search import Search
 from sevenbar.kinematics.circuits.table import circuit_columns
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.grashof import FourBar
-from sevenbar.kinematics.loop.law import Law
 from sevenbar.text.printing import Drawable
 
 #: The least and the greatest closure error [rad, or relative to the size] up to which redundant constraints
@@ -40,6 +36,11 @@ SPARE_FREEDOMS = 7
 if TYPE_CHECKING:
     import pandas as pd
 
+    from sevenbar.kinematics.circuits.extents import JointRange
+    from sevenbar.kinematics.circuits.modes import Modes
+    from sevenbar.kinematics.circuits.near_motion import NearMotion
+    from sevenbar.kinematics.loop.grashof import FourBar
+    from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
 
 
@@ -65,20 +66,6 @@ class ChangePoint:
     def isolated(self) -> bool:
         """Whether no motion leads out of it."""
         return self.ways == 0
-
-
-@dataclass(frozen=True)
-class NearMotion:
-    """How a linkage without a circuit moves if its redundant constraints are taken to agree.
-
-    `miss` [length] is the greatest closure error on the way, `share` the same relative to the linkage size
-    (or in rad); with the closure error `agree` the motion is the one of `motion_type`.
-    """
-
-    motion_type: str
-    miss: float
-    share: float
-    agree: float
 
 
 class Solvable(Loop, ABC):
@@ -203,7 +190,7 @@ class Motion(Drawable):
         """The input at the change points [rad in [0, 2 pi), or length], rising; isolated poses aside."""
         values = np.array([point.input for point in self.change_points if not point.isolated])
         turns = self.linkage.turns(self.input)
-        return np.sort(np.mod(values, math.tau) if turns else values)
+        return np.sort(within_turn(values) if turns else values)
 
     @property
     def idle(self) -> tuple[str, ...]:
@@ -250,6 +237,8 @@ class Motion(Drawable):
         agree = min(MOST_AGREE, float(f"1e{math.ceil(math.log10(NEAR_ENOUGH * share))}"))
         if eased(agree).motion_type != widest.motion_type:
             agree = MOST_AGREE
+        from sevenbar.kinematics.circuits.near_motion import NearMotion
+
         return NearMotion(widest.motion_type, miss, share, agree)
 
     @property
@@ -312,12 +301,8 @@ class Motion(Drawable):
 
     def to_frame(self) -> pd.DataFrame:
         """`columns` as a pandas table (extra `[frame]`)."""
-        try:
+        with of_extra("frame", "to_frame needs pandas"):
             import pandas as pd
-        except ImportError:
-            raise MissingExtraError(
-                "to_frame needs pandas; install it with: pip install 'sevenbar[frame]'"
-            ) from None
         return pd.DataFrame(self.columns())
 
 
@@ -329,7 +314,4 @@ def chosen_circuit(motion: Motion, index: int) -> Circuit:
         raise RequestError(
             f"motion: {motion.motion_type}, the loop closes {closing}; 'sevenbar analyze' says why"
         )
-    if isinstance(index, bool) or not isinstance(index, (int, np.integer)) or not 0 <= index < count:
-        allowed = "0" if count == 1 else f"0 to {count - 1}"
-        raise RequestError(f"circuit: {shown(index)} is not a circuit of this motion; give {allowed}")
-    return motion.circuits[index]
+    return motion.circuits[whole_number("circuit", index, 0, count - 1, "a circuit of this motion")]

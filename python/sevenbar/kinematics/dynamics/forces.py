@@ -19,8 +19,9 @@ import numpy as np
 import sevenbar._core as _core
 from sevenbar.arrays import Booleans, Floats
 from sevenbar.errors import RequestError
+from sevenbar.forces.acting import Load, Spring, Three
 from sevenbar.forces.bodies import Body
-from sevenbar.forces.loading import Load, Loading, Spring, Three
+from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.driven import driven

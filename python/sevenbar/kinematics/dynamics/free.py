@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Words, finite_array, finite_number
+from sevenbar.arrays import Floats, Words, finite_array, finite_number, whole_number
 from sevenbar.errors import RequestError, shown
 from sevenbar.forces.free_motion.conservative import conservative
 from sevenbar.forces.free_motion.course import DAMPING, INPUT, MASS, MASSLESS_WAY, EnergyCourse
@@ -232,14 +232,13 @@ def free_motion_of(
 ) -> FreeMotion:
     """A free motion; see `Circuit.free_motion`."""
     seconds = _seconds(duration)
-    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 2:
-        raise RequestError(f"samples: {shown(samples)} is not a number of rows; give 2 or more")
+    samples = whole_number("samples", samples, 2, None, "a number of rows")
     course = course_of(linkage, circuit, loading)
     constant, motor = _motor(torque, torque_by_time, course)
     own = course.energy.driven_by(constant)
     place = course.start(start, branch)
     rate = course.rate(place, speed, energy)
-    times = np.linspace(0.0, seconds, int(samples))
+    times = np.linspace(0.0, seconds, samples)
     damped = own.quantities.reach[DAMPING] > UNDAMPED * own.quantities.reach[MASS]
     difference = math.nan
     period: float | None = None

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, triple
 from sevenbar.errors import RequestError, shown
-from sevenbar.forces.bodies import Body, as_one, triple
-from sevenbar.forces.loading import Loading
+from sevenbar.forces.bodies import Body, as_one
+from sevenbar.forces.loading import DRAWN_IN, Loading
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import inverse
@@ -21,9 +21,6 @@ from sevenbar.text.units import LENGTHS
 #: A centre within this part of a line's length, and an inertia within this part of itself, are symmetric
 #: about the line.
 SYMMETRIC = 1e-9
-
-#: The module whose `drawn_bodies(linkage, circuit)` gives what exports draw; filled by the package.
-DRAWN_IN: dict[str, str] = {}
 
 
 def resolved(loading: Loading, linkage: Loop, *, circuit: int = 0) -> dict[int, Body]:

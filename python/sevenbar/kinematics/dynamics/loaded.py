@@ -8,8 +8,10 @@ from typing import Any, TypeVar
 
 import numpy.typing as npt
 
-from sevenbar.forces.bodies import Body, entries_of, triple
-from sevenbar.forces.loading import Load, Loading, Spring
+from sevenbar.arrays import triple
+from sevenbar.forces.acting import Load, Spring
+from sevenbar.forces.bodies import Body, entries_of
+from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.dynamics.link_bodies import refuse_no_link
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.units import ANGLES, LENGTHS, MASSES

@@ -24,6 +24,8 @@ from sevenbar.text.printing import Drawable
 #: layout of planar textbooks, joints as drawn.
 Form = Literal["rssr", "rows", "planar", "drawn"]
 
+#: A place in a description: keys of tables, and counts from 0 in lists.
+Place = tuple[str | int, ...]
 
 #: What a linkage is called that was made without a name.
 UNNAMED = "linkage"
@@ -224,7 +226,6 @@ class Loop(Drawable):
 
     def column(self, name: str, key: str) -> int:
         """The place of a column named by the caller; a joint's name stands for its first one."""
-        known = [joint.name for joint in self.joints]
         for joint in self.joints:
             if joint.row.is_ball and name in (joint.name, *joint.columns):
                 raise RequestError(
@@ -234,7 +235,7 @@ class Loop(Drawable):
             if name == joint.name:
                 return self.columns.index(joint.first)
         if name not in self.columns:
-            raise RequestError(f"{key}: {no_joint(name, known)}")
+            raise RequestError(f"{key}: {no_joint(name, [joint.name for joint in self.joints])}")
         return self.columns.index(name)
 
     def input_column(self, name: str | None = None, key: str = "input") -> int:

@@ -5,11 +5,12 @@ With the shortest link s, the longest l and the two others p and q,
     s + l < p + q        both joints of s turn fully, the two others rock                                  (1)
     s + l > p + q        no joint turns fully
     s + l = p + q        a change point: the linkage can fold flat
+    l > s + p + q        the four links do not close
 
 in the plane, and for a slider-crank, which is a four-bar with two infinite links that differ by its offset e,
-s + e against l. On the sphere the links are arcs. An axis may be drawn either way: reversing it replaces the
-arcs on both of its sides by their supplements and changes nothing. With the axes so that the sum of the arcs
-is least, (1) holds as in the plane.
+s + e against l; with e > s + l it does not close. On the sphere the links are arcs. An axis may be drawn
+either way: reversing it replaces the arcs on both of its sides by their supplements and changes nothing. With
+the axes so that the sum of the arcs is least, (1) holds as in the plane.
 
 Source: docs/theory_measures.md, (1) to (3); F. Grashof, "Theoretische Maschinenlehre" 2 (1883); C. H. Chiang,
 "Kinematics of spherical mechanisms" (1988); J. M. McCarthy, G. S. Soh, "Geometric design of linkages" (2011).
@@ -52,6 +53,7 @@ class FourBar(Printed):
         "double-rocker",
         "change point",
         "triple rocker",
+        "cannot close",
         "Grashof",
         "non-Grashof",
     ]
@@ -67,11 +69,14 @@ def four_bar_of_links(
     s, p, q, l = (lengths[k] for k in places)  # noqa: E741
     excess = math.fsum((s, l, -p, -q))
     turning: tuple[str, ...] = ()
-    grashof: Literal["crank-rocker", "double-crank", "double-rocker", "change point", "triple rocker"]
+    grashof: Literal[
+        "crank-rocker", "double-crank", "double-rocker", "change point", "triple rocker", "cannot close"
+    ]
     if abs(excess) <= EQUAL_SUMS * sum(lengths):
         grashof, excess = "change point", 0.0
     elif excess > 0:
-        grashof = "triple rocker"
+        too_long = math.fsum((l, -s, -p, -q)) > EQUAL_SUMS * sum(lengths)
+        grashof = "cannot close" if too_long else "triple rocker"
     else:
         role = roles[shortest]
         opposite = "link 2" if "link 2" in roles else "coupler"
@@ -93,12 +98,13 @@ def slider_crank_of_links(
         offset = 0.0
     shortest, longest = roles if first <= second else reversed(roles)
     excess = math.fsum((s, offset, -l))
-    grashof: Literal["change point", "non-Grashof", "Grashof"]
+    grashof: Literal["change point", "cannot close", "non-Grashof", "Grashof"]
     turning: tuple[str, ...] = ()
     if abs(excess) <= EQUAL_SUMS * (s + l + offset):
         grashof, excess = "change point", 0.0
     elif excess > 0:
-        grashof = "non-Grashof"
+        too_far = math.fsum((offset, -s, -l)) > EQUAL_SUMS * (s + l + offset)
+        grashof = "cannot close" if too_far else "non-Grashof"
     else:
         grashof = "Grashof"
         turning = tuple(names[:2] if first <= second else names[1:])

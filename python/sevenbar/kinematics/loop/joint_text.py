@@ -77,11 +77,13 @@ def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -
 
 def joint_speed(speed: object, linkage: Loop, column: int) -> float:
     """The speed of a joint [rad/s, or length/s] that a caller gives: a number, or a text as in "60 rpm"."""
-    # a number needs no reader of formulas
-    from sevenbar.text.amounts import plain_speed
-
     try:
-        plain = float(speed) if isinstance(speed, np.number) else plain_speed(speed)
+        plain = float(speed) if isinstance(speed, np.number) else speed
+        if isinstance(plain, str):
+            # a number needs no reader of formulas
+            from sevenbar.text.amounts import plain_speed
+
+            plain = plain_speed(plain)
         if not linkage.turns(column):
             return sliding_speed(plain, linkage.length_unit)
         return turning_speed(plain)

@@ -8,11 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.loop.geometry import Joint, Loop
+from sevenbar.kinematics.loop.geometry import Joint, Loop, Place
 from sevenbar.text.units import ANGLES, MASSES, examples_of
-
-#: A place in a description: keys of tables, and counts from 0 in lists.
-Place = tuple[str | int, ...]
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,8 @@ import numpy.typing as npt
 import sevenbar._core as _core
 from sevenbar.arrays import Booleans, Floats, Integers
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.circuit_values import Sensitivity
 from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.circuits.sensitivity_values import Sensitivity
 from sevenbar.kinematics.loop.rigid import about, zyx_turns
 from sevenbar.kinematics.numbers.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.numbers.word import Slots, holding_axis, points_of, word_of

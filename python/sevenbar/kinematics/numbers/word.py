@@ -30,10 +30,9 @@ import numpy as np
 import sevenbar._core as _core
 from sevenbar._core import Product
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.loop.geometry import Form
+from sevenbar.kinematics.loop.geometry import Form, Place
 from sevenbar.kinematics.loop.joints import KINDS, JointKind, Z
 from sevenbar.kinematics.loop.rigid import axis_to_z, cross, half_turn, pose, unit
-from sevenbar.kinematics.numbers.dimensions import Place
 
 #: A point that a link carries.
 Carried = _core.Carried

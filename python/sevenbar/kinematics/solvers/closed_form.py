@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -16,8 +16,9 @@ from sevenbar.kinematics.circuits.from_core import change_points_from, circuit_f
 from sevenbar.kinematics.circuits.modes import Modes, Output
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.circuits.search import Search
-from sevenbar.kinematics.loop.law import Law
-from sevenbar.kinematics.numbers.sensitivity import sensitivity_of
+
+if TYPE_CHECKING:
+    from sevenbar.kinematics.loop.law import Law
 
 Side = Literal["crank", "rocker"]
 
@@ -105,7 +106,6 @@ class ClosedForm:
             law=law,
             size=self.size,
             point=partial(self._trace, rates),
-            sensitivity=partial(sensitivity_of, self._linkage),
         )
 
     def _trace(self, rates: Floats, _order: Integers, _status: Words, link: int, at: Floats) -> Trace:

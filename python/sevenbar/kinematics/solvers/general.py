@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats, Integers, Words
+from sevenbar.arrays import Floats, Integers, Words, within_turn
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Trace
@@ -21,10 +21,11 @@ from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
-from sevenbar.kinematics.loop.law import Law
-from sevenbar.kinematics.loop.mobility import Mobility, redundant_constraints
 from sevenbar.kinematics.loop.rigid import axis_to_z, inverse
-from sevenbar.kinematics.numbers.sensitivity import sensitivity_of
+
+if TYPE_CHECKING:
+    from sevenbar.kinematics.loop.law import Law
+    from sevenbar.kinematics.loop.mobility import Mobility
 
 T = TypeVar("T")
 
@@ -37,8 +38,6 @@ MOST_FREEDOMS = 7
 #: The motion that leaves all where it is.
 STILL = np.eye(4)
 
-#: An angle [rad] short of a full turn by less is zero.
-ROUNDING = 1e-12
 
 #: Limits [rad, or relative to the size] nearer than this are one.
 SAME_LIMIT = 1e-6
@@ -148,11 +147,14 @@ class GeneralLoop:
 
     def modes(self, column: int, value: float) -> Modes:
         """Every assembly mode at one value of a column."""
-        q, residual, completeness, open_by = self._solve(
+        q, residual, completeness, open_by, on_curve = self._solve(
             column, partial(self._core.assembly_modes, column, value)
         )
         columns = self._linkage.columns
-        return Modes(q, residual * self.size, completeness, columns, value, np.array(open_by), self._agree)
+        return Modes(
+            q, residual * self.size, completeness, columns, value, np.array(open_by), self._agree,
+            None if on_curve is None else np.array(on_curve),
+        )  # fmt: skip
 
     def mobility(self, column: int) -> Mobility:
         """How freely the loop moves; poses are looked for over the values of a column."""
@@ -242,6 +244,8 @@ class GeneralLoop:
             ) from None
 
     def _mobility(self, found: _core.RawFound | None) -> Mobility:
+        from sevenbar.kinematics.loop.mobility import Mobility, redundant_constraints
+
         linkage = self._linkage
         freedoms = len(linkage.columns)
         finite = None if found is None else found.finite
@@ -269,7 +273,6 @@ class GeneralLoop:
             speed=speed,
             law=law,
             size=self.size,
-            sensitivity=partial(sensitivity_of, self._linkage),
         )
         if raw.course is None:
             return known(point=partial(self._trace, raw.rows))
@@ -353,8 +356,7 @@ def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
     values: Floats = np.asarray(limits, dtype=np.float64)
     same = SAME_LIMIT if turns else SAME_LIMIT * size
     if turns:
-        values = np.mod(values, math.tau)
-        values[values > math.tau - ROUNDING] = 0.0
+        values = within_turn(values)
     values = np.sort(values)
     if values.size == 0:
         return np.array([])

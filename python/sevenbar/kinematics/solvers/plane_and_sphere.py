@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
@@ -98,8 +99,18 @@ class InPlane(NamedTuple):
     held: int | None
 
 
+#: It is looked for once and lives as long as its loop.
+_FOUND: WeakKeyDictionary[Loop, InPlane | None] = WeakKeyDictionary()
+
+
 def in_plane(loop: Loop) -> InPlane | None:
     """The plane of a planar loop, and what moves in it; `None` for any other."""
+    if loop not in _FOUND:
+        _FOUND[loop] = _found(loop)
+    return _FOUND[loop]
+
+
+def _found(loop: Loop) -> InPlane | None:
     parts = expanded(loop)
     letters, count = parts.letters, len(parts.letters)
     if "H" in letters:

@@ -29,6 +29,12 @@ def put(control: Any, value: object) -> None:
     control.value = value
 
 
+def offer(control: Any, choices: tuple[str, ...]) -> None:
+    """Sets what can be chosen; what is offered already is not sent to the page again."""
+    if control.options != choices:
+        control.options = choices
+
+
 def by_person(event: viser.GuiEvent[Any]) -> bool:
     """Whether a person changed a control, and not the studio itself."""
     return event.client is not None

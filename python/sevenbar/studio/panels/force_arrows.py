@@ -11,8 +11,8 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.force_panels import ROUNDING, greatest_of
 from sevenbar.drawing.style import REACTION
 from sevenbar.kinematics.circuits.poses import at_row
-from sevenbar.reporting.force_words import number
-from sevenbar.studio.panels.controls import Asked, put
+from sevenbar.reporting.shown import number
+from sevenbar.studio.panels.controls import Asked, offer, put
 from sevenbar.studio.panels.scenery import arrow_unit
 from sevenbar.studio.pictures.stage import Arrow, Stage
 from sevenbar.studio.state.acting import SwitchedLoading, known_force
@@ -68,7 +68,7 @@ class ForceArrows:
         """What can be chosen; a joint that there is no more goes back to none."""
         self._names, was = names, self._choice.value
         choices = (NO_ARROWS, EVERY_JOINT, *names) if names else (NO_ARROWS,)
-        self._choice.options = choices
+        offer(self._choice, choices)
         put(self._choice, was if was in choices else NO_ARROWS)
 
     def _wanted(self, chosen: str) -> list[int]:

@@ -8,7 +8,7 @@ from typing import Any
 import viser
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.studio.panels.controls import Alert, Asked, put
+from sevenbar.studio.panels.controls import Alert, Asked, offer, put
 from sevenbar.studio.panels.shaping import DimensionList
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
@@ -62,13 +62,11 @@ class PointsPanel:
         linkage = draft.linkage
         count = len(linkage.joints)
         links = (*(f"{number}" for number in range(1, count)), f"{count} the ground")
-        if links != self._link.options:
-            self._link.options = links
+        offer(self._link, links)
         letters = "u, v, w" if draft.linkage.in_rows else "x, y, z"
         self._at.label = f"at {letters} [{linkage.length_unit}]"
         names = tuple(str(point["name"]) for point in draft.raw.get("point", ()))
-        if (names or (NONE,)) != self._removed.options:
-            self._removed.options = names or (NONE,)
+        offer(self._removed, names or (NONE,))
         self._remove.disabled = not names
         self._list.show()
         taken = {point.name for point in linkage.points}

@@ -11,7 +11,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import places_of, skeleton_of
 from sevenbar.drawing.style import ACCELERATION, CIRCUIT_COLOURS, VELOCITY
 from sevenbar.kinematics.circuits.poses import frames_of
-from sevenbar.studio.panels.controls import Asked
+from sevenbar.studio.panels.controls import Asked, offer
 from sevenbar.studio.pictures.stage import FIELD, Stage
 from sevenbar.studio.state.reach import within
 from sevenbar.studio.state.session import Session
@@ -198,8 +198,7 @@ class Scenery:
     def _draw_axodes(self, view: View, row: float) -> None:
         """The screw axes of the link that is chosen, in the ground and in the link."""
         links = (NO_AXODES, *(f"link {number}" for number in range(1, len(view.linkage.joints))))
-        if links != self._axodes.options:
-            self._axodes.options = links
+        offer(self._axodes, links)
         chosen = links.index(self._axodes.value) if self._axodes.value in links else 0
         if not chosen:
             self.stage.axodes(np.empty((0, 2, 3)), np.empty((0, 2, 3)))

@@ -8,7 +8,7 @@ from typing import Any
 import viser
 
 from sevenbar.kinematics.numbers.dimensions import Dimension
-from sevenbar.studio.panels.controls import Alert, Asked, by_person, put
+from sevenbar.studio.panels.controls import Alert, Asked, by_person, offer, put
 from sevenbar.studio.panels.dimension_rows import DimensionRow, largest_length
 from sevenbar.studio.state.session import Session
 
@@ -108,7 +108,6 @@ class ShapePanel:
         linkage = self._session.draft.linkage
         choices = tuple(linkage.drivable())
         for control, value in ((self._input, linkage.drive.joint), (self._output, linkage.drive.output)):
-            if control.options != choices:
-                control.options = choices
+            offer(control, choices)
             put(control, value)
         self._list.show()

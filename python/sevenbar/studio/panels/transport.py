@@ -12,7 +12,7 @@ import viser
 from sevenbar.kinematics.circuits.poses import at_row
 from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.shown import value_text
-from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, put
+from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, offer, put
 from sevenbar.studio.state.reach import Reach, stopped_by
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import heading
@@ -151,8 +151,7 @@ class Transport:
             self.pause()
             return
         options = tuple(f"{c.index}: {c.motion_type}" for c in view.motion)
-        if options != self._circuit.options:
-            self._circuit.options = options
+        offer(self._circuit, options)
         put(self._circuit, options[view.circuit.index])
         self._held.visible = bool(view.linkage.stops.stops)
         first, last = (0.0, view.period) if reach is None else reach.times

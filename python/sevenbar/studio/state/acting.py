@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.force_figures import sizing_of
 from sevenbar.errors import SevenbarError
-from sevenbar.forces.loading import Load, Spring
+from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.result import Forces, Reaction
 from sevenbar.forces.sizing import Sizing
 from sevenbar.kinematics.answers import LinkageAnswers

@@ -9,8 +9,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.kinematics.loop.geometry import Place
 from sevenbar.kinematics.loop.rigid import inverse, placed
-from sevenbar.kinematics.numbers.dimensions import Place
 from sevenbar.studio.state.view import View
 
 #: A place that is dragged is rounded to a power of ten that is at most this share of the linkage's size.

@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.kinematics.numbers.dimensions import Place
+from sevenbar.kinematics.loop.geometry import Place
 from sevenbar.reporting.facts import meaning
 from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.reach import Reach, reaches, stopped_by, within

@@ -11,6 +11,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import shown_value, slides
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.circuits.poses import along
+from sevenbar.kinematics.transmission import coupling_of
 from sevenbar.studio.state.view import View
 
 #: What a column has, by the order of its derivative, as the figures call them.
@@ -123,8 +124,10 @@ def quantities(motion: Motion) -> tuple[Quantity, ...]:
             shown = "position" if slide and order == 0 else word
             add(f"{key}.{word}", f"{name} {shown}", unit, order, column=column)
 
-    add_column("output", "output", linkage.columns.index(motion.output))
-    if any(circuit.transmission_angle is not None for circuit in motion.circuits[:1]):
+    ends = linkage.columns.index(motion.input), linkage.columns.index(motion.output)
+    add_column("output", "output", ends[1])
+    # its values are for those who draw it
+    if motion.circuits and coupling_of(linkage, *ends) is not None:
         add(TRANSMISSION, "transmission angle", "deg", 0)
     for column, name in enumerate(linkage.columns):
         if name != motion.input:

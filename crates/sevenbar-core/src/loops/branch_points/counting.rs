@@ -8,7 +8,9 @@
 //! Source: docs/theory_many.md, (12) to (16), (20).
 
 use super::locating::{Branching, branch_points};
-use super::sectors::{Border, CLEAR, Known, Sector, Stand, Winding, all, apart, less, total, within};
+use super::sectors::{
+    Border, CLEAR, Known, Sector, Stand, Winding, all, apart, is_on_way, less, total, within,
+};
 use super::survey::Survey;
 use crate::loops::equation::chain::Configuration;
 use crate::loops::equation::closure::Solution;
@@ -146,7 +148,9 @@ pub(crate) fn count(
         count.dead_centres = account.known.dead_centres.len();
         count.complex_branch_points = account.located.iter().filter(|b| !b.real).count();
         count.poles = count.poles.max(poles as usize);
-        if count.open.iter().all(|o| o.to - o.from < WIDE) {
+        // with what was located the ways down of the next circle are others
+        let on_way = |o: &Open| [o.from, o.to].iter().any(|at| is_on_way(&account.located, *at));
+        if count.open.iter().all(|o| o.to - o.from < WIDE && !on_way(o)) {
             break;
         }
     }
@@ -157,7 +161,7 @@ impl Account<'_> {
     /// Settles all ranges of a circle; gives how many solutions run to infinity within it, or nothing where a solution was lost on
     /// the way round.
     fn balance(&mut self, circle: &Circle, own: &[usize]) -> Option<i64> {
-        let sectors = self.winding.sectors(&self.known, circle, own)?;
+        let sectors = self.winding.sectors(&self.known, &self.located, circle, own)?;
         for Sector { places, borders: [a, b], numbers } in &sectors {
             if self.missing(Some(*numbers), a, b) == Some(0) {
                 continue;
@@ -343,7 +347,7 @@ mod tests {
         let circle = survey.algebraic.circle(&closure, CIRCLE, 24, CAREFUL);
         let winding = Winding { survey, closure: &closure };
         let sectors = winding
-            .sectors(&Known::default(), &circle, &survey.algebraic.own())
+            .sectors(&Known::default(), &[], &circle, &survey.algebraic.own())
             .unwrap();
         sectors.iter().map(|s| (s.borders[0].angle, s.numbers)).collect()
     }
@@ -402,7 +406,7 @@ mod tests {
         assert_eq!(limits.len(), 4);
         let whole = count_of(&[a, b, c, d], &[0.0; 4], &limits);
         assert_eq!((whole.dead_centres, whole.open), (4, vec![]));
-        // one that is not told is asked for, in a range that holds it
+        // one that is not known is searched for, in a range that holds it
         let lacking = count_of(&[a, b, c, d], &[0.0; 4], &limits[1..]);
         assert!(!lacking.open.is_empty());
         assert!(

@@ -1,7 +1,8 @@
-//! What the phases of followed solutions count between two inputs: branch points, and joints that become infinite.
+//! Counting between two inputs, by the phases of followed solutions: branch points, and poses with a joint at infinity.
 //!
 //! Source: docs/theory_many.md, (13), (14) and (20).
 
+use super::locating::Branching;
 use super::survey::{Infinite, Survey};
 use crate::loops::equation::closure::{Slides, Solution, UNKNOWNS};
 use crate::loops::modes::circle::{Circle, InputClosure};
@@ -12,16 +13,16 @@ use crate::loops::modes::starts::distinct;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// What a count may be off a whole number before something was lost on the way.
+/// Greatest distance of a count from a whole number; a greater one shows that a solution was lost on the way.
 const WHOLE: f64 = 0.02;
 
-/// A solution is the same as another if it is nearer to it than this part of the distance to the next.
+/// Two solutions are the same if their distance is less than this part of the distance to the next nearest.
 const NEARER: f64 = 0.1;
 
-/// Where a range is parted, as parts of it, if a dead centre is in the way.
+/// Where a range is divided, as parts of it: the first of these with no dead centre near.
 const PARTINGS: [f64; 4] = [0.5, 0.43, 0.59, 0.36];
 
-/// No border stands nearer to a dead centre than this [rad].
+/// Least distance of a border from a dead centre [rad].
 pub(super) const CLEAR: f64 = 1e-8;
 
 /// Inputs of the zeros of the determinant that are known [rad].
@@ -29,10 +30,15 @@ pub(super) const CLEAR: f64 = 1e-8;
 pub(crate) struct Known {
     /// Dead centres of all curves.
     pub dead_centres: Vec<f64>,
-    /// Where a curve meets one that only the filled-up closure has.
+    /// Where a curve meets one that exists only in the closure with added joints.
     pub meetings: Vec<f64>,
-    /// Poses at which curves are not smooth: two zeros each.
+    /// Change points and isolated poses: two zeros each.
     pub singular: Vec<f64>,
+}
+
+/// Whether a complex branch point is so near to a way down at an angle that this passes it on either side.
+pub(super) fn is_on_way(located: &[Branching], angle: f64) -> bool {
+    located.iter().any(|b| !b.real && apart(b.tau.re, angle) < CLEAR)
 }
 
 impl Known {
@@ -42,7 +48,7 @@ impl Known {
     }
 }
 
-/// A way down to a real input: where it begins, and the change of the phases on it.
+/// A way from a circle down to the real input at an angle: from which height `ln |e^(i tau)|`, and the change of all phases on it.
 #[derive(Clone, Copy)]
 pub(super) struct Border {
     pub angle: f64,
@@ -50,28 +56,37 @@ pub(super) struct Border {
     pub down: [f64; FACTORS],
 }
 
-/// The range between two borders of a circle, the places at which they stand, and its zeros less poles and infinite joints.
+/// The range between two borders of a circle: the places of the circle above them, and two counts: zeros minus poles of the determinant,
+/// and poses with a joint at infinity.
 pub(super) struct Sector {
     pub places: [usize; 2],
     pub borders: [Border; 2],
     pub numbers: (i64, i64),
 }
 
-/// A border with the places at its top.
+/// A border with the solutions at its top.
 pub(super) struct Stand {
     pub border: Border,
     pub places: Vec<Place>,
 }
 
-/// The zeros between borders, counted by the change of phases on the way round them.
+/// Counts the zeros between borders by the change of phases on the way round them (the argument principle).
 pub(super) struct Winding<'a> {
     pub survey: &'a Survey<'a>,
     pub closure: &'a InputClosure<'a>,
 }
 
 impl Winding<'_> {
-    /// The ranges between the borders of a circle, and what is counted in each; none where a solution was lost on the way round.
-    pub fn sectors(&self, known: &Known, circle: &Circle, own: &[usize]) -> Option<Vec<Sector>> {
+    /// The ranges between the borders of a circle, and the counts in each; `None` if a solution was lost on the way round.
+    ///
+    /// `own` are the paths of the circle that belong to this closure, `located` the complex branch points that are known.
+    pub fn sectors(
+        &self,
+        known: &Known,
+        located: &[Branching],
+        circle: &Circle,
+        own: &[usize],
+    ) -> Option<Vec<Sector>> {
         let count = circle.count;
         let all = |at: &[Option<Place>]| all(own, at);
         let lost = |at: &Vec<Option<Place>>| own.iter().any(|&path| at[path].is_none());
@@ -88,6 +103,7 @@ impl Winding<'_> {
             let angle = circle.first + k as f64 * spacing;
             if let Some(ends) = all(&circle.ends[k])
                 && self.is_clear(known, angle, &ends)
+                && !is_on_way(located, angle)
             {
                 let down = less(total(&ends), phases[k]);
                 borders.push((k, Border { angle, height: circle.radius.ln(), down }));
@@ -104,14 +120,14 @@ impl Winding<'_> {
                 let round = less(phases[count], phases[0]);
                 arc = std::array::from_fn(|k| arc[k] + round[k]);
             }
-            // each lost count is a lost solution
+            // a count that is no whole number means a lost solution
             let numbers = self.numbers(&a, &b, &arc)?;
             sectors.push(Sector { places: [from, to], borders: [a, b], numbers });
         }
         Some(sectors)
     }
 
-    /// Whether a border at an angle may be: its real solutions are all apart, and no dead centre is near.
+    /// Whether an angle can have a border: its real solutions are all distinct, and no dead centre is near.
     fn is_clear(&self, known: &Known, angle: f64, ends: &[Place]) -> bool {
         let slides = &self.survey.finder.slides;
         let all_apart = distinct(slides, ends.iter().map(|p| *p.solution()), SAME_MODE).len() == ends.len();
@@ -123,7 +139,7 @@ impl Winding<'_> {
                 .all(|at| apart(at, angle) > CLEAR)
     }
 
-    /// Whether two lists hold the same solutions: each has one in the other that is far nearer than all others, and no two have one.
+    /// Whether two lists hold the same solutions: each one has a partner in the other list, far nearer than all others and its own.
     pub fn are_same(&self, a: &[Place], b: &[Place]) -> bool {
         let slides = &self.survey.finder.slides;
         let mut taken = vec![false; b.len()];
@@ -141,7 +157,7 @@ impl Winding<'_> {
         })
     }
 
-    /// The same border from nearer to the real inputs.
+    /// The same border begun nearer to the real inputs, at this part of its height.
     pub fn lowered(&self, stand: &Stand, part: f64) -> Option<Stand> {
         let Border { angle, height, down } = stand.border;
         let places = self
@@ -152,7 +168,7 @@ impl Winding<'_> {
         Some(Stand { border, places })
     }
 
-    /// A border between two at one height.
+    /// A border between two others of the same height.
     pub fn parted(&self, known: &Known, a: &Stand, b: &Stand) -> Option<Stand> {
         let Border { angle: from, height, .. } = a.border;
         PARTINGS.iter().find_map(|part| {
@@ -165,8 +181,8 @@ impl Winding<'_> {
         })
     }
 
-    /// Zeros less poles of the determinant between two borders, and how many joints are infinite there; none where these are no
-    /// whole numbers.
+    /// Zeros minus poles of the determinant between two borders, and how many poses have a joint at infinity there; `None` if these are
+    /// no whole numbers.
     ///
     /// Source: docs/theory_many.md, (13) and (14).
     pub fn numbers(&self, a: &Border, b: &Border, arc: &[f64; FACTORS]) -> Option<(i64, i64)> {
@@ -191,7 +207,7 @@ impl Winding<'_> {
                 sum
             }
         };
-        // slides infinite at a real input are known
+        // slides at infinity at a real input have been found apart
         let afar = self
             .survey
             .afar
@@ -202,18 +218,18 @@ impl Winding<'_> {
     }
 }
 
-/// Whether an angle lies in a range, whole turns aside.
+/// Whether an angle lies in a range, modulo whole turns.
 pub(super) fn within(angle: f64, from: f64, to: f64) -> bool {
     (angle - from).rem_euclid(TAU) < to - from
 }
 
-/// How far two angles are apart [rad], whole turns aside.
+/// Distance of two angles [rad], modulo whole turns.
 pub(super) fn apart(a: f64, b: f64) -> f64 {
     let off = (a - b).rem_euclid(TAU);
     off.min(TAU - off)
 }
 
-/// The square of how far two solutions are apart [parts of their values, or of the size].
+/// Square of the distance of two solutions, the greatest of all unknowns' [relative to their values].
 fn square_apart(slides: &Slides, a: &Solution, b: &Solution) -> f64 {
     let off = |i: usize| {
         let square = (a[i] - b[i]).norm_sqr();
@@ -226,7 +242,7 @@ fn square_apart(slides: &Slides, a: &Solution, b: &Solution) -> f64 {
     (0..UNKNOWNS).map(off).fold(0.0, f64::max)
 }
 
-/// The places of some of the paths; none where one is lost.
+/// The places of these paths; `None` if one is lost.
 pub(super) fn all(own: &[usize], at: &[Option<Place>]) -> Option<Vec<Place>> {
     own.iter().map(|&path| at[path]).collect()
 }

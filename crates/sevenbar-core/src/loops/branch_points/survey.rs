@@ -1,4 +1,4 @@
-//! What is watched along solutions so that their branch points can be counted, and where they run to infinity.
+//! What the count of branch points needs to know of a closure: the joints to watch, and where solutions run to infinity.
 //!
 //! Source: docs/theory_many.md, (14) and (17).
 
@@ -12,31 +12,31 @@ use crate::random::Random;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// `ln |e^(i tau)|` below which an input at which another joint moves alone counts as real.
+/// An input at which the loop moves with the input at rest counts as real if `|ln |e^(i tau)||` is below this.
 const REAL_INPUT: f64 = 1e-6;
 
-/// Inputs nearer than this [rad] are one.
+/// Inputs closer than this [rad] are the same.
 const SAME_INPUT: f64 = 1e-9;
 
-/// What is watched on the way round, and where the watched joints have their values.
+/// The joints watched on the way round, and the inputs at which they take their watched values.
 pub(crate) struct Survey<'a> {
     pub finder: &'a ModeFinder<'a>,
     pub algebraic: Algebraic<'a>,
     pub watch: Watch,
     pub infinite: Infinite,
-    /// Where slides are infinite at real inputs.
+    /// Real inputs at which slides are at infinity.
     pub afar: Vec<Afar>,
-    /// Of how many solutions each pose has one: those with a ball's turns, or an idle coupler, turned over.
+    /// How many solutions of the closure are the same pose: those with a ball's turns, or an idle coupler, flipped over.
     pub flips: i64,
     /// Whether other joints may move with the input at rest.
     pub still: bool,
 }
 
-/// What tells of solutions that run to infinity.
+/// How solutions that run to infinity are counted.
 pub(crate) enum Infinite {
-    /// `e^(i tau)` where they do, one at infinity being one at zero in the mirror of the real inputs.
+    /// By the inputs `e^(i tau)` at which they do. One at infinity is the mirror image, at the real inputs, of one at zero.
     At(Vec<Complex64>),
-    /// `e^(i tau)` of the solutions at which each joint has its watched value.
+    /// By watched values: the inputs `e^(i tau)` at which each joint takes its value.
     Watched([Vec<Complex64>; UNKNOWNS]),
 }
 
@@ -44,7 +44,7 @@ impl<'a> Survey<'a> {
     /// For an input that turns; `None` where its modes are not algebraic.
     pub fn new(finder: &'a ModeFinder<'a>) -> Option<Self> {
         let algebraic = finder.algebraic()?;
-        // the middle of links that spin together moves with the joints among them
+        // where two links spin together, the middle of the flipped pair moves with the joint between them
         if finder.chain.halves.iter().any(|h| h.line.is_some()) {
             return None;
         }
@@ -66,29 +66,29 @@ impl<'a> Survey<'a> {
             }
         }
         let flips = 1 << watch.middles.len();
-        // the columns of a general loop of seven turning joints
+        // a general loop of seven turning joints
         let general = watch.middles.is_empty()
             && !finder.slides.contains(&true)
             && finder.unknowns.iter().all(|u| matches!(u, Unknown::Column(_)))
             && algebraic.is_general();
         let known = if general { algebraic.poles() } else { None };
         if let Some(at) = known {
-            // solutions infinite at a real input may be those of a motion with the input at rest
+            // a solution at infinity at a real input may belong to a motion with the input at rest
             let still = at.iter().any(|x| x.norm().ln().abs() < REAL_INPUT);
             let infinite = Infinite::At(at);
             return Some(Self { finder, algebraic, watch, infinite, afar: Vec::new(), flips, still });
         }
-        let untold = algebraic.untold_three();
-        Some(Self::watching(finder, algebraic, watch, untold))
+        let unwatched = algebraic.unwatched_three();
+        Some(Self::watching(finder, algebraic, watch, unwatched))
     }
 
-    /// With the passive joints watched, as special geometry asks for: all but three in a row that tell nothing by themselves, if there
-    /// are such, by the first of them.
+    /// With the passive joints watched, as special geometry needs. Three neighbours need no watch if another joint always goes to infinity
+    /// with them; `unwatched` is the first of such three.
     pub fn watching(
         finder: &'a ModeFinder<'a>,
         algebraic: Algebraic<'a>,
         mut watch: Watch,
-        untold: Option<usize>,
+        unwatched: Option<usize>,
     ) -> Self {
         let zeros = algebraic.zeros;
         let mut random = Random(0xb0b);
@@ -97,7 +97,7 @@ impl<'a> Survey<'a> {
         let chain = turned_out(finder);
         let closure = algebraic.closure(None);
         for i in 0..UNKNOWNS {
-            let aside = untold.is_some_and(|first| (first..first + 3).contains(&i));
+            let aside = unwatched.is_some_and(|first| (first..first + 3).contains(&i));
             if aside || matches!(finder.unknowns[i], Unknown::Added) {
                 continue;
             }
@@ -134,8 +134,8 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// A value in each range between neighbouring inputs at which slides are infinite that has none of `2 pi k / count`: a curve
-    /// through which the input only rises ends at such inputs, and leads over all between.
+    /// The middle of each range between neighbouring inputs with slides at infinity that contains none of the inputs `2 pi k / count`.
+    /// A curve along which the input only rises ends at such inputs, so one seed between them finds it.
     pub fn unseeded(&self, count: usize) -> Vec<f64> {
         let spacing = TAU / count as f64;
         let mut ends: Vec<f64> = self.afar.iter().map(|a| a.input.rem_euclid(TAU)).collect();

@@ -1,10 +1,10 @@
 //! Poses at which a motion is not smooth, and every way out of them.
 //!
-//! Where the screws lose rank, `k` directions `K` are free to first order and wrenches `W` do not see them. With the other joints
-//! solved for, what is left of the closure is `g(x) = W e(q(x)) = b + x H x / 2 + ..`, `x` in the plane of `K`. The pose itself is where
-//! the slope of `g` is zero: Newton's method with second derivatives of the closure finds it to rounding, also where `b` is not zero and
-//! two curves pass each other by a hair. The ways out are the solutions of the closure on a small sphere about it: as many as there are,
-//! however they touch, and none where the pose stands alone.
+//! Where the matrix of screws loses rank, `k` directions `K` are free to first order, and the wrenches `W` do no work on any joint. With
+//! the other joints solved for, the closure reduces to `g(x) = W e(q(x)) = b + x H x / 2 + ..` with `x` in the space of `K`. The pose is
+//! where the slope of `g` is zero. Newton's method with second derivatives of the closure finds it to rounding, even where `b` is not
+//! zero and two curves narrowly miss each other. The ways out are the solutions of the closure on a small sphere about it. This finds
+//! all of them however they touch, and none if the pose is isolated.
 //!
 //! Source: docs/theory.md, (19) to (22).
 
@@ -17,66 +17,81 @@ use crate::loops::mobility::singular_place::{LAST_STEP, MOST_STEPS, Place, STEAD
 use crate::loops::modes::polish::CLOSED;
 use crate::random::Random;
 
-/// Curves are cut this far [rad, or relative to the size] from the pose: farther in rounding turns their tangents by more than the way bends.
+/// Distance from the pose at which curves are cut [rad, or relative to the size]. Closer in, rounding turns their tangents by more than
+/// the curves bend.
 const CUT: f64 = 2e-5;
 
-/// Curves that pass at a distance are cut so many times as far out, where both are straight.
+/// Two curves that miss each other are cut at this many times the distance between them, where both are straight.
 const CUT_TIMES: f64 = 30.0;
 
-/// Norm of the screws' inverse at which curves are cut where it grows faster than usual, as where three of them touch: beyond, rounding
-/// hides them from each other.
+/// Norm of the inverse of the screws' matrix at which curves are cut where it grows faster than usual, as where three curves touch. At a
+/// greater norm, rounding hides the curves from each other.
 const HIDDEN: f64 = 1e7;
 
-/// Radii of the sphere, the next where curves do not run straight into the pose from the one before [rad, or relative to the size].
+/// Radii of the sphere [rad, or relative to the size], tried in turn until all curves run straight from the sphere into the pose.
 const RADII: [f64; 4] = [1e-2, 2e-3, 4e-4, 8e-5];
 
-/// A sphere's radius is at least so many times the distance at which curves are cut, and at most this, where what redundant constraints
-/// miss each other by keeps curves far apart [rad, or relative to the size].
+/// A sphere's radius is at least this many times the distance at which curves are cut.
 const LEAST_RADIUS: f64 = 3.0;
+
+/// The greatest radius [rad, or relative to the size]. It is needed where the closure error of redundant constraints keeps curves apart.
 const WIDEST: f64 = 0.05;
 
-/// Directions tried on the circle of two free directions, and for each further one so many times as many.
+/// Directions tried on the circle of two free directions, and the factor for each further free direction.
 const DIRECTIONS: usize = 48;
 const MORE_DIRECTIONS: usize = 6;
 
-/// Directions that lead nowhere before the others are given up.
+/// If none of the first directions, this many, leads to a solution, the others are not tried.
 const MOST_IN_VAIN: usize = 288;
 
-/// Seen from the pose, places on spheres of half the radius may differ by so much, and by so little a curve is straight.
+/// The direction from the pose to a curve may change by this much between one sphere and that of half the radius; a change below
+/// `STRAIGHT` is rounding.
 const MOST_BENT: f64 = 0.2;
 const STRAIGHT: f64 = 1e-6;
 
-/// Ways out that differ by less than this part of the radius are one.
+/// From one halving of the radius to the next that change halves, for a smooth curve; up to this part of it is allowed.
+const BEND_FALLS: f64 = 0.75;
+
+/// Ways out that are closer to each other than this part of the radius are the same.
 const SAME_WAY: f64 = 1e-5;
 
 /// Tangents at the pose that differ by less than this from opposite ones belong to one smooth curve.
 const OPPOSITE: f64 = 0.03;
 
-/// A pose this many times as far from a change point as curves are cut there still is at it.
+/// A pose belongs to a change point up to this many times the distance at which curves are cut there.
 pub(super) const AT_POINT: f64 = 3.0;
 
-/// Steps on a sphere that are longer than this part of its radius after so many of them lead nowhere.
+/// Newton's method on a sphere is given up if a step is still longer than this part of the radius after this many steps.
 const WANDERING_AFTER: usize = 15;
 const WANDERING: f64 = 1e-2;
 
-/// A closure error [rad, or relative to the size] up to which it is rounding; a part of the distance from a pose, and the part of the error
-/// up to which the loop is only shaky where so much is left there: 1/64 by the second order. What redundant constraints miss each other by
-/// may fall, too, but as the distance: to 1/8.
+/// Longest step of Newton's method on a sphere [parts of the radius]: it cannot cross the sphere.
+const LONGEST_STEP: f64 = 0.3;
+
+/// Newton's method has left the sphere's neighbourhood where the free directions carry less than the first part of the radius, or the
+/// pose is farther off than the second [parts of the radius].
+const INNERMOST: f64 = 0.1;
+const OUTERMOST: f64 = 3.0;
+
+/// A closure error up to this is rounding [rad, or relative to the size].
 const ROUNDED: f64 = 1e-13;
+
+/// Test of an infinitesimal freedom: at this part of the radius the closure error falls to 1/64, being of second order. The error of
+/// redundant constraints that disagree falls at most in proportion to the radius, to 1/8. `LEAST_FALL` lies between the two.
 const NEARER: f64 = 0.125;
 const LEAST_FALL: f64 = 0.042;
 
-/// A singular value below this part of the radius and of the greatest is a freedom all along.
+/// On a sphere, a singular value below this times the radius and the greatest singular value counts as zero.
 const NO_FREEDOM: f64 = 1e-4;
 
 /// A way out of a pose.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ray {
-    /// Its place on the sphere, and the direction outwards there.
+    /// Its pose on the sphere, and the direction outwards there.
     pub start: Start,
-    /// Seen from the pose, the places on the sphere and on the one of half its radius, relative to the radius.
+    /// From the change point to the way's poses on the sphere and on that of half the radius, each divided by its sphere's radius.
     seen: [Columns; 2],
-    /// How near to the pose it can be followed [rad, or relative to the size].
+    /// Distance from the change point up to which it can be followed inwards [rad, or relative to the size].
     hidden: f64,
 }
 
@@ -85,15 +100,15 @@ pub(crate) struct Ray {
 pub(crate) struct ChangePoint {
     pub at: Configuration,
     pub rays: Vec<Ray>,
-    /// For each ray the one that continues it smoothly.
+    /// For each ray, the ray that continues it smoothly.
     pub partner: Vec<Option<usize>>,
-    /// Where curves are cut that run into it.
+    /// Distance from it at which curves that run into it are cut [rad, or relative to the size].
     pub cut: f64,
-    /// The most freedoms of the motions out of it: none where it stands alone, two or more where it lies on a surface.
+    /// The greatest mobility of the motions out of it: 0 if it is isolated, 2 or more if it lies on a surface.
     pub finite: usize,
 }
 
-/// The change point at or near a pose, if there is one, as the wished columns have it; `stuck` where a walk can go no farther.
+/// The change point at or near a pose, if there is one, judged by the wished columns; `stuck` says that a walk could not go on there.
 pub(super) fn change_point(
     chain: &Chain,
     rough: &Configuration,
@@ -131,7 +146,7 @@ pub(super) fn change_point(
             break;
         }
     }
-    // what is only let pass is no isolated pose
+    // a place that is merely let pass is not reported as an isolated pose
     if !counts && found.rays.is_empty() {
         return None;
     }
@@ -143,8 +158,8 @@ pub(super) fn change_point(
     Some(found)
 }
 
-/// Whether a place on a sphere closes only because it is near: nearer far less is left open. On a motion what is left
-/// is rounding, or what redundant constraints miss each other by: the same everywhere, or by the first order less.
+/// Whether a pose on a sphere closes only because it is near: its closure error falls with the square of the distance. Along a real
+/// motion the closure error is rounding, or that of redundant constraints, which is constant or falls in proportion.
 fn opens_with_distance(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> bool {
     let open = |at: &Configuration| chain.residual(&chain.place(at));
     let inward = chain.difference(&place.at, at).map(|x| x / radius);
@@ -153,8 +168,8 @@ fn opens_with_distance(chain: &Chain, place: &Place, at: &Configuration, radius:
             .is_some_and(|nearer| open(&nearer) < LEAST_FALL * open(at))
 }
 
-/// Where curves cut a sphere about a place, each once, and the most freedoms found on it: surfaces have no ways to tell apart, but
-/// curves may run into them.
+/// The poses at which curves cut a sphere about a place, each once, and the greatest mobility found on it. A surface has no separate
+/// ways out, but curves may run into it.
 fn ways_out(chain: &Chain, place: &Place, radius: f64) -> (Vec<Configuration>, usize) {
     let mut found: Vec<Configuration> = Vec::new();
     let mut finite = 0;
@@ -180,7 +195,7 @@ fn ways_out(chain: &Chain, place: &Place, radius: f64) -> (Vec<Configuration>, u
         if freedoms == 1 {
             found.push(at);
         }
-        // all that is free there is one surface's
+        // one surface accounts for all free directions
         if freedoms > 1 && freedoms == place.free.len() {
             break;
         }
@@ -188,7 +203,7 @@ fn ways_out(chain: &Chain, place: &Place, radius: f64) -> (Vec<Configuration>, u
     (found, finite)
 }
 
-/// The solution of the closure at a distance from a place that Newton's method finds from a direction.
+/// The solution of the closure at distance `radius` from a place that Newton's method finds, starting in a direction.
 fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> Option<Configuration> {
     let mut at = chain.moved(&place.at, &direction.map(|x| x * radius));
     let mut before = f64::INFINITY;
@@ -197,7 +212,7 @@ fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> 
         let off = chain.difference(&place.at, &at);
         let seen: Vec<f64> = place.free.iter().map(|f| dot(f, &off)).collect();
         let distance = seen.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if !(distance > 0.1 * radius && length(&off) < 3.0 * radius) {
+        if !(distance > INNERMOST * radius && length(&off) < OUTERMOST * radius) {
             return None;
         }
         let mut outward = [0.0; COLUMNS];
@@ -218,12 +233,11 @@ fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> 
         let mut by = [0.0; COLUMNS];
         by[..chain.columns].copy_from_slice(&least_squares(&columns, &right, chain.no_rank()));
         let size = length(&by);
-        // where curves touch, steps halve at least
+        // where curves touch, each step is at most half the one before
         if !size.is_finite() || (step >= WANDERING_AFTER && size > WANDERING * radius) {
             return None;
         }
-        // no farther than the sphere is large, and so never across it
-        let factor = (0.3 * radius / size).min(1.0);
+        let factor = (LONGEST_STEP * radius / size).min(1.0);
         at = chain.moved(&at, &by.map(|x| x * factor));
         for ball in &mut at.balls {
             *ball = squared_up(ball);
@@ -238,7 +252,7 @@ fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> 
     (before < STEADY && chain.residual(&chain.place(&at)) < closed).then_some(at)
 }
 
-/// The way out through a place on the sphere; none where its curve does not run straight into the pose.
+/// The way out through a pose on the sphere; `None` if its curve does not run straight into the change point.
 fn ray(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> Option<Ray> {
     let mut outer = *at;
     let mut seen = [[0.0; COLUMNS]; 3];
@@ -251,9 +265,9 @@ fn ray(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> Option<
     }
     let apart = |a: &Columns, b: &Columns| length(&std::array::from_fn(|c| a[c] - b[c]));
     let (first, second) = (apart(&seen[0], &seen[1]), apart(&seen[1], &seen[2]));
-    // asymptotes are left by the square of the distance at which curves pass
+    // a hyperbola departs from its asymptotes by the square of the distance at which its branches pass
     let passing = 4.0 * place.passing() / radius;
-    if first > MOST_BENT || second > 0.75 * first + STRAIGHT + 2.0 * passing * passing {
+    if first > MOST_BENT || second > BEND_FALLS * first + STRAIGHT + 2.0 * passing * passing {
         return None;
     }
     let (values, vectors) = singular_values(&chain.screws(at));
@@ -262,7 +276,7 @@ fn ray(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> Option<
     if dot(&direction, &seen[0]) < 0.0 {
         direction = direction.map(|x| -x);
     }
-    // the norm grows as a power of the distance; `outer` is at a quarter of it now
+    // the inverse's norm grows as a power of 1 / distance; `outer` is now at a quarter of the radius
     let norm = |values: &[f64]| values[chain.columns - 2].recip();
     let (far, near) = (norm(&values), norm(&singular_values(&chain.screws(&outer)).0));
     let power = ((near / far).log2() / 2.0).max(1.0);
@@ -271,18 +285,18 @@ fn ray(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> Option<
 }
 
 impl Ray {
-    /// The tangent at the pose, outwards.
+    /// The tangent at the change point, outwards: extrapolated from the two spheres.
     pub fn tangent(&self) -> Columns {
         let t: Columns = std::array::from_fn(|c| 2.0 * self.seen[1][c] - self.seen[0][c]);
         let size = length(&t);
         t.map(|x| x / size)
     }
 
-    /// How far two ways out are from being one smooth curve: their tangents, then their bends.
+    /// How far two ways out are from being one smooth curve: by their tangents, and by their bends.
     fn mismatch(&self, other: &Self) -> (f64, f64) {
         let (a, b) = (self.tangent(), other.tangent());
         let kink = length(&std::array::from_fn(|c| a[c] + b[c]));
-        // twice the bend of each, which a smooth curve has in common
+        // twice the second-order term, which is the same on both arms of a smooth curve
         let bend = |ray: &Self, c: usize| ray.seen[0][c] - ray.seen[1][c];
         (
             kink,
@@ -292,7 +306,7 @@ impl Ray {
 }
 
 impl ChangePoint {
-    /// Whether a curve passes it, or ends there.
+    /// Whether a curve passes through it, or ends there.
     pub fn is_on(&self, chain: &Chain, curve: &Curve) -> bool {
         let near = |n: &Node| length(&chain.difference(&self.at, &n.at)) < AT_POINT * self.cut;
         let last = curve.nodes.len() - 1;
@@ -301,13 +315,13 @@ impl ChangePoint {
             || near(&curve.nodes[last])
     }
 
-    /// Where walks end that run into it.
+    /// Where a walk that runs into it ends.
     pub fn stop(&self) -> Stop {
         Stop { at: self.at, radius: self.cut }
     }
 }
 
-/// For each way out the one that continues it smoothly, nearest in tangent and bend first.
+/// For each way out, the way out that continues it smoothly; pairs nearest in tangent and bend are joined first.
 fn partners(rays: &[Ray]) -> Vec<Option<usize>> {
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for i in 0..rays.len() {
@@ -325,7 +339,7 @@ fn partners(rays: &[Ray]) -> Vec<Option<usize>> {
             (partner[i], partner[j]) = (Some(j), Some(i));
         }
     }
-    // the two arms of a cusp
+    // two arms left over are those of a cusp
     if let [a @ None, b @ None] = partner.as_mut_slice() {
         (*a, *b) = (Some(1), Some(0));
     }

@@ -239,7 +239,7 @@ pub(crate) fn predicted<N: Number>(chain: &Chain, node: &Node<N>, s: N) -> Colum
     by
 }
 
-/// Where the chain stands near a closed configuration, seen along a direction; the node itself is corrected to rounding.
+/// The configuration near a closed one, along a direction; the node itself is corrected to rounding.
 #[inline(always)]
 pub(super) fn stand<N: Number>(chain: &Chain, rough: &Configuration<N>, before: &Columns<N>) -> Stand<N> {
     let (zero, one) = (N::splat(0.0), N::splat(1.0));

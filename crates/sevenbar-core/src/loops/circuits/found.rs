@@ -1,4 +1,4 @@
-//! What a search of a loop's circuits came to.
+//! The result of a search for a loop's circuits.
 
 use crate::loops::branch_points::counting::{Count, Uncounted};
 use crate::loops::modes::finder::Completeness;

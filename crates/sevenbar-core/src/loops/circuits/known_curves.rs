@@ -27,7 +27,7 @@ const BESIDE_BEND: f64 = 30.0;
 /// All curves of a chain.
 pub(crate) struct Curves {
     pub curves: Vec<Curve>,
-    /// What was looked at, and what it came to.
+    /// What was searched, and what was found.
     pub search: Search,
     /// Poses at which curves are not smooth, or that stand alone, once all curves are known.
     pub change_points: Vec<ChangePoint>,
@@ -96,7 +96,7 @@ impl Curves {
         }
     }
 
-    /// Follows what leads out of a pose at which the motion may not be smooth; returns whether it is a change point or stands alone.
+    /// Follows what leads out of a pose at which the motion may not be smooth; returns whether it is a change point or isolated.
     pub fn branches(&mut self, chain: &Chain, pose: &Configuration, stuck: bool) -> bool {
         if self.arcs.learn(chain, pose, &self.wished, stuck).is_none() {
             return false;
@@ -192,7 +192,7 @@ impl Curves {
                 let isolated =
                     chain.columns > rank + 1 && self.arcs.finite < 2 && self.branches(chain, mode, false);
                 self.search.unfollowed += usize::from(!isolated);
-                // a mode beside a pose that stands alone has a greater rank
+                // a mode next to an isolated pose has a greater rank
                 let pose = self
                     .arcs
                     .at(chain, mode)

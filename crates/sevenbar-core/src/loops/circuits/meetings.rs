@@ -1,13 +1,15 @@
-//! Where curves of an overconstrained loop meet other curves of its filled-up closure.
+//! Where curves of an overconstrained loop meet curves on which added joints move.
 //!
-//! With joints added about general axes the loop closes in more ways, in which these move. Where such a curve runs through one of
-//! the loop's own the determinant of the screws is zero, although the input does not turn back: a zero that the count sees and that
-//! stands for no circuit. Along a real curve determinant and rate of the input change sign together at dead centres, and only the
-//! determinant where curves meet.
+//! An overconstrained loop has fewer than six passive freedoms, so joints about general axes are added for the count. With them the
+//! loop closes in more ways, in which the added joints move. Where such a curve crosses one of the loop's own, the determinant of the
+//! screws is zero although the input does not turn back: a zero that the count includes and that belongs to no dead centre. Signs
+//! distinguish the two: along a real curve, determinant and rate of the input change sign together at a dead centre, and the
+//! determinant alone at such a crossing.
 //!
 //! Source: docs/theory_many.md, (12).
 
 use super::curve::{self, Curve};
+use super::turnings::ROUNDED;
 use crate::loops::branch_points::survey::Survey;
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::closure::Solution;
@@ -16,6 +18,9 @@ use crate::loops::modes::continuation::Homotopy;
 use crate::loops::modes::finder::Unknown;
 use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 use num_complex::Complex64;
+
+/// A rate of the input below this, at a node in a dead centre, has the sign of a rounding, as the determinant has.
+const AT_REST: f64 = 1e-6;
 
 /// Halvings of a step, down to rounding.
 const HALVINGS: usize = 50;
@@ -38,7 +43,7 @@ impl LaneKernel for Determinants<'_> {
     }
 }
 
-/// The inputs at which a curve meets others of the filled-up closure [rad]; none where no joints were added, or balls turn.
+/// The inputs at which a curve meets those on which added joints move [rad]; none if no joints were added, or balls turn.
 pub(super) fn meetings(survey: &Survey, chain: &Chain, curve: &Curve) -> Vec<f64> {
     let unknowns = &survey.finder.unknowns;
     let added = unknowns.iter().any(|u| matches!(u, Unknown::Added));
@@ -63,11 +68,25 @@ pub(super) fn meetings(survey: &Survey, chain: &Chain, curve: &Curve) -> Vec<f64
     };
     let nodes = &curve.nodes;
     let places: Vec<Configuration> = nodes.iter().map(|n| n.at).collect();
-    // without the sign changes of dead centres
-    let signs: Vec<f64> = determinants(&places)
+    // the product has no sign change at a dead centre
+    let signs: Vec<Option<f64>> = determinants(&places)
         .iter()
         .zip(nodes)
-        .map(|(d, n)| d.signum() * n.rates[0][column].signum())
+        .map(|(d, n)| {
+            let rate = n.rates[0][column];
+            (rate.abs() > AT_REST.max(ROUNDED * n.inverse_norm.powi(2))).then(|| d.signum() * rate.signum())
+        })
+        .collect();
+    // a node in a dead centre has the sign of the one before, the first of a closed curve that of the last
+    let mut sure = signs.iter().flatten();
+    let (first, last) = (sure.next().copied(), sure.next_back().copied());
+    let mut sign = if curve.is_closed() { last.or(first) } else { first }.unwrap_or(0.0);
+    let signs: Vec<f64> = signs
+        .into_iter()
+        .map(|sure| {
+            sign = sure.unwrap_or(sign);
+            sign
+        })
         .collect();
     let mut found = Vec::new();
     for (k, node) in nodes.iter().enumerate().take(nodes.len() - 1) {
@@ -94,7 +113,7 @@ pub(super) fn meetings(survey: &Survey, chain: &Chain, curve: &Curve) -> Vec<f64
     found
 }
 
-/// A configuration as the closure has it, added joints at zero.
+/// A configuration in the closure's unknowns, added joints at zero.
 fn solution(survey: &Survey, at: &Configuration) -> Solution {
     let zeros = &survey.algebraic.zeros;
     std::array::from_fn(|i| match survey.finder.unknowns[i] {

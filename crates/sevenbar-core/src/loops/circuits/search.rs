@@ -28,14 +28,15 @@ const AHEAD: [(usize, usize); 2] = [(0, 4), (1, 1)];
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
 
-/// An open range narrower than this [rad] is that of one singular pose, and open with any joint. About solutions that run to infinity at
-/// one value of a joint ranges are wider, and another joint may have an account of them.
+/// An open range narrower than this [rad] in which two branch points are missing is that of one singular pose, and open with any
+/// joint. About solutions that run to infinity at one value of a joint ranges are wider, and of a circuit nearly as narrow the count
+/// fails: another joint may have an account of them.
 const WIDE_RANGE: f64 = 1e-4;
 
 /// Imaginary parts [rad] that solutions which are real at one input may have beside it, as a part of the distance.
 const NEARLY_REAL: f64 = 20.0;
 
-/// Two branch points become one in a pose that stands alone, one on each side of the real inputs.
+/// Two branch points, one on each side of the real inputs, become one in an isolated pose.
 const BRANCH_POINTS_OF_POSE: i64 = 2;
 
 /// The columns whose values are seeds: the wished ones if they turn, else the first that do; screws where none turns and no
@@ -134,7 +135,7 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
     out
 }
 
-/// Searches where no mode stands alone but paths to others were lost.
+/// Searches where no mode is isolated but paths to others were lost.
 fn look_beside_paths(curves: &mut Curves, chain: &Chain) {
     let finder = ModeFinder::new(chain, curves.search.columns[0]);
     if !finder.is_degenerate() {
@@ -152,10 +153,13 @@ fn look_beside_paths(curves: &mut Curves, chain: &Chain) {
     }
 }
 
-/// Whether nothing was counted yet, or so wide a range is left open that another joint may have an account of it.
+/// Whether nothing was counted yet, or a range is left open of which another joint may have an account.
 fn is_doubtful(curves: &Curves) -> bool {
     match &curves.search.count {
-        Ok(count) => count.open.iter().any(|o| o.to - o.from > WIDE_RANGE),
+        Ok(count) => count
+            .open
+            .iter()
+            .any(|o| o.to - o.from > WIDE_RANGE || o.missing != Some(BRANCH_POINTS_OF_POSE)),
         Err(why) => *why != Uncounted::Still,
     }
 }
@@ -186,7 +190,7 @@ fn counted(
     })
 }
 
-/// Looks where solutions meet within ranges too narrow to be counted: in a pose that stands alone they are real at one input only.
+/// Searches ranges too narrow to be counted, where solutions meet: in an isolated pose they are real at one input only.
 fn look_into(curves: &mut Curves, chain: &Chain, finder: &ModeFinder, count: &mut Count) {
     count.open.retain(|open| {
         if open.to - open.from > WIDE_RANGE {

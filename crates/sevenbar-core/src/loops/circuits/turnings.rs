@@ -19,7 +19,7 @@ const SAME_PLACE: f64 = 1e-6;
 /// Near a change point, where the norm of the screws' inverse is greater, a rate below its square times this is rounding: the place,
 /// and so the tangent, is not known better.
 const NEAR: f64 = 1e3;
-const ROUNDED: f64 = 4.0 * f64::EPSILON;
+pub(super) const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// How far [rad, or relative to the size] from a change point a column's direction is checked to see whether it turns back there.
 const BESIDE: f64 = 1e-3;

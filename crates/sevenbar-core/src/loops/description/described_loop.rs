@@ -18,7 +18,7 @@ pub(crate) struct Column {
 #[derive(Clone, Debug)]
 pub struct Loop {
     pub(crate) reduced: Reduced,
-    /// The sum of the links' lengths; inside, lengths are parts of it.
+    /// The sum of the links' lengths and of the pitches per radian. Inside the core, lengths are relative to it.
     pub(crate) size: f64,
     /// The first column of each joint.
     pub(super) first: Vec<usize>,
@@ -75,7 +75,7 @@ impl Loop {
         self
     }
 
-    /// The size of which residuals are parts.
+    /// The size [length] to which closure errors are relative.
     pub fn size(&self) -> f64 {
         self.size
     }
@@ -85,12 +85,12 @@ impl Loop {
         self.columns
     }
 
-    /// Freedoms that no joint elsewhere takes part in.
+    /// Freedoms that move no other part of the loop.
     pub fn idle(&self) -> &[Idle] {
         &self.reduced.idle
     }
 
-    /// Balls that hold an idle spin: the joint, and the axis in the frame before it across which a direction of the link stays.
+    /// Balls that hold an idle spin: the joint, and an axis in the frame before it. A direction of the link stays at right angles to it.
     pub fn spin_axes(&self) -> Vec<(usize, [f64; 3])> {
         let parts = self.reduced.parts.iter().enumerate();
         parts
@@ -127,12 +127,12 @@ impl Loop {
         }
     }
 
-    /// A column that may drive or be driven; `None` where it is no joint of one freedom that moves.
+    /// A column that can be input or output; `None` unless it is a moving joint of one freedom.
     pub(crate) fn inner(&self, outer: usize) -> Option<Column> {
         Some(Column { outer, inner: self.chain_column(outer)? })
     }
 
-    /// What a column does on a circuit: `endless` where that has no end of its own, and is followed to where something is far out.
+    /// What a column does on a circuit. `endless`: the circuit has no ends, and was followed until a joint was far out.
     pub(crate) fn role(&self, column: Column, range: Option<[f64; 2]>, endless: bool) -> Role {
         match range {
             _ if self.is_slide(column.outer) => Role::Slider,
@@ -147,7 +147,7 @@ impl Loop {
         self.reduced.parts[self.joint_of(column)].kind == Kind::Slide
     }
 
-    /// A value of a column as the chain has it.
+    /// The factor from a value of a column to the chain's value: lengths are relative to the size there.
     pub(crate) fn inward(&self, column: usize) -> f64 {
         if self.is_slide(column) {
             1.0 / self.size

@@ -18,7 +18,7 @@ pub(crate) enum Source {
     Held,
     /// A ball that is held from spinning idly: two turns of the chain, in a frame whose z is the first axis and x the second.
     Universal(usize, Rotation),
-    /// The same of a ball before links that spin together, which lie on the chain's as their joint tells.
+    /// The same for a ball before links that spin together, whose place on the chain's links depends on their joint.
     BeforeSpun(usize, Rotation),
     /// The ball after them: a joint of the chain.
     AfterSpun(usize),
@@ -96,7 +96,7 @@ fn spin_middle(axis: Vec3, line: Vec3, frame: &Rotation) -> f64 {
 
 /// How the spin about the line of two balls is held.
 enum Hold {
-    /// By this ball, which stands before one link, or before the ground; the line as that link has it.
+    /// By this ball, which comes before one link, or before the ground; the line as that link has it.
     Line(usize, Vec3),
     /// By this ball, before several links with this joint among them.
     Spun(usize, usize),

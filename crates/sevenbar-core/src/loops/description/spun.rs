@@ -1,9 +1,9 @@
-//! The spin of several links together about the line of the two balls between which they stand, with one joint among them.
+//! The idle spin of two links between two balls, with one joint between the links, about the line through the balls.
 //!
-//! No other joint feels that spin, only how far apart the links keep the balls. So the chain that is followed has in their place a
-//! flat triangle (or, for a slide, the flat path) that keeps them as far apart at each value of the joint, and the first ball as two
-//! turns, the second at right angles to that plane: the balls' line lies in it, so each direction can be reached. How the links
-//! themselves lie about the line is put on top.
+//! The rest of the loop does not depend on that spin, only on the distance of the balls. So the chain that is followed replaces the two
+//! links by a flat triangle (for a slide: a straight path in a plane) that gives the same distance at each value of the joint, and the
+//! first ball by two turns. The axis of the second turn is normal to that plane: the line through the balls lies in the plane, so it can
+//! take any direction. How the actual links are turned about the line is added afterwards.
 //!
 //! Source: the law of cosines.
 
@@ -20,23 +20,23 @@ use crate::taylor::Taylor;
 /// A moving rotation.
 type Series<const N: usize> = [[Taylor<N>; 3]; 3];
 
-/// A path nearer to the ball than this part of the size is taken as one through it, and has no plane.
+/// A path closer to the ball than this part of the size counts as one through the ball, which defines no plane.
 const STRAIGHT: f64 = 1e-8;
 
-/// Places of a joint, two turns of it, at which its balls' line is checked.
-const LOOKS: usize = 720;
+/// Values of a joint, over two turns, at which the line through the balls is checked: one a degree.
+const CHECKED_VALUES: usize = 720;
 
-/// Links between two balls with one joint among them, in the frame of the first ball.
+/// Two links between two balls and the joint between them, in the frame of the first ball.
 #[derive(Clone, Debug)]
 pub(crate) struct Spun {
     kind: Kind,
-    /// The joint as the links have it, and the second ball after it.
+    /// The joint's frame in that of the first ball, and the second ball's centre in the joint's frame.
     joint: Pose,
     end: Vec3,
-    /// A direction of the first link that the line keeps away from.
+    /// A direction on the first link that the line through the balls never comes near.
     across: Vec3,
     flat: Flat,
-    /// Columns: the line at zero, across it in the plane, across the plane.
+    /// Columns: the line at joint value zero, the direction across it in the plane, the plane's normal.
     plane: Rotation,
     /// From [`Self::flat_frame`] to [`Self::frame`] at zero.
     between: Rotation,
@@ -45,7 +45,8 @@ pub(crate) struct Spun {
 }
 
 impl Spun {
-    /// Of a turn or a slide with this frame in that of the first ball, and the way on to the second; `normal` is the second turn's axis.
+    /// From the frame of a turn or a slide in that of the first ball, and the transform `rest` from there to the second ball. `normal`
+    /// is the axis of the first ball's second turn.
     pub fn new(kind: Kind, joint: &Pose, rest: &Pose, normal: Vec3) -> Self {
         let end = rest.translation;
         let line = joint.carry(end);
@@ -73,7 +74,7 @@ impl Spun {
             between: Pose::STILL.rotation,
             through: joint.then(rest).rotation,
         };
-        // where the balls lie upon each other at zero, their line has no direction there to begin with
+        // where the two centres coincide at zero, their line has no direction there
         if long > 0.0 {
             let zero = Taylor::<1>::constant(0.0);
             let (flat, own) = (
@@ -85,12 +86,12 @@ impl Spun {
         spun
     }
 
-    /// The line in the plane.
+    /// The flat triangle or path that replaces the links.
     pub fn flat(&self) -> Flat {
         self.flat
     }
 
-    /// The frame of the joint of the flat triangle, and from there to the second ball.
+    /// The frame of the flat triangle's joint, and the transform from there to the second ball.
     pub fn flat_joint(&self) -> (Pose, Pose) {
         let column = |v: [f64; 2]| -> Vec3 {
             std::array::from_fn(|k| self.plane[k][0] * v[0] + self.plane[k][1] * v[1])
@@ -109,12 +110,12 @@ impl Spun {
         (joint, joint.inverse().then(&end))
     }
 
-    /// From the first ball to the second, as the links have it.
+    /// The vector from the first ball to the second on the actual links.
     fn line<const N: usize>(&self, value: Taylor<N>) -> Vec3Taylor<N> {
         self.beyond(value, self.end)
     }
 
-    /// A point after the joint.
+    /// A point of the second link, in the frame of the first ball.
     pub fn beyond<const N: usize>(&self, value: Taylor<N>, at: Vec3) -> Vec3Taylor<N> {
         let (turn, shift) = match self.kind {
             Kind::Slide => (Taylor::constant(0.0), value),
@@ -134,14 +135,14 @@ impl Spun {
         })
     }
 
-    /// x along the line, y at right angles to the direction that the line keeps away from.
+    /// The frame of the actual links: x along the line, y normal to the direction that the line never comes near.
     fn frame<const N: usize>(&self, value: Taylor<N>) -> Series<N> {
         let x = unit_taylor(self.line(value));
         let y = unit_taylor(cross_taylor(self.across.map(Taylor::constant), x));
         columns([x, y, cross_taylor(x, y)])
     }
 
-    /// x along the line of the flat triangle, z across its plane.
+    /// The frame of the flat triangle: x along its line, z normal to its plane.
     fn flat_frame<const N: usize>(&self, value: Taylor<N>) -> Series<N> {
         let [along, aside] = self.flat.line(value);
         let size = (along * along + aside * aside).sqrt().recip();
@@ -151,13 +152,13 @@ impl Spun {
         turned_series(&self.plane, &turn, &Pose::STILL.rotation)
     }
 
-    /// How the first link lies in the frame of the flat triangle.
+    /// The rotation of the first link in the frame of the flat triangle.
     pub fn lie<const N: usize>(&self, value: Taylor<N>) -> Series<N> {
         let flat = turned_series(&Pose::STILL.rotation, &self.flat_frame(value), &self.between);
         product_series(&flat, &swapped(&self.frame(value)))
     }
 
-    /// How the frame before the second ball lies as the triangle has it, seen from where the links have it.
+    /// The rotation of the frame before the second ball on the triangle, relative to the same frame on the actual links.
     pub fn lie_beyond<const N: usize>(&self, value: Taylor<N>) -> Series<N> {
         let normal: Vec3 = std::array::from_fn(|k| self.plane[k][2]);
         let flat = self.turned(normal, value);
@@ -168,13 +169,13 @@ impl Spun {
         turned_series(&Pose::STILL.rotation, &moved, &self.through)
     }
 
-    /// The rotation from the first ball to the second, as the links have it.
+    /// The rotation from the first ball to the second on the actual links.
     pub fn through<const N: usize>(&self, value: Taylor<N>) -> Series<N> {
         let turn = self.turned(self.joint.column(2), value);
         turned_series(&Pose::STILL.rotation, &turn, &self.through)
     }
 
-    /// What the joint turns about an axis.
+    /// The joint's rotation, about an axis given in the first ball's frame (none for a slide).
     fn turned<const N: usize>(&self, axis: Vec3, value: Taylor<N>) -> Series<N> {
         let angle = if self.kind == Kind::Turn {
             value
@@ -200,7 +201,7 @@ impl Spun {
         })
     }
 
-    /// The unit vector along the line, as the links have it and as the triangle has it.
+    /// The unit vector along the line, on the actual links and on the triangle.
     pub fn directions(&self, value: f64) -> [Vec3; 2] {
         let value = Taylor::<1>::constant(value);
         let flat = self.flat_frame(value);
@@ -211,8 +212,8 @@ impl Spun {
     }
 }
 
-/// The arms of a flat triangle with the sides that a joint leaves to two balls in its frame: with a and b how far they are from the
-/// axis and h one above the other, the arms have the product a b, and squares that add up to a^2 + b^2 + h^2.
+/// The arms of the flat triangle in which two balls have the same distance as on a turning joint at every angle. With a and b the
+/// balls' distances from the joint's axis and h their distance along it, the arms r and s obey r s = a b and r^2 + s^2 = a^2 + b^2 + h^2.
 ///
 /// Source: the law of cosines.
 fn arms(ball: Vec3, end: Vec3) -> Flat {
@@ -236,8 +237,9 @@ fn arms(ball: Vec3, end: Vec3) -> Flat {
     Flat::Arms(turned(near, 0.0, 1.0), turned(far, s, c))
 }
 
-/// A direction, in the frame of a joint, that the line of two balls keeps away from while the joint moves: across the plane in which a
-/// slide moves it; of a turn the axis, or, if the line keeps farther away from that, what is at right angles to axis and first arm.
+/// A direction, in the frame of a joint, that the line through two balls never comes near while the joint moves. For a slide it is the
+/// normal of the plane in which the line moves. For a turn it is the axis, or the normal of axis and first arm, whichever the line
+/// stays farther away from.
 pub(super) fn away_from_line(kind: Kind, ball: Vec3, end: Vec3) -> Vec3 {
     let axis = [0.0, 0.0, 1.0];
     if kind == Kind::Slide {
@@ -255,9 +257,9 @@ pub(super) fn away_from_line(kind: Kind, ball: Vec3, end: Vec3) -> Vec3 {
     }
     let aside = unit(cross(axis, arm));
     let nearest = |from: Vec3| {
-        (0..LOOKS)
+        (0..CHECKED_VALUES)
             .map(|k| {
-                let q = 4.0 * std::f64::consts::PI * (k as f64 / LOOKS as f64 - 0.5);
+                let q = 4.0 * std::f64::consts::PI * (k as f64 / CHECKED_VALUES as f64 - 0.5);
                 let (s, c) = q.sin_cos();
                 let moved = [
                     c * end[0] - s * end[1],
@@ -288,7 +290,7 @@ fn swapped<const N: usize>(a: &Series<N>) -> Series<N> {
     std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
 }
 
-/// The rotation that a series begins with.
+/// The rotation at the start: the constant terms of a series.
 pub(super) fn first_terms<const N: usize>(a: &Series<N>) -> Rotation {
     std::array::from_fn(|i| std::array::from_fn(|j| a[i][j].value()))
 }

@@ -1,5 +1,6 @@
 //! Every assembly mode of a described loop.
 
+use super::curves_at_input::pose_on_curve;
 use super::finder::{Completeness, ModeFinder};
 use crate::loops::description::described_loop::Loop;
 use crate::loops::description::joint_values::joint_values;
@@ -11,8 +12,10 @@ pub struct Modes {
     pub modes: Vec<(Vec<f64>, f64)>,
     /// How complete they are.
     pub completeness: Completeness,
-    /// By how much redundant constraints keep other poses open, least first [rad, or relative to the size].
+    /// Closure errors of further poses that redundant constraints keep from closing, least first [rad, or relative to the size].
     pub open_by: Vec<f64>,
+    /// The joint values of a pose on a curve of poses that all close at this input, if one was found.
+    pub on_curve: Option<Vec<f64>>,
 }
 
 /// Every assembly mode at one value of a column [rad, or length]; `None` where that column is no input.
@@ -21,17 +24,19 @@ pub fn modes(linkage: &Loop, column: usize, value: f64) -> Option<Modes> {
     let input = linkage.chain_column(column)?;
     let finder = ModeFinder::new(chain, input);
     let value = value * linkage.inward(column);
-    let mut found = finder.once(value);
+    let (mut found, fewer) = finder.once(value);
     let mut completeness = finder.completeness();
     if found.modes.is_empty() && finder.is_degenerate() {
         found.modes.extend(finder.one_by_search(value));
         completeness = Completeness::Searched;
     }
     found.open_by.sort_by(f64::total_cmp);
+    let on_curve = fewer.then(|| pose_on_curve(chain, input, value)).flatten();
     let closed = |at| (joint_values(linkage, at), chain.residual(&chain.place(at)));
     Some(Modes {
         modes: found.modes.iter().map(closed).collect(),
         completeness,
         open_by: found.open_by,
+        on_curve: on_curve.map(|at| joint_values(linkage, &at)),
     })
 }

@@ -1,9 +1,8 @@
 //! All complex solutions of one linkage at many values of a turning input.
 //!
-//! The solutions are analytic in the input's angle `tau`. They are followed once round a circle of complex angles `theta + i h`,
-//! beside the real ones, on which pairs of solutions meet; and from places of it straight down to the real values. What was
-//! learnt along the circle predicts the first step of the way down. Everything but the input stands still and is real, so a
-//! step costs a third of one between any two closures.
+//! The solutions are analytic in the input's angle `tau`. Pairs of them meet at real angles, so they are followed once round a circle of
+//! complex angles `theta + i h` next to the real ones, and from places of it straight down to the real values. The first step of a way
+//! down is predicted from the circle. All other parameters are real and constant, so a step costs a third of one between any two closures.
 //!
 //! Source: docs/theory_many.md, (7) and (8).
 
@@ -19,32 +18,32 @@ use num_complex::Complex64;
 /// Most steps on the way to one value; a path that needs more runs into a place where two solutions meet.
 const MOST_STEPS: usize = 60;
 
-/// The same where steps are kept short.
+/// The same at a careful pace.
 const MOST_SHORT_STEPS: usize = 400;
 
-/// What a solution at the end of a way may be off [rad, or relative to the size] as its last two corrections have it.
+/// Greatest error of a solution at the end of a way [rad, or relative to the size], estimated from its last two corrections.
 const ARRIVED: f64 = 1e-9;
 
-/// A linkage as its closure has it, all constants real: cosines and sines of twists and of given turns, and shifts.
+/// The real constants of a linkage's closure: cosines and sines of twists and of fixed turns, and shifts.
 pub(crate) struct InputClosure<'a> {
     slides: &'a Slides,
-    /// What is watched on all ways, if anything is.
+    /// Whose phases are summed along all ways, if any are.
     watch: Option<Watch>,
     twists: [[f64; 2]; JOINTS],
     shifts: [[f64; 3]; JOINTS],
     turns: [[f64; 2]; JOINTS],
 }
 
-/// What was followed round a circle of complex inputs, and from places of it down to the real values beneath.
+/// Solutions followed round a circle of complex inputs, and from places of it down to the real values below.
 pub(crate) struct Circle {
-    /// `|e^(i tau)|` of it.
+    /// Its radius `|e^(i tau)|`.
     pub radius: f64,
     /// The angle of its first place [rad], and how many there are in a turn.
     pub first: f64,
     pub count: usize,
-    /// The places of each path, that after the last being the first again, a turn on, and the ends of the ways down; a path that
-    /// is lost has none.
+    /// For each place of the circle the solutions on all paths, `None` for a lost path. The last place is the first one after a turn.
     pub places: Vec<Vec<Option<Place>>>,
+    /// The same at the end of the way down from each place.
     pub ends: Vec<Vec<Option<Place>>>,
 }
 

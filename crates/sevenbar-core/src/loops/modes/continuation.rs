@@ -1,7 +1,7 @@
 //! Following complex solutions of the closure while a parameter moves: one predictor and corrector, eight paths side by side.
 //!
-//! A step is predicted by a cubic through the last two places and their rates, and corrected twice by Newton's method; it counts
-//! if the corrections are short and the second far shorter than the first, so that a path is not left for another.
+//! A step is predicted by a cubic through the last two places and their rates, and corrected twice by Newton's method. It is accepted
+//! if both corrections are small and the second is far smaller than the first, so that one path is not mistaken for another.
 //!
 //! Source: docs/theory.md, (6); docs/theory_many.md, (7) and (8).
 
@@ -11,51 +11,61 @@ use crate::loops::equation::lanes::Lanes;
 use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
 use num_complex::Complex64;
 
-/// How short the steps are kept.
+/// The limits that set the length of steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
-    /// First correction [rad, or relative to the size] that steps aim at, and that which they must not exceed.
+    /// First correction that steps aim at, and the greatest accepted [rad, or relative to the size].
     pub aimed: f64,
     pub largest: f64,
-    /// Second correction that a step must not exceed; the next would be its square.
+    /// Greatest accepted second correction; the next would be about its square.
     pub second: f64,
 }
 
-/// Paths that keep apart, as between general parameters.
+/// For paths that stay well apart, as between general parameters.
 pub(super) const BRISK: Pace = Pace { aimed: 1e-2, largest: 8e-2, second: 2e-3 };
 
-/// Paths that come near each other, as at the end beside a dead centre.
+/// For paths that come near each other, as at the end of a path near a dead centre.
 pub(crate) const CAREFUL: Pace = Pace { aimed: 1e-4, largest: 1e-3, second: 1e-5 };
 
-/// Second correction as a part of the first.
+/// Greatest accepted ratio of the second correction to the first.
 pub(super) const LEAST_CONTRACTION: f64 = 0.1;
 
-/// Second correction of far solutions, `e^(i t)` in the hundreds, where rounding is that much greater; after so many corrections.
+/// Second correction that is accepted for far solutions, `e^(i t)` in the hundreds, where rounding is greater in proportion; at the end
+/// of a way only after this many corrections.
 const LAST_SECOND_FAR: f64 = 3e-5;
 const LAST_CORRECTIONS: usize = 4;
 
-/// A longer predicted move of all joints together [rad] is made in shorter steps.
+/// Longest predicted move of all joints together [rad]; the next step aims at this part of it.
 const LONGEST_MOVE: f64 = 1.0;
+const AIMED_MOVE: f64 = 0.8 * LONGEST_MOVE;
 
-/// The first step, in the parameter.
+/// Factors by which a step may change: after one that was rejected, and after one that was accepted.
+const SHORTER: (f64, f64) = (0.1, 0.5);
+const CHANGED: (f64, f64) = (0.5, 2.0);
+
+/// Moves and first corrections below these are no measure of the next step [rad, or relative to the size].
+const LEAST_MOVE: f64 = 1e-3;
+const LEAST_CORRECTION: f64 = 1e-9;
+
+/// Length of the first step [in the parameter].
 const FIRST_STEP: f64 = 0.02;
 
-/// Steps shorter than this end a path: it runs to infinity or into a singular solution.
+/// A path ends where its steps become shorter than this [in the parameter]: it runs to infinity or into a singular solution.
 const SHORTEST_STEP: f64 = 1e-9;
 
 /// A closure whose parameter moves.
 pub(crate) trait Homotopy {
     /// Which joints slide.
     fn slides(&self) -> &Slides;
-    /// What is watched on all ways, if anything is.
+    /// Whose phases are summed along all ways, if any are.
     fn watch(&self) -> Option<&Watch>;
     /// Most steps on one way.
     fn most_steps(&self, pace: Pace) -> usize;
-    /// Whether the end of a way is known well enough after corrections of these sizes [rad, or relative to the size].
+    /// Whether the end of a way is accurate enough after corrections of these sizes [rad, or relative to the size].
     fn settled(&self, first: f64, second: f64) -> bool;
-    /// The parameter a step along a way.
+    /// The parameter after a step of `by` along a way.
     fn ahead<V: Vector>(&self, at: Lanes<V>, by: Lanes<V>) -> Lanes<V>;
-    /// The closure linearised in the unknowns; without its drift where no rate is asked for.
+    /// The closure linearised in the unknowns; its derivative by the parameter only if `DRIFT`.
     fn linearise<V: Vector, const DRIFT: bool>(&self, x: &[Lanes<V>; UNKNOWNS], at: Lanes<V>) -> Linear<V>;
 }
 
@@ -70,18 +80,18 @@ pub(crate) struct Place {
     rate_before: Solution,
     moved_before: Solution,
     before: Complex64,
-    /// Length of the step that is likely to be allowed next.
+    /// Length of the next step: it should just be accepted.
     step: f64,
     phases: Phases,
 }
 
-/// A straight way: its direction, its length, and the parameter at its end.
+/// A straight stretch of the parameter's path: its direction, its length, and the parameter at its end.
 #[derive(Clone, Copy)]
 pub(super) struct Way {
     pub direction: Complex64,
     pub length: f64,
     pub end: Complex64,
-    /// Whether its end is corrected to rounding.
+    /// Whether the solution at its end is corrected until only rounding is left.
     pub settle: bool,
 }
 
@@ -141,7 +151,7 @@ struct Follow<'a, H> {
     ends: &'a mut [Option<Place>],
 }
 
-/// What the lanes hold between steps.
+/// The state of all lanes between steps.
 struct Walk<V> {
     x: [Lanes<V>; UNKNOWNS],
     rate: [Lanes<V>; UNKNOWNS],
@@ -150,12 +160,13 @@ struct Walk<V> {
     at: Lanes<V>,
     before: Lanes<V>,
     phases: PhaseLanes<V>,
-    /// Length of the way that is left, and of the step that is likely to be allowed.
+    /// Length that is left of the way, and of the next step.
     left: Reals,
     step: Reals,
-    /// The path in each lane, and its way; past the last path the lane rests.
+    /// The path in each lane, and its way; a lane without a path has `usize::MAX` and rests.
     path: [usize; LANES],
     way: [usize; LANES],
+    /// Steps on the way so far, and corrections at its end.
     count: [usize; LANES],
     settling: [usize; LANES],
 }
@@ -303,9 +314,9 @@ impl<H: Homotopy> Follow<'_, H> {
                 && steady[k] >= 0.0;
             accepted[k] = f64::from(u8::from(good));
             walk.count[k] += 1;
-            let room = LONGEST_MOVE * 0.8 / reach[k].max(1e-3);
+            let room = AIMED_MOVE / reach[k].max(LEAST_MOVE);
             if !good {
-                walk.step[k] = step[k] * room.clamp(0.1, 0.5);
+                walk.step[k] = step[k] * room.clamp(SHORTER.0, SHORTER.1);
                 continue;
             }
             walk.left[k] = if ends[k] > 0.0 {
@@ -313,10 +324,11 @@ impl<H: Homotopy> Follow<'_, H> {
             } else {
                 walk.left[k] - step[k]
             };
-            let factor = (self.pace.aimed / first[k].max(1e-9))
+            // the prediction's error grows as the fourth power of the step
+            let factor = (self.pace.aimed / first[k].max(LEAST_CORRECTION))
                 .sqrt()
                 .sqrt()
-                .clamp(0.5, 2.0);
+                .clamp(CHANGED.0, CHANGED.1);
             walk.step[k] = if step[k] > 0.0 {
                 step[k] * factor.min(room)
             } else {

@@ -10,7 +10,7 @@ use super::circle::{Circle, InputClosure};
 use super::continuation::{BRISK, CAREFUL, Pace};
 use super::many_starts::{SAME_MODE, anywhere, same, searched};
 use super::phases::Watch;
-use super::poles::{poles, untold_three};
+use super::poles::{poles, unwatched_three};
 use super::polish::{self, Settled, polish};
 use super::starts::{distinct, general_count};
 use super::straight::carried;
@@ -147,7 +147,7 @@ impl<'a> ModeFinder<'a> {
         }
         algebraic &= finder.unknowns.len() == UNKNOWNS && general_count(&finder.slides) > 0;
         finder.transforms = before.clone();
-        // from the first unknown on; the last transform stands before it
+        // from the first unknown on; the last transform comes before it
         before.rotate_left(1);
         if let (true, Ok(transforms)) = (algebraic, <&[Pose; JOINTS]>::try_from(&before[..])) {
             finder.closure = Some(Closure::of(transforms, &finder.slides, chain.joints[input_joint]));
@@ -224,10 +224,11 @@ impl<'a> ModeFinder<'a> {
         Some(Algebraic { finder: self, generic: self.generic(closure), parameters, zeros })
     }
 
-    /// All modes at the one value that is asked for [rad, or relative to the size].
-    pub fn once(&self, value: f64) -> Polished {
+    /// All modes at the one value that is asked for [rad, or relative to the size], and whether fewer solutions stand alone there than at
+    /// a general one.
+    pub fn once(&self, value: f64) -> (Polished, bool) {
         let Some(closure) = &self.closure else {
-            return self.polished(&searched(self.chain, self.input, value));
+            return (self.polished(&searched(self.chain, self.input, value)), false);
         };
         // straight there: where as many arrive as there can be, none is missing
         let (to, shift) = closure.parameters(self.input_at(value));
@@ -235,10 +236,11 @@ impl<'a> ModeFinder<'a> {
         let found = carried(&self.slides, &start.parameters, &to, &start.solutions, BRISK);
         let ends = distinct(&self.slides, found.into_iter().flatten(), SAME_MODE);
         if ends.len() == closure.class.count() {
-            self.polished(&self.real_ones(&ends, &shift, value, REAL))
-        } else {
-            self.at(value)
+            return (self.polished(&self.real_ones(&ends, &shift, value, REAL)), false);
         }
+        let ends = self.ends_at(closure, value);
+        let fewer = ends.len() < self.generic(closure).solutions.len() || self.is_degenerate();
+        (self.polished(&self.real_ones(&ends, &shift, value, REAL)), fewer)
     }
 
     /// All modes with the input at this value [rad, or relative to the size].
@@ -251,9 +253,15 @@ impl<'a> ModeFinder<'a> {
         let Some(closure) = &self.closure else {
             return searched(self.chain, self.input, value);
         };
+        let (_, shift) = closure.parameters(self.input_at(value));
+        self.real_ones(&self.ends_at(closure, value), &shift, value, real)
+    }
+
+    /// The solutions that stand alone with the input at this value [rad, or relative to the size].
+    fn ends_at(&self, closure: &Closure, value: f64) -> Vec<Solution> {
         let generic = self.generic(closure);
         let (from, _) = closure.parameters(generic.input);
-        let (to, shift) = closure.parameters(self.input_at(value));
+        let (to, _) = closure.parameters(self.input_at(value));
         let mut ends: Vec<Solution> = Vec::new();
         let mut random = Random(0xde70);
         for attempt in 0..3 {
@@ -278,7 +286,7 @@ impl<'a> ModeFinder<'a> {
                 break;
             }
         }
-        self.real_ones(&ends, &shift, value, real)
+        ends
     }
 
     /// All modes at the values `2 pi k / count` of an input that turns, some of them rough to [`POLISHED_MOVE`], and the paths by
@@ -337,7 +345,7 @@ impl<'a> ModeFinder<'a> {
         }
     }
 
-    /// Where rough modes come to close as well as they can, each once.
+    /// The poses nearest to rough modes at which the loop closes as well as it can, each once.
     fn settled(&self, rough: &[Configuration]) -> Vec<Settled> {
         let mut out: Vec<Settled> = Vec::new();
         let reach = POLISHED_MOVE.max(FARTHER * self.chain.looseness());
@@ -450,8 +458,8 @@ impl<'a> Algebraic<'a> {
     }
 
     /// The first of three passive joints in a row that need not be watched, if there are such.
-    pub fn untold_three(&self) -> Option<usize> {
-        untold_three(&self.parameters, &self.finder.slides)
+    pub fn unwatched_three(&self) -> Option<usize> {
+        unwatched_three(&self.parameters, &self.finder.slides)
     }
 
     /// All solutions followed round a circle and down to the real values beneath.

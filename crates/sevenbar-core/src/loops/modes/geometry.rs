@@ -1,9 +1,9 @@
 //! The classes of geometry: which numbers of a closure's normal form are zero, or a quarter or half turn.
 //!
-//! A frame may stand anywhere on the axis of its turning joint, and anywhere at all beside a sliding one. Put where Denavit and
-//! Hartenberg put it, the frames make parallel axes, axes that meet, offsets of nothing and right angles numbers of the form 0,
-//! 1, -1, i or -i. All closures with the same such numbers are a class: a linear space of parameters, whose general member has
-//! as many solutions as a closure of that geometry can have.
+//! The frame of a turning joint may be placed anywhere along its axis, that of a sliding joint anywhere. If frames are placed as Denavit
+//! and Hartenberg place them, parallel and intersecting axes, zero offsets and right angles turn into numbers 0, 1, -1, i or -i of the
+//! normal form. All closures with the same such numbers form a class: a linear space of parameters, whose general member has as many
+//! solutions as a closure of that geometry can have.
 //!
 //! Source: docs/theory.md, (6).
 
@@ -12,17 +12,18 @@ use crate::loops::equation::complex_frame::{Frame, NO_TWIST};
 use crate::rigid::Pose;
 use num_complex::Complex64;
 
-/// Numbers of the form below this [rad, or relative to the size] are rounding. What lies farther off a class does not belong to it: it has
-/// solutions near infinity that the class has not.
+/// Numbers of the form below this [rad, or relative to the size] are rounding. A closure farther off a class does not belong to it: it has
+/// solutions near infinity that the class lacks.
 const ROUNDING: f64 = NO_TWIST;
 
-/// Axes that are parallel but for less than this sine have their common normal far away: such a closure keeps the frames it has.
+/// Axes at an angle with a smaller sine are nearly parallel and have their common normal far away. Such a closure keeps its frames.
 const LEAST_SINE: f64 = 0.01;
 
-/// The same for frames that would be farther apart than this [share of the size].
+/// A closure also keeps its frames if they would be farther apart than this [relative to the size].
 const FARTHEST: f64 = 3.0;
 
-/// Ways round the loop after which a frame moves no other.
+/// Rounds of the loop until all frames are placed: moving a frame changes the links on both sides of it, and the second round settles
+/// what the first one changed.
 const ROUNDS: usize = 2;
 
 /// The links between the joints as `Rz(before) T(shift) Rx(twist) Rz(after)`, angles as `e^(i t)`.
@@ -34,23 +35,23 @@ pub(super) struct Form {
     pub after: [Complex64; JOINTS],
 }
 
-/// A turn that a class has fixed, in quarters; `None` where it may be any.
+/// A turn that a class fixes, in quarter turns; `None` if the class leaves it free.
 type Quarters = Option<u8>;
 
-/// What the closures of a class have in common.
+/// The numbers of the normal form that the closures of a class share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Pattern {
     twists: [Quarters; JOINTS],
-    /// The given turns of sliding joints.
+    /// The fixed turns of sliding joints.
     turns: [Quarters; JOINTS],
-    /// Which parts of the shifts are not zero.
+    /// Which components of the shifts are not zero.
     shifts: [[bool; 3]; JOINTS],
-    /// Whether the input slides, or does both.
+    /// Whether the input advances: a slide, or a screw.
     input_advances: bool,
 }
 
 impl Form {
-    /// Of the transforms after the joints.
+    /// From the fixed transforms after the joints.
     pub fn of(transforms: [&Pose; JOINTS]) -> Self {
         let normal = transforms.map(|t| Frame::from_pose(t).normal_form());
         Self {
@@ -61,12 +62,12 @@ impl Form {
         }
     }
 
-    /// What each joint turns by in its zero.
+    /// The angle, as `e^(i t)`, that the form adds to each joint's own value.
     pub fn zeros(&self) -> [Complex64; JOINTS] {
         std::array::from_fn(|i| self.before[i] * self.after[(i + JOINTS - 1) % JOINTS])
     }
 
-    /// The same closure with each frame where Denavit and Hartenberg have it, rounding taken off; `None` where that is far away.
+    /// The same closure with each frame where Denavit and Hartenberg place it, and rounded numbers made exact; `None` if that is far away.
     pub fn with_zeros(mut self, slides: &[bool; JOINTS]) -> Option<Self> {
         for _ in 0..ROUNDS {
             for link in 0..JOINTS {
@@ -83,13 +84,14 @@ impl Form {
         self.shifts.as_flattened().iter().all(near).then_some(self)
     }
 
-    /// Moves the frame at the end of a link: beside a slide into the one before, else along its axis.
+    /// Moves the frame at the end of a link: before a slide onto the link's first frame, otherwise along its joint's axis. `None` if it
+    /// would move far away.
     fn move_frame_after(&mut self, link: usize, slides: &[bool; JOINTS]) -> Option<()> {
         let next = (link + 1) % JOINTS;
         let (cosine, sine) = (self.twists[link].re, self.twists[link].im);
         let [x, y, z] = self.shifts[link];
         if slides[next] {
-            // as the frame after the slide's turn has it
+            // in the axes of the frame after the slide's turn
             let (y, z) = (y * cosine + z * sine, z * cosine - y * sine);
             let turn = self.after[link] * self.before[next];
             let moved = Complex64::new(x, y) * turn.conj();
@@ -98,7 +100,7 @@ impl Form {
                 *shift += by;
             }
         } else if sine.abs() < NO_TWIST {
-            // parallel: level with the frame before, and the split of the turns such that x leads to it
+            // parallel axes: no offset between the frames, and x along their common normal
             let along = Complex64::new(x, y);
             self.shifts[link] = [along.norm(), 0.0, 0.0];
             self.shifts[next][2] += z * cosine.signum();
@@ -117,7 +119,7 @@ impl Form {
         Some(())
     }
 
-    /// The class of a closure with these sliding joints.
+    /// The class of a closure, given which joints slide.
     pub fn pattern(&self, slides: &[bool; JOINTS], input_advances: bool) -> Pattern {
         let zeros = self.zeros();
         Pattern {
@@ -130,7 +132,7 @@ impl Form {
 }
 
 impl Pattern {
-    /// Parameters of the class from parameters of any closure.
+    /// Parameters of any closure with the numbers of the class put in their places.
     pub fn imposed_on(&self, mut parameters: Parameters) -> Parameters {
         for i in 0..JOINTS {
             if let Some(n) = self.twists[i] {
@@ -152,7 +154,7 @@ impl Pattern {
     }
 }
 
-/// The quarter turns that a turn is, up to rounding.
+/// How many quarter turns a turn is, if it is a whole number of them up to rounding.
 fn quarters(turn: Complex64) -> Quarters {
     (0..4).find(|&n| (turn - turn_of(n)).norm() < ROUNDING)
 }

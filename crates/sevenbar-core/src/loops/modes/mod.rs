@@ -4,6 +4,7 @@ pub(super) mod assembly;
 mod chain_closure;
 pub(super) mod circle;
 pub(super) mod continuation;
+mod curves_at_input;
 pub(super) mod finder;
 mod geometry;
 pub(super) mod many_starts;

@@ -1,6 +1,6 @@
 //! Phases along followed solutions: of the determinant of the passive screws, and of each joint's distance from a complex value.
 //!
-//! A phase is counted on over whole turns, so that the change along a way is the difference of two.
+//! A phase is unwrapped: it goes on beyond whole turns, so the change along a way is the difference of its two ends.
 //!
 //! Source: docs/theory_many.md, (12) and (14).
 
@@ -13,37 +13,37 @@ use std::f64::consts::TAU;
 /// The determinant, and two factors for each unknown joint.
 pub(crate) const FACTORS: usize = 1 + 2 * UNKNOWNS;
 
-/// Square of the cosine of the greatest change of a phase in one step, 0.8 rad: far from the half turn at which turns are miscounted.
+/// Square of the cosine of the greatest change of a phase in one step, 0.8 rad. Turns would be miscounted from half a turn on.
 const LEAST_COSINE_SQUARE: f64 = 0.485;
 
-/// What is watched.
+/// The joint values whose phases are followed, apart from the determinant.
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
     /// The value of each joint that is watched, as the solutions have it: `e^(i t)`, or a length.
     pub values: [Option<Complex64>; UNKNOWNS],
-    /// The middle turns of balls, and `e^(i t)` of their zeros: with the determinant by the cosine of such a turn a ball has three
-    /// screws along fixed axes, whose determinant is zero at no turn of the ball alone.
+    /// The middle turns of balls, and `e^(i t)` of their zeros. The determinant is divided by the cosine of each such turn: then a ball
+    /// counts with three screws along fixed axes, and no turn of the ball alone makes the determinant zero.
     pub middles: Vec<(usize, Complex64)>,
 }
 
 impl Watch {
-    /// The factors that are checked.
+    /// The indices of the factors in use: the determinant, and two for each watched joint.
     pub fn watched(&self) -> impl Iterator<Item = usize> + '_ {
         let joints = (0..UNKNOWNS).filter(|&i| self.values[i].is_some());
         std::iter::once(0).chain(joints.flat_map(|i| [1 + 2 * i, 2 + 2 * i]))
     }
 }
 
-/// The phases at a place [rad], turns counted on; not numbers where nothing was watched.
+/// The unwrapped phases at a place [rad]; NaN for factors not in use.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Phases(pub [f64; FACTORS]);
 
 impl Phases {
-    /// Those of a place that was not looked at.
+    /// The phases of a place at which none were computed.
     pub const NONE: Self = Self([f64::NAN; FACTORS]);
 }
 
-/// The phases in each lane.
+/// The phases in each lane: the last factors, and the whole turns so far.
 #[derive(Clone, Copy)]
 pub(super) struct PhaseLanes<V> {
     factors: [Lanes<V>; FACTORS],
@@ -67,7 +67,7 @@ impl Watch {
         }
         for i in 0..UNKNOWNS {
             if let Some(value) = self.values[i] {
-                // the second is the first in the mirror of the real inputs
+                // the second factor is the first of the solution mirrored at the real inputs
                 let mirrored = if slides[i] { x[i] } else { x[i].recip() };
                 out[1 + 2 * i] = x[i] - Lanes::splat(value);
                 out[2 + 2 * i] = mirrored - Lanes::splat(value.conj());
@@ -83,7 +83,7 @@ impl<V: Vector> PhaseLanes<V> {
         Self { factors: [Lanes::zero(); FACTORS], turns: [V::splat(0.0); FACTORS] }
     }
 
-    /// Negative in the lanes in which a phase changes by too much for one step.
+    /// Negative in the lanes in which some phase changes by more than one step may change it.
     #[inline(always)]
     pub fn steady(&self, now: &[Lanes<V>; FACTORS], watch: &Watch) -> Reals {
         let mut worst = V::splat(0.0);
@@ -96,13 +96,13 @@ impl<V: Vector> PhaseLanes<V> {
         worst.store()
     }
 
-    /// Goes on to new factors in the lanes in which a step is taken.
+    /// Takes over new factors in the lanes in which a step is taken, and counts turns.
     #[inline(always)]
     pub fn go_on(&mut self, now: &[Lanes<V>; FACTORS], taken: V, watch: &Watch) {
         let (zero, one, half) = (V::splat(0.0), V::splat(1.0), V::splat(0.5));
         for k in watch.watched() {
             let (a, b) = (self.factors[k], now[k]);
-            // a turn more or less where the step leads over the negative numbers
+            // one turn more or less where the step crosses the negative real axis
             let sense = (a.re * b.im).minus_product(a.im, b.re);
             let (below, now_below) = (zero.if_greater(a.im, one, zero), zero.if_greater(b.im, one, zero));
             let up = (one - below) * now_below * sense.if_greater(zero, one, zero);
@@ -132,7 +132,7 @@ impl<V: Vector> PhaseLanes<V> {
             let phase = phases.0[k];
             let (mut re, mut im) = (self.factors[k].re.store(), self.factors[k].im.store());
             let mut turns = self.turns[k].store();
-            // nothing to compare the first with
+            // a first phase has nothing to be compared with
             (im[lane], re[lane]) = if phase.is_nan() {
                 (0.0, 0.0)
             } else {

@@ -25,7 +25,7 @@ const MOST_STEPS: usize = 60;
 const HOPELESS_AFTER: usize = 25;
 const HOPELESS: f64 = 1e-3;
 
-/// Most steps where there are freedoms to spare: towards a pose that stands alone among links of very different lengths the way winds.
+/// Most steps where there are freedoms to spare: the way to an isolated pose winds if lengths of links differ widely.
 const MOST_WITH_SPARE: usize = 240;
 
 /// Steps after which it is seen whether a pose comes nearer to closing.
@@ -40,7 +40,7 @@ pub(crate) struct Settled {
     pub agrees: bool,
 }
 
-/// Newton's method with the input held; `None` where it does not close but for redundant constraints, or goes farther than `reach`.
+/// Newton's method with the input held; `None` where it does not close, redundant constraints aside, or goes farther than `reach`.
 pub(crate) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: f64) -> Option<Settled> {
     let mut at = *rough;
     let mut best = f64::INFINITY;

@@ -1,4 +1,4 @@
-//! What the motion of a loop comes to in numbers, without its rows: for many loops at once.
+//! The measures of a loop's motion, without its rows: for many loops at once.
 
 use super::motion::motion;
 use crate::loops::description::described_loop::Loop;
@@ -27,7 +27,7 @@ pub struct Measures {
     pub circuits: Vec<CircuitMeasures>,
 }
 
-/// What the motion over a column comes to, with so many rows a turn, the input at a speed.
+/// The measures of the motion over a column, with so many rows a turn, the input at a speed.
 pub fn measures(linkage: &Loop, input: usize, output: usize, samples: usize, speed: f64) -> Measures {
     let none = |driven| Measures { driven, motion_type: "", circuits: Vec::new() };
     if !linkage.can_be_driven() {

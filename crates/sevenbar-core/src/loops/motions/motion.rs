@@ -15,16 +15,16 @@ use crate::loops::modes::polish::{Settled, polish};
 /// How far a joint of a given pose [rad, or relative to the size] may be moved to close the loop.
 const PUT_RIGHT: f64 = 0.05;
 
-/// A pose at which curves meet, or one that stands alone.
+/// A pose at which curves meet, or an isolated pose.
 #[derive(Clone, Debug)]
 pub struct ChangePoint {
     /// The value of each column.
     pub values: Vec<f64>,
-    /// The circuits that pass it or end there, by their number; none where it stands alone.
+    /// The circuits that pass it or end there, by their number; none if it is isolated.
     pub circuits: Vec<usize>,
     /// How many ways lead out of it.
     pub ways: usize,
-    /// The most freedoms of a motion out of it; none where it stands alone.
+    /// The greatest mobility of a motion out of it; 0 if it is isolated.
     pub freedoms: usize,
 }
 

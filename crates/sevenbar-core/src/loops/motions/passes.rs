@@ -329,14 +329,14 @@ impl<'a> Passes<'a> {
     /// Rows at the inputs of a law, once for each pass.
     ///
     /// An input that turns may be met a turn on or back; one that lies in the pass with `shift` taken off it, as the circuit's
-    /// rows are told, is met there, for a pass may be longer than a turn.
+    /// rows are given, is met there, for a pass may be longer than a turn. Only a closed curve is gone along again.
     pub fn law_rows(&self, law: &[[f64; 4]], turns: bool, shift: f64) -> Vec<Row> {
         let mut rows = Vec::new();
         for (n, pass) in self.passes.iter().enumerate() {
             let (low, high) = (pass.start.min(pass.end), pass.start.max(pass.end));
             for q in law {
                 let span = high - low;
-                let value = if self.limits.is_empty() && turns {
+                let value = if self.limits.is_empty() && turns && self.curve.is_closed() {
                     low + (q[0] - low).rem_euclid(span)
                 } else if turns && q[0] - shift >= low && q[0] - shift <= high {
                     q[0] - shift

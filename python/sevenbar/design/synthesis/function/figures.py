@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from sevenbar.design.candidates import Candidate
 from sevenbar.design.closure import outputs, row_of, transmissions
 from sevenbar.design.wish import Wish
-from sevenbar.drawing.figure import page_figure
+from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, OTHER, styled
 from sevenbar.drawing.ticks import DegreeLocator
@@ -66,7 +66,7 @@ def function_figure(candidate: Candidate, wish: Wish) -> Figure:
             below.set_ylim(-1.0, 1.0)
         below.yaxis.set_major_locator(MaxNLocator(5))
         figure.align_ylabels()
-        figure.suptitle(_title(candidate, wish))
+        headline(figure, _title(candidate, wish))
         handles, labels = top.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(handles), frameon=False)
     return figure
@@ -115,5 +115,5 @@ def swing_figure(candidate: Candidate) -> Figure:
         figure.align_ylabels()
         lowest = math.degrees(candidate.transmission_lowest or 0.0)
         least = say("transmission angle at least {lowest:.3g}°", lowest=lowest)
-        figure.suptitle(f"{short(candidate.name, 60)}\n{least}")
+        headline(figure, f"{short(candidate.name, 60)}\n{least}")
     return figure

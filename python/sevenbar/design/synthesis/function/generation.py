@@ -144,8 +144,7 @@ def function_generation(
         True
     """
     need_scipy()
-    if count < 1:
-        raise RequestError(f"designs: {count} is no number of designs; give 1 or more")
+    check_count(count)
     if not 0 < tolerance <= math.pi:
         raise RequestError(f"tolerance: {math.degrees(tolerance):g} deg is none; give an angle > 0")
     if (points is None) == (function is None):
@@ -168,6 +167,12 @@ def function_generation(
             formula=function if isinstance(function, str) else None,
         )
     return _found(wish, limits, tolerance, count, seed, progress)
+
+
+def check_count(count: int) -> None:
+    """Raises `RequestError` for a number of designs that is none."""
+    if count < 1:
+        raise RequestError(f"designs: {count} is no number of designs; give 1 or more")
 
 
 def _found(

@@ -7,15 +7,16 @@ from functools import partial
 from typing import Any
 
 from matplotlib.figure import Figure
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
 from sevenbar.design.candidates import Candidate, spoken_tally
+from sevenbar.design.closure import NAMES
 from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
 from sevenbar.design.synthesis.function.generation import Synthesis
+from sevenbar.design.tables import columns_table, plain_designs
 from sevenbar.reporting.files import Report
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, page
 from sevenbar.text.words import retold, retold_parts, say
 
 #: Columns of the printed table, by their names in `Candidate.columns`, those that a task has not left out.
@@ -48,28 +49,11 @@ def text(found: Synthesis) -> RenderableType:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
     if found.refusals:
         facts.add("refused", spoken_tally(found.refusals))
-    rows = [candidate.columns for candidate in found.candidates]
-    names = [name for name in PRINTED if name in rows[0] and not (found.wish is None and name in OF_SWING)]
-    table = number_table(
-        ["design", *(PRINTED[name] for name in names)],
-        [[str(i), *(_cell(row[name]) for name in names)] for i, row in enumerate(rows, 1)],
-        words=[1 + names.index("motion_type")],
-    )
     unit = found.candidates[0].draft.linkage.length_unit
-    keys = ("M", "N", "L1", "L2", "L3", "D")
-    dimensions = number_table(
-        ["design", *(f"{key} [{unit}]" for key in keys)],
-        [[str(i), *(_cell(row[f"{key}_{unit}"]) for key in keys)] for i, row in enumerate(rows, 1)],
-    )
-    parts: list[RenderableType] = [
-        Text(say("Synthesis of an RSSR"), style="bold underline"),
-        facts.grid,
-        Text(),
-        table,
-        Text(),
-        dimensions,
-    ]
-    return Group(*parts)
+    wanted = {n: head for n, head in PRINTED.items() if found.wish is not None or n not in OF_SWING}
+    dimensions = {f"{name}_{unit}": f"{name} [{unit}]" for name in NAMES}
+    tables = (columns_table(found.candidates, heads) for heads in (wanted, dimensions))
+    return page(say("Synthesis of an RSSR"), facts, *tables)
 
 
 def _searched(found: Synthesis) -> str:
@@ -77,10 +61,6 @@ def _searched(found: Synthesis) -> str:
         "{searched} designs, {refined} refined, seed {seed}",
         searched=found.searched, refined=found.fitted, seed=found.seed,
     )  # fmt: skip
-
-
-def _cell(value: object) -> str:
-    return f"{value:.5g}" if isinstance(value, float) else say(str(value))
 
 
 def as_dict(found: Synthesis) -> dict[str, Any]:
@@ -95,8 +75,8 @@ def as_dict(found: Synthesis) -> dict[str, Any]:
         "seed": found.seed,
         "searched": found.searched,
         "refined": found.fitted,
-        "refused": [{"fault": r.fault, "detail": r.detail} for r in found.refusals],
-        "designs": [{"design": i, "name": c.name, **c.columns} for i, c in enumerate(found.candidates, 1)],
+        "refused": list(map(vars, found.refusals)),
+        "designs": plain_designs(found),
     }
 
 

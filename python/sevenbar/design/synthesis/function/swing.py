@@ -37,10 +37,9 @@ from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import MARGIN, Limits
 from sevenbar.design.survey.polish import Polish, swung
 from sevenbar.design.survey.skew_closure import START, N
-from sevenbar.design.survey.task import SurveyTask, SwingWish
-from sevenbar.design.synthesis.function.generation import USUAL, Synthesis
+from sevenbar.design.survey.task import SurveyTask, SwingWish, refuse_without_swing
+from sevenbar.design.synthesis.function.generation import USUAL, Synthesis, check_count
 from sevenbar.design.synthesis.function.precision import reflected
-from sevenbar.errors import RequestError
 from sevenbar.text.progress import Progress, silent
 
 #: Designs of the global search, and inputs of a turn at which they are checked.
@@ -61,9 +60,6 @@ WORTH = 1e-4
 
 #: Greatest error of a swing and of a stroke [rad] that counts as met.
 MET = 1e-8
-
-#: Time ratio beyond which the crank would stand still for all purposes on its quick way.
-MOST_TIME_RATIO = 20.0
 
 
 def swing_generation(
@@ -86,22 +82,9 @@ def swing_generation(
         1.2
     """
     need_scipy()
-    if not 0 < swing < math.tau:
-        raise RequestError(
-            f"swing: {math.degrees(swing):g} deg is no swing of a rocker; give an angle between 0 and 360 deg"
-        )
-    if not 1 <= time_ratio <= MOST_TIME_RATIO:
-        raise RequestError(
-            f"time ratio: {time_ratio:g} is not offered; it is the slower stroke over the quicker: "
-            f"give 1 to {MOST_TIME_RATIO:g}"
-        )
-    if limits.motion_type not in (None, "crank-rocker"):
-        raise RequestError(
-            f"motion type: a {limits.motion_type} has no swing with a time ratio; give crank-rocker, or none"
-        )
-    if count < 1:
-        raise RequestError(f"designs: {count} is no number of designs; give 1 or more")
     want = SwingWish(swing, time_ratio)
+    refuse_without_swing(limits.motion_type)
+    check_count(count)
     course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
     chosen, searched = _chosen(want, limits, course.total - 1, seed)
     course.step()

@@ -28,21 +28,21 @@ def drawn(task: PathTask, design: TaskDesign) -> tuple[Floats, Floats]:
     whole = placing.put(circuit.point(task.point.name).position)
     if circuit.closed:
         whole = np.concatenate([whole, whole[:1]])
-    return whole, whole if task.closed else DesignAlong(task.design, design).places(0)[:, 0]
+    return whole, whole if task.want.closed else DesignAlong(task.design, design).places(0)[:, 0]
 
 
 def path_figure(task: PathTask, design: TaskDesign) -> Figure:
     """Wanted points and path in space (a) and from three sides (b to d), the error at each point (e)."""
     whole, used = drawn(task, design)
     candidate = design.candidate
-    near = _near(whole, np.concatenate([task.wanted, used]))
+    near = _near(whole, np.concatenate([task.want.places, used]))
     title = say(
         "{linkage}: {motion_type}, circuit {number}",
         linkage=short(candidate.name, 70),
         motion_type=say(candidate.motion_type),
         number=candidate.circuit,
     )
-    page = PathPage(task.wanted, used, candidate.claim.errors, title, whole=near)
+    page = PathPage(task.want.places, used, candidate.claim.errors, title, whole=near)
     return path_page(task.draft.linkage, page)
 
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy.typing as npt
 
+from sevenbar.arrays import whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Candidate
 from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.path.task import PathTask, Where, path_task
 from sevenbar.design.task.search import STARTS, DesignsFound, designed, named
-from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.progress import Progress, silent
 
@@ -94,16 +94,11 @@ def generated(
     found = designed(task.design, count=count, starts=starts, seed=seed, progress=progress)
     found.required(starts)
     best = sorted(found.designs, key=lambda design: design.candidate.error_greatest)
-    return replace(found, designs=tuple(named(task.design, best)))
+    return replace(found, designs=named(task.design, best))
 
 
 def check_counts(count: object, starts: object, seed: object) -> None:
     """Raises `RequestError` for a number of designs or starts, or a seed, that is none."""
-    _count("designs", count, 1, MOST_DESIGNS)
-    _count("starts", starts, 0, MOST_STARTS)
-    _count("seed", seed, 0, 2**63 - 1)
-
-
-def _count(name: str, value: object, low: int, high: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        raise RequestError(f"{name}: {shown(value)} is not a count; give {low} to {high}")
+    whole_number("designs", count, 1, MOST_DESIGNS, "a count")
+    whole_number("starts", starts, 0, MOST_STARTS, "a count")
+    whole_number("seed", seed, 0, 2**63 - 1, "a count")

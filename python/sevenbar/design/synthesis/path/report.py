@@ -8,16 +8,16 @@ from functools import partial
 from typing import Any
 
 from matplotlib.figure import Figure
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
 from sevenbar.design.candidates import Candidate
 from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.path.figures import path_figure
 from sevenbar.design.synthesis.path.task import PathTask
+from sevenbar.design.tables import cell, design_table, plain_designs, sheets
 from sevenbar.design.task.search import DesignsFound
 from sevenbar.reporting.files import Report
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, page
 from sevenbar.text.words import retold, retold_parts, say
 
 #: Dimensions below this part of the path's extent are printed as 0.
@@ -53,34 +53,31 @@ def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
     count = len(task.dimensions)
     names = ", ".join(dimension.name for dimension in task.dimensions)
     size = f"{task.extent:.4g} {unit}"
-    places = {"source": source, "count": len(task.wanted), "size": size}
+    want = task.want
+    places = {"source": source, "count": len(want.places), "size": size}
     wanted = (
         say("{source}: {count} points of a closed path, {size} across", **places)
-        if task.closed
+        if want.closed
         else say("{source}: {count} points of an open path, {size} across", **places)
     )
-    if task.timing is not None:
+    if want.timing is not None:
         wanted = say("{path}, at given inputs", path=wanted)
-        wanted = say("{path} from a free start", path=wanted) if task.phase else wanted
+        wanted = say("{path} from a free start", path=wanted) if want.phase else wanted
+    fixed = task.design.placement == "fixed"
+    where = say("where the description has it") if fixed else say("anywhere in space")
     return [
         ("wanted", wanted),
         ("point", say("{point} on link {link}", point=task.point.name, link=task.point.link)),
         ("varied", say("{count} dimension{s}: {names}", count=count, s="s" * (count != 1), names=names)),
         *([("held", task.held.text)] if task.held.left_to_the_program else []),
-        ("ground", say("anywhere in space") if task.place else say("where the description has it")),
-        ("limits", retold_parts(task.limits.text(), "; ")),
+        ("ground", where),
+        ("limits", retold_parts(task.design.limits.text(), "; ")),
     ]
 
 
 def path_report(count: int, command: str, figures: Sequence[str] = ("png",)) -> Report[PathDesigns]:
     """How at most `count` designs are reported; the heads of their files name the `command`."""
-    files = design_files(
-        count,
-        figures,
-        head=partial(_head, command),
-        figure=_figure,
-        as_dict=as_dict,
-    )
+    files = design_files(count, figures, head=partial(_head, command), figure=_figure, as_dict=as_dict)
     return Report(text, as_dict, files, spoken=True)
 
 
@@ -92,7 +89,7 @@ def _figure(found: PathDesigns, candidate: Candidate) -> Figure:
 def _head(command: str, found: PathDesigns) -> list[str]:
     task = found.task
     lines = [f"{label}: {text}" for label, text in _facts(task, found.source)]
-    if task.place and "joint" not in task.draft.raw:
+    if task.design.placement != "fixed" and "joint" not in task.draft.raw:
         lines.append(
             "placed: turned by turn_x, turn_y, turn_z (axis times angle), then shifted, it makes the path"
         )
@@ -107,8 +104,7 @@ def text(found: PathDesigns) -> RenderableType:
     linkage = task.draft.linkage
     unit = linkage.length_unit
     facts = Facts()
-    for label, text in _facts(task, found.source):
-        facts.add(label, text, "bold" if label == "wanted" else "")
+    facts.add_all(_facts(task, found.source), bold=["wanted"])
     facts.add("seed", str(found.seed))
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
@@ -117,53 +113,27 @@ def text(found: PathDesigns) -> RenderableType:
     heads += [say("least\ntransm.\n[deg]")] if transmits else []
     heads += [say("size\n[{unit}]", unit=unit), "motion type", "circuit"]
     rows = []
-    for i, candidate in enumerate(candidates, 1):
+    for candidate in candidates:
         own = candidate.columns
-        cells = [own[f"error_greatest_{unit}"], own[f"error_rms_{unit}"]]
-        cells += [own["transmission_lowest_deg"]] if transmits else []
-        cells += [own[f"size_{unit}"], own["motion_type"], own["circuit"]]
-        rows.append([str(i), *map(_cell, cells)])
-    parts: list[RenderableType] = [
-        Text(say("Path generation: {linkage}", linkage=linkage.heading), style="bold underline"),
-        facts.grid,
-        Text(),
-        number_table(["design", *heads], rows, words=[heads.index("motion type") + 1]),
-    ]
-    dimensions = task.dimensions
-    for begin in range(0, len(dimensions), ACROSS):
-        some = dimensions[begin : begin + ACROSS]
-        table = number_table(
-            ["design", *(f"{d.name}\n[{d.unit}]" if d.unit else d.name for d in some)],
-            [
-                [str(i), *(_cell(c.draft.dimension(d.name).value, TINY * task.extent) for d in some)]
-                for i, c in enumerate(candidates, 1)
-            ],
-        )
-        parts += [Text(), table]
-    return Group(*parts)
-
-
-def _cell(value: object, tiny: float = 0.0) -> str:
-    """A cell of a printed table; below `tiny` a number is 0."""
-    if value is None:
-        return "-"
-    if not isinstance(value, float):
-        return say(str(value))
-    return "0" if abs(value) < tiny else f"{value:.5g}"
+        names = [f"error_greatest_{unit}", f"error_rms_{unit}"]
+        names += ["transmission_lowest_deg"] if transmits else []
+        rows.append([cell(own[name]) for name in (*names, f"size_{unit}", "motion_type", "circuit")])
+    columns = []
+    for d in task.dimensions:
+        values = (c.draft.dimension(d.name).value for c in candidates)
+        cells = [cell(value, TINY * task.extent) for value in values]
+        columns.append((f"{d.name}\n[{d.unit}]" if d.unit else d.name, cells))
+    tables = [design_table(heads, rows, words=["motion type"]), *sheets(columns, ACROSS)]
+    return page(say("Path generation: {linkage}", linkage=linkage.heading), facts, *tables)
 
 
 def as_dict(found: PathDesigns) -> dict[str, Any]:
     """The designs as plain values; what has a unit has it in its name."""
     task = found.task
+    errors = f"errors_{task.draft.linkage.length_unit}"
     designs = [
-        {
-            "design": i,
-            "name": candidate.name,
-            **candidate.columns,
-            f"errors_{task.draft.linkage.length_unit}": candidate.claim.errors.tolist(),
-            "inputs": candidate.claim.inputs.tolist(),
-        }
-        for i, candidate in enumerate(found.candidates, 1)
+        {**own, errors: c.claim.errors.tolist(), "inputs": c.claim.inputs.tolist()}
+        for own, c in zip(plain_designs(found), found.candidates, strict=True)
     ]
     return {
         "format": 1,

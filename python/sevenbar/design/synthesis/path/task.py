@@ -11,19 +11,20 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Floats, finite_array, whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import OPENINGS, closed_poses
 from sevenbar.design.task.loop import TaskLoop
-from sevenbar.design.task.task import DesignTask, FreeNumber, PathWant, Placement
+from sevenbar.design.task.task import DesignTask, FreeNumber, PathWant, Placement, residual_unit
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Point
 from sevenbar.kinematics.numbers.dimensions import Dimension
+from sevenbar.kinematics.numbers.sensitivity import Numbers
 
 #: Bounds where none are given, relative to the greater of the linkage's longest dimension and the path's
 #: extent: of lengths that must be positive, and how far others may go from zero.
@@ -38,30 +39,31 @@ HALF_TURN = math.pi
 
 @dataclass(frozen=True, eq=False)
 class PathTask:
-    """A wanted path and the linkage that shall make it.
+    """A wanted path and the linkage that shall make it: a `design` task of one want, the path of a `point`.
 
-    `wanted` (n, 3) [length] are the points in order, the first not repeated where the path is `closed`;
-    `timing` (n,) [rad, or length] the inputs at which they shall be reached, counted from an unknown start
-    with `phase`. `varied` are the names of the dimensions that may change, `low` and `high` (k,) their
-    bounds in the file's units. With `place` the linkage may stand anywhere in space.
+    Numbers that may change are in the file's units. With a placement that is not "fixed" the linkage may
+    stand anywhere in space, and be larger as a whole where every length may change.
     """
 
-    draft: Draft
+    design: DesignTask
     point: Point
-    wanted: Floats
-    closed: bool
-    timing: Floats | None
-    phase: bool
-    place: bool
-    varied: tuple[str, ...]
-    low: Floats
-    high: Floats
-    limits: Limits
+
+    @property
+    def draft(self) -> Draft:
+        """The linkage as the start."""
+        return self.design.draft
+
+    @property
+    def want(self) -> PathWant:
+        """The wanted path."""
+        (want,) = self.design.wants
+        assert isinstance(want, PathWant)
+        return want
 
     @cached_property
     def loop(self) -> TaskLoop:
         """The loop of the linkage, with the point."""
-        return TaskLoop(self.draft, self.varied)
+        return TaskLoop(self.draft, self.design.names)
 
     @property
     def dimensions(self) -> tuple[Dimension, ...]:
@@ -69,32 +71,14 @@ class PathTask:
         return tuple(self.loop.numbers.dimensions[number] for number in self.loop.free)
 
     @property
-    def design(self) -> DesignTask:
-        """The task as the search for designs takes it."""
-        free = (FreeNumber(*one) for one in zip(self.varied, self.low, self.high, strict=True))
-        want = PathWant(self.point.name, self.wanted, self.closed, self.timing, self.phase)
-        anywhere: Placement = "free with scale" if self.scale_free else "free"
-        follow = tuple(d.name for d in self.loop.numbers.dimensions if d.follows)
-        placement: Placement = anywhere if self.place else "fixed"
-        return DesignTask(
-            self.draft, tuple(free), (want,), placement=placement, limits=self.limits, follow=follow
-        )
-
-    @property
     def held(self) -> HeldDimensions:
         """What does not change."""
-        return held_of(self.draft, self.varied)
+        return held_of(self.draft, self.design.names)
 
     @cached_property
     def extent(self) -> float:
         """The greatest extent of the wanted path [length], which errors are parts of."""
-        return float(np.ptp(self.wanted, axis=0).max())
-
-    @cached_property
-    def scale_free(self) -> bool:
-        """Whether the linkage may be made larger as a whole, since every length may change."""
-        lengths = {d.name for d in self.loop.numbers.dimensions if d.kind in ("length", "pitch")}
-        return lengths - _of_other_points(self.draft, self.point) <= set(self.varied)
+        return residual_unit(self.want, self.draft.linkage)
 
 
 Where = str | tuple[int, Sequence[float]]
@@ -128,15 +112,24 @@ def path_task(
         raise RequestError("phase: the path has no inputs whose start could be free; give timing, too")
     wanted = wanted[:-1] if closed else wanted
     limits = Limits() if limits is None else limits
-    if limits.transmission_lowest and draft.linkage.form != "rssr":
-        raise RequestError(
-            "transmission: its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out"
-        )
+    if flaw := limits.flaw(draft.linkage.form):
+        raise RequestError(f"transmission: {flaw}")
     refuse_idle_link(draft.linkage, own.link, "a path on it")
     varied = _varied(draft, own, vary)
     low, high = _bounds(draft, varied, limits, float(np.ptp(wanted, axis=0).max()), bounds or {})
-    names = tuple(dimension.name for dimension in varied)
-    task = PathTask(draft, own, wanted, closed, inputs, phase, place, names, low, high, limits)
+    every = Numbers(draft.linkage).dimensions
+    lengths = {d.name for d in every if d.kind in ("length", "pitch")}
+    scale_free = lengths - _of_other_points(draft, own) <= {d.name for d in varied}
+    anywhere: Placement = "free with scale" if scale_free else "free"
+    design = DesignTask(
+        draft,
+        tuple(FreeNumber(d.name, *ends) for d, *ends in zip(varied, low, high, strict=True)),
+        (PathWant(own.name, wanted, closed, inputs, phase),),
+        placement=anywhere if place else "fixed",
+        limits=limits,
+        follow=tuple(d.name for d in every if d.follows),
+    )
+    task = PathTask(design, own)
     _refuse_unreachable(task)
     return task
 
@@ -180,15 +173,12 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
             raise
         raise RequestError(f"point: {shown(point)} is not a place; give a link and three numbers") from None
     count = len(linkage.joints)
-    if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link < count:
-        raise RequestError(
-            f"point: {shown(link)} is not a moving link; give 1 to {count - 1}, link {count} is the ground"
-        )
+    link = whole_number("point", link, 1, count - 1, "a moving link", f", link {count} is the ground")
     if place.size != 3:
         raise RequestError(f"at: {place.size} numbers; give three")
     taken = {known.name for known in linkage.points} | {joint.name for joint in linkage.joints}
     name = next(n for n in ("P", "path_point", *(f"P{i}" for i in range(1, 1000))) if n not in taken)
-    made = draft.with_point(name, int(link), tuple(map(float, place)))
+    made = draft.with_point(name, link, tuple(map(float, place)))
     return made, next(p for p in made.linkage.points if p.name == name)
 
 
@@ -322,9 +312,9 @@ def _refuse_unreachable(task: PathTask) -> None:
     reach = _reach(task)
     if reach is None:
         return
-    unit = task.draft.linkage.length_unit
-    if not task.place:
-        far = np.linalg.norm(task.wanted, axis=1)
+    unit, wanted = task.draft.linkage.length_unit, task.want.places
+    if task.design.placement == "fixed":
+        far = np.linalg.norm(wanted, axis=1)
         if far.max() > reach:
             raise RequestError(
                 f"points: point {far.argmax() + 1} lies {far.max():.4g} {unit} from the origin, and the "
@@ -332,7 +322,7 @@ def _refuse_unreachable(task: PathTask) -> None:
                 "freely"
             )
         return
-    across = float(np.linalg.norm(task.wanted[:, None] - task.wanted[None], axis=2).max())
+    across = float(np.linalg.norm(wanted[:, None] - wanted[None], axis=2).max())
     if across > 2 * reach:
         raise RequestError(
             f"points: the path is {across:.4g} {unit} across, and the linkage reaches {2 * reach:.4g} {unit} "
@@ -352,7 +342,7 @@ def _reach(task: PathTask) -> float | None:
         return None
     places = {d.place: k for k, d in enumerate(numbers.dimensions)}
     most = np.abs(numbers.nominal)
-    for d, low, high in zip(task.dimensions, task.low, task.high, strict=True):
+    for d, low, high in zip(task.dimensions, task.design.low, task.design.high, strict=True):
         most[places[d.place]] = max(abs(low), abs(high))
     slides = [k for product in (*word.fixed[: point.steps], point.frame) for k in product.slides]
     coordinates = point.at if point.place is None else most[list(point.place)].tolist()

@@ -10,8 +10,9 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
+from sevenbar.description.contradictions import FORMS
 from sevenbar.description.draft import Draft
-from sevenbar.description.files import toml_tables, toml_text
+from sevenbar.description.files import near_files, toml_tables, toml_text
 from sevenbar.description.gallery import names as gallery_names
 from sevenbar.description.table_form import TableForm
 from sevenbar.design.limits import Limits
@@ -55,8 +56,13 @@ def read_task(path: str | os.PathLike[str], *, agree: float | None = None) -> De
 def task_file(path: str | os.PathLike[str], *, agree: float | None = None) -> TaskFile:
     """The same with the task's name and source."""
     source = str(path)
-    if not Path(path).is_file():
-        raise DescriptionError.of_all(source, "no such file; give the path of a task file (TOML)")
+    file = Path(path)
+    if file.is_dir():
+        raise DescriptionError.of_all(source, "is a folder; give the path of a task file (TOML) in it")
+    if not file.is_file():
+        raise DescriptionError.of_all(
+            source, f"no such file; {near_files(file)}give the path of a task file (TOML)"
+        )
     return task_of_text(toml_text(path), source, agree=agree)
 
 
@@ -122,6 +128,11 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
         except DescriptionError as error:
             problems = [Problem(f"linkage.{p.place}".rstrip("."), p.message) for p in error.problems]
             raise DescriptionError(problems, source) from None
+    if given is None and raw.keys() & set(FORMS):
+        what = "is a linkage file and not a task; a task names its linkage, as in"
+        raise DescriptionError.of_all(
+            source, f"{what} linkage = {shown(Path(source).name)}, with [free] and [[want]]"
+        )
     if not isinstance(given, str) or not given.strip():
         what = "is missing" if given is None else f"{shown(given)} is none"
         hint = (

@@ -8,14 +8,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, ValidationError, WithJsonSchema
+from pydantic import BeforeValidator, Field, StrictBool, ValidationError, WithJsonSchema
 
 from sevenbar.description.mistakes import FileForms
 from sevenbar.description.table_form import TableForm, key
 from sevenbar.description.values import Angle, Direction, Length, Text, Vector, one_of, refuse
 from sevenbar.design.limits import MOTION_TYPES
 from sevenbar.design.task.file.values import (
-    Flag,
     Goal,
     Link,
     Links,
@@ -89,7 +88,7 @@ class FunctionForm(TableForm):
     ] = None
     input_zero: Annotated[Zero, key("the input's value at the reading 0, or free", _OF_INPUT)] = "free"
     output_zero: Annotated[Zero, key("the output's value at the reading 0, or free", _OF_INPUT)] = "free"
-    exact: Annotated[Flag, key("whether all points must be met exactly")] = False
+    exact: Annotated[StrictBool, key("whether all points must be met exactly")] = False
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
 
@@ -107,8 +106,8 @@ class PathForm(TableForm):
         Timing | None,
         key("inputs at which the places are reached; true: those of the table; left out, any", _OF_INPUT),
     ] = None
-    phase: Annotated[Flag, key("whether the inputs count from a free start")] = False
-    exact: Annotated[Flag, key("whether all places must be met exactly")] = False
+    phase: Annotated[StrictBool, key("whether the inputs count from a free start")] = False
+    exact: Annotated[StrictBool, key("whether all places must be met exactly")] = False
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
 
@@ -145,8 +144,8 @@ class PosesForm(TableForm):
         Timing | None,
         key("inputs at which the poses are taken; true: those of the table; left out, any", _OF_INPUT),
     ] = None
-    phase: Annotated[Flag, key("whether the inputs count from a free start")] = False
-    exact: Annotated[Flag, key("whether all poses must be met exactly")] = False
+    phase: Annotated[StrictBool, key("whether the inputs count from a free start")] = False
+    exact: Annotated[StrictBool, key("whether all poses must be met exactly")] = False
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
 

@@ -51,12 +51,6 @@ def _positive(value: object, info: ValidationInfo, what: str) -> float:
     return number
 
 
-def _flag(value: object) -> bool:
-    if not isinstance(value, bool):
-        raise refuse(f"{shown(value)} is neither true nor false; give one of the two, without quotes")
-    return value
-
-
 def _whole(value: object, least: int, most: int, what: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
         raise refuse(f"{shown(value)} is not {what}; give a whole number from {least} to {most}")
@@ -134,7 +128,6 @@ Span = Annotated[tuple[Given, Given], BeforeValidator(_span), _ENDS]
 Numbers = Annotated[tuple[float, float], BeforeValidator(_numbers), _ENDS]
 Weight = Annotated[float, BeforeValidator(partial(_positive, what="a weight")), POSITIVE]
 Unit = Annotated[float, BeforeValidator(partial(_positive, what="a unit")), POSITIVE]
-Flag = Annotated[bool, BeforeValidator(_flag), WithJsonSchema({"type": "boolean"})]
 Pairs = Annotated[tuple[tuple[Given, Given], ...], BeforeValidator(_pairs), _ROWS]
 Places = Annotated[tuple[tuple[float, float, float], ...], BeforeValidator(_places), _ROWS]
 Timing = Annotated[

@@ -1,0 +1,173 @@
+"""A folder that a run fills part by part: described first, held against a second run, taken up again."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any, ClassVar, Protocol
+
+from sevenbar.errors import OutputError, RequestError, shown
+
+
+class Parted(Protocol):
+    """What is made in parts."""
+
+    @property
+    def parts(self) -> int:
+        """The number of parts."""
+        ...
+
+    def request(self) -> dict[str, Any]:
+        """What it is, as plain values."""
+        ...
+
+
+class HeldFolder:
+    """A folder of parts; held against a second run as long as it is open."""
+
+    #: The description's file, and what the folder is of.
+    description: ClassVar[str]
+    what: ClassVar[str]
+
+    def __init__(self, path: Path, plan: Parted) -> None:
+        self.path, self._plan = path, plan
+        self._lock: int | None = None
+
+    @property
+    def done(self) -> Collection[int]:
+        """The parts that are there."""
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """Lets another run have the folder."""
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
+
+    @contextmanager
+    def _opened(self) -> Iterator[bool]:
+        """Makes and holds the folder; whether it has a description. It is let go where what follows fails.
+
+        Raises `OutputError` for a folder of something else, and where it cannot be written.
+        """
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            self._lock = hold_folder(self.path)
+            names = sorted(file.name for file in self.path.iterdir())
+            aside = [name for name in names if name.startswith(".") and name.endswith(".aside")]
+            strange = [name for name in names if name not in aside]
+            if strange and self.description not in names:
+                raise OutputError(
+                    f"{self.path}: holds {shown(strange[0])} and no {self.description}; "
+                    "give an empty folder or a new one"
+                )
+            yield self.description in names
+            for name in aside:
+                (self.path / name).unlink(missing_ok=True)
+        except OSError as error:
+            self.close()
+            raise self._unwritable(error) from None
+        except BaseException:
+            self.close()
+            raise
+
+    def _describe(self, description: Mapping[str, Any]) -> None:
+        self._put(self.description, (json.dumps(description, indent=1, ensure_ascii=False) + "\n").encode())
+
+    def _put(self, name: str, content: bytes) -> None:
+        """Writes a file aside, brings it to the disk and renames it."""
+        aside = self.path / f".{name}.aside"
+        try:
+            with aside.open("wb") as file:
+                file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
+            aside.replace(self.path / name)
+            if self._lock is not None:
+                # the new name itself
+                os.fsync(self._lock)
+        except BaseException:
+            with suppress(OSError):
+                aside.unlink(missing_ok=True)
+            raise
+
+    def _refuse_another(self, there: Mapping[str, Any]) -> None:
+        """`OutputError` for the folder of another request than this one."""
+        unlike = differences(dict(there), self._plan.request())
+        if unlike:
+            more = f", and {len(unlike) - 1} more differ" if len(unlike) > 1 else ""
+            raise OutputError(
+                f"{self.path}: holds another {self.what}: {unlike[0]}{more}; "
+                f"give another folder, or the options of that {self.what}"
+            )
+
+    def _refuse_unfinished(self, done: int) -> None:
+        """`OutputError` for parts that are there, to which `--resume` would add the others."""
+        if 0 < done < self._plan.parts:
+            raise OutputError(
+                f"{self.path}: {done} of {self._plan.parts} parts are there; "
+                "give --resume to go on, or another folder"
+            )
+
+    def _unwritable(self, error: OSError) -> OutputError:
+        reason = (error.strerror or str(error)).lower()
+        kept = ""
+        if self.done:
+            kept = f"; {len(self.done)} of {self._plan.parts} parts are kept, --resume goes on with them"
+        return OutputError(
+            f"{self.path}: cannot be written: {reason}; make room or give a folder that can be written{kept}"
+        )
+
+
+def hold_folder(path: Path) -> int | None:
+    """Holds a folder against a second run, until what is given is closed; `None` where a system has no locks.
+
+    Raises `OutputError` where another run holds it.
+    """
+    try:
+        import fcntl
+    except ImportError:  # a system without: two runs at once would only do the work twice
+        return None
+    lock = os.open(path, os.O_RDONLY)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(lock)
+        raise OutputError(
+            f"{path}: another run fills this folder; wait for it, end it, or give another folder"
+        ) from None
+    except OSError:
+        # some network file systems have no locks
+        pass
+    return lock
+
+
+def other_maker(first: Mapping[str, str], other: Mapping[str, str]) -> str:
+    """That two makers may differ in the last bits, naming in what they differ."""
+    what = [f"{key} {first.get(key)} and {value}" for key, value in other.items() if first.get(key) != value]
+    return (
+        f"its parts were made by {what[0] if what else 'another machine'}, whose last bits may differ; "
+        "go on where they were made, or give --mixed to have both"
+    )
+
+
+def differences(there: Any, here: Any, place: str = "") -> list[str]:
+    """Where two values of JSON differ, in words."""
+    if isinstance(there, dict) and isinstance(here, dict):
+        keys = [*here, *(key for key in there if key not in here)]
+        found = (differences(there.get(key), here.get(key), f"{place}.{key}".lstrip(".")) for key in keys)
+        return [one for some in found for one in some]
+    if isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
+        pairs = enumerate(zip(there, here, strict=True), 1)
+        return [one for i, pair in pairs for one in differences(*pair, f"{place}[{i}]")]
+    return [] if there == here else [f"{place} is {shown(there)} there and {shown(here)} here"]
+
+
+def refuse_unlike(makers: Sequence[Mapping[str, str]], *, mixed: bool) -> None:
+    """`RequestError` for makers of which one is not as the first, unless parts may be `mixed`."""
+    unlike = [one for one in makers if one != makers[0]]
+    if unlike and not mixed:
+        raise RequestError(f"scheduler: {other_maker(makers[0], unlike[0])}")
