@@ -23,8 +23,8 @@ FAMILIES = {
     for family in [*narrow.FAMILIES, *counted.FAMILIES, *changes.FAMILIES, *moving.FAMILIES]
 }
 
-#: Cases that a process takes at once: a run's last ones are then no long wait.
-AT_ONCE = 10
+#: Cases that a process takes at once: few, so that a run that is stopped has met all families.
+AT_ONCE = 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
