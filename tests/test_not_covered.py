@@ -57,12 +57,3 @@ def test_refusals_read_as_they_do_on_the_page(what):
         with pytest.raises(NotCoveredError) as refused:
             sb.from_axes(joints).motion()
     assert str(refused.value) in PAGE
-
-
-def test_a_structure_in_rows_is_not_found_and_drawn_it_is_rigid():
-    rows = sb.from_dh("RRR", length=[3, 4, 5], twist=[0] * 3)
-    assert rows.motion(24).motion_type == "cannot-assemble"
-    joints = [
-        {"kind": "R", "at": [x, y, 0], "axis": [0, 0, 1]} for x, y in ((0.0, 0.0), (3.0, 0.0), (3.0, 4.0))
-    ]
-    assert sb.from_axes(joints).motion(24).motion_type == "rigid"

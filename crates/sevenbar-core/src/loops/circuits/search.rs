@@ -126,6 +126,9 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
     out.take(chain, &drawings, wished[0]);
     if out.search.found.is_none() && !out.search.columns.is_empty() {
         look_beside_paths(&mut out, chain);
+        if out.search.found.is_none() {
+            look_for_a_structure(&mut out, chain);
+        }
     }
     out.finish(chain);
     out.search.open_by.sort_by(f64::total_cmp);
@@ -150,6 +153,16 @@ fn look_beside_paths(curves: &mut Curves, chain: &Chain) {
             curves.take(chain, &[mode], curves.wished[0]);
             return;
         }
+    }
+}
+
+/// Searches for a pose where the loop closes at no general input: a structure closes at inputs that no seed has.
+fn look_for_a_structure(curves: &mut Curves, chain: &Chain) {
+    let finder = ModeFinder::new(chain, curves.search.columns[0]);
+    if let Some(pose) = finder.pose_of_structure() {
+        curves.search.completeness = Completeness::Searched;
+        curves.search.count = Err(Uncounted::Searched);
+        curves.take(chain, &[pose], curves.wished[0]);
     }
 }
 

@@ -22,7 +22,7 @@ const ALONG: f64 = 0.02;
 pub(super) fn pose_on_curve(chain: &Chain, input: usize, value: f64) -> Option<Configuration> {
     let mut random = Random(0xc4a1e5);
     (0..STARTS).find_map(|_| {
-        let at = polish_with_spare(chain, input, &anywhere(chain, input, value, &mut random))?;
+        let at = polish_with_spare(chain, Some(input), &anywhere(chain, input, value, &mut random))?;
         (chain.counts(&at) && runs_on(chain, input, &at)).then_some(at)
     })
 }
@@ -35,7 +35,7 @@ fn runs_on(chain: &Chain, input: usize, at: &Configuration) -> bool {
     };
     [ALONG, -ALONG].iter().any(|step| {
         let rough = chain.moved(at, &free.map(|x| x * step));
-        polish_with_spare(chain, input, &rough).is_some_and(|next| {
+        polish_with_spare(chain, Some(input), &rough).is_some_and(|next| {
             let gone = length(&chain.difference(at, &next));
             (0.5 * ALONG..2.0 * ALONG).contains(&gone) && still_free(chain, input, &next).is_some()
         })

@@ -88,8 +88,13 @@ pub(crate) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
     (gone <= reach).then_some(Settled { at, error, agrees: error < chain.agree })
 }
 
-/// The same where the other joints have freedoms to spare: each step is the shortest of those that lead as near.
-pub(super) fn polish_with_spare(chain: &Chain, input: usize, rough: &Configuration) -> Option<Configuration> {
+/// The same where joints have freedoms to spare: each step is the shortest of those that lead as near. No input is `held` where any pose
+/// will do.
+pub(super) fn polish_with_spare(
+    chain: &Chain,
+    held: Option<usize>,
+    rough: &Configuration,
+) -> Option<Configuration> {
     let mut at = *rough;
     let mut best = f64::INFINITY;
     let mut looked = f64::INFINITY;
@@ -112,7 +117,9 @@ pub(super) fn polish_with_spare(chain: &Chain, input: usize, rough: &Configurati
             looked = best;
         }
         let mut columns = chain.screws(&at);
-        columns[input].fill(0.0);
+        if let Some(input) = held {
+            columns[input].fill(0.0);
+        }
         let by = least_squares(&columns, &placed.error.map(|e| -e), chain.no_rank());
         let longest = by.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
         if !longest.is_finite() {
