@@ -284,9 +284,9 @@ def test_the_input_stands_still_at_a_dead_centre(family: str, amount: str) -> No
 # No silent change of mode
 
 
-def same_circuits(linkage: sb.Linkage, samples: int, name: object) -> None:
+def same_circuits(linkage: sb.Linkage, samples: int, name: object, input: str | None = None) -> None:
     """Twice the samples give the same circuits, and the same rows at inputs that both have."""
-    coarse, fine = linkage.motion(samples=samples), linkage.motion(samples=2 * samples)
+    coarse, fine = (linkage.motion(samples=n, input=input) for n in (samples, 2 * samples))
     assert coarse.motion_type == fine.motion_type, name
     assert len(coarse.circuits) == len(fine.circuits), name
     np.testing.assert_allclose(coarse.limits, fine.limits, rtol=0, atol=1e-8, err_msg=str(name))
@@ -332,7 +332,19 @@ def test_half_the_step_gives_the_same_circuits_of_random_loops(amount: str) -> N
     for seed in range(HALVED[amount]):
         # half of them general, the other half special in turn
         family = general if seed % 2 else families[seed // 2 % len(families)]
-        same_circuits(family(np.random.default_rng([12, seed])).linkage(), 90, seed)
+        linkage = family(np.random.default_rng([12, seed])).linkage()
+        same_circuits(linkage, 90, seed, input_that_moves(linkage))
+
+
+def input_that_moves(linkage: sb.Linkage) -> str | None:
+    """Another input where the usual one stands still while other joints move; else `None`."""
+    try:
+        linkage.motion(samples=8)
+    except RequestError as refused:
+        _, _, others = str(refused).partition("cannot drive; give another: ")
+        assert others, refused
+        return others.split(", ")[0]
+    return None
 
 
 # Any joint can be the input

@@ -12,6 +12,7 @@ use crate::loops::branch_points::survey::Survey;
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
 use crate::loops::modes::circle::Circle;
 use crate::loops::modes::finder::{Completeness, ModeFinder, REAL};
+use crate::loops::modes::many_starts::any_pose;
 use crate::loops::modes::polish::CLOSED;
 use std::f64::consts::TAU;
 
@@ -156,10 +157,15 @@ fn look_beside_paths(curves: &mut Curves, chain: &Chain) {
     }
 }
 
-/// Searches for a pose where the loop closes at no general input: a structure closes at inputs that no seed has.
+/// Searches for a pose where the loop closes at no general input, real or not: a structure closes at inputs that no seed has, and so
+/// does a loop in which the input stands still while other joints move.
 fn look_for_a_structure(curves: &mut Curves, chain: &Chain) {
-    let finder = ModeFinder::new(chain, curves.search.columns[0]);
-    if let Some(pose) = finder.pose_of_structure() {
+    let column = curves.search.columns[0];
+    let finder = ModeFinder::new(chain, column);
+    if finder.algebraic().is_none_or(|a| !a.own().is_empty()) {
+        return;
+    }
+    if let Some(pose) = any_pose(chain, column) {
         curves.search.completeness = Completeness::Searched;
         curves.search.count = Err(Uncounted::Searched);
         curves.take(chain, &[pose], curves.wished[0]);

@@ -65,9 +65,6 @@ pub(crate) const CIRCLE: f64 = 1.05;
 /// The same where paths were lost: most starts lead to a pose where there is one, and each costs more.
 const SPARE_STARTS: usize = 300;
 
-/// The same for the pose of a structure, where all joints are free: a triangle is found from one start in two or three.
-const STRUCTURE_STARTS: usize = 60;
-
 /// What an unknown of the closure stands for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Unknown {
@@ -182,20 +179,6 @@ impl<'a> ModeFinder<'a> {
         });
         let found = found.find(|at| self.chain.counts(at));
         self.in_order(found.into_iter().collect()).pop()
-    }
-
-    /// A pose of a loop that closes at no general input, real or not: one of a structure, whose input is found with the other joints.
-    pub fn pose_of_structure(&self) -> Option<Configuration> {
-        if !self.algebraic()?.own().is_empty() {
-            return None;
-        }
-        let mut random = Random(0x57a7e);
-        let mut found = (0..STRUCTURE_STARTS).filter_map(|_| {
-            let value = std::f64::consts::PI * (2.0 * random.uniform() - 1.0);
-            let rough = anywhere(self.chain, self.input, value, &mut random);
-            polish::polish_with_spare(self.chain, None, &rough)
-        });
-        found.find(|at| self.chain.counts(at))
     }
 
     /// One that follows all paths of a general closure, whatever the geometry.

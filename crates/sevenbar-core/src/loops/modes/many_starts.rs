@@ -1,12 +1,15 @@
 //! Modes by search, where there is no algebraic way: Newton's method from many places.
 
-use super::polish::{Settled, polish};
+use super::polish::{Settled, polish, polish_with_spare};
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
 use crate::loops::equation::rotations::ball_rotation;
 use crate::random::Random;
 
 /// Starts of the search where there is no algebraic way.
 const SEARCH_STARTS: usize = 1500;
+
+/// Starts of the search for any pose, where all joints are free: a triangle is found from one start in two or three.
+const ANY_STARTS: usize = 60;
 
 /// Turns to each side within which a screw joint is searched.
 pub(super) const SCREW_TURNS: f64 = 1.0;
@@ -37,6 +40,16 @@ pub(super) fn anywhere(chain: &Chain, input: usize, value: f64, random: &mut Ran
     }
     rough.values[input] = value;
     rough
+}
+
+/// A pose at any value of the input, from [`ANY_STARTS`] places.
+pub(crate) fn any_pose(chain: &Chain, input: usize) -> Option<Configuration> {
+    let mut random = Random(0x57a7e);
+    (0..ANY_STARTS).find_map(|_| {
+        let value = std::f64::consts::PI * (2.0 * random.uniform() - 1.0);
+        let found = polish_with_spare(chain, None, &anywhere(chain, input, value, &mut random));
+        found.filter(|at| chain.counts(at))
+    })
 }
 
 /// Newton from many places; screws within [`SCREW_TURNS`]. Redundant constraints may keep some of them open.
