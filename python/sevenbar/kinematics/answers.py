@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -46,13 +47,13 @@ def _by_rates(circuit: Circuit) -> list[Place] | None:
     return [(speed / rates.lowest, rates.lowest_at), (speed / rates.highest, rates.highest_at)]
 
 
+@dataclass(frozen=True, eq=False)
 class LinkageAnswers:
     """The answers of a linkage; its circuits keep them and ask when they are asked."""
 
-    def __init__(self, linkage: Solvable) -> None:
-        self.linkage = linkage
-        # what solves for its forces, by the driving column, made at the first asking
-        self._solvers: dict[int, ForceSolver] = {}
+    linkage: Solvable
+    #: What solves for its forces, by the driving column, made at the first asking.
+    _solvers: dict[int, ForceSolver] = field(default_factory=dict, repr=False)
 
     def __reduce__(self) -> tuple[type[LinkageAnswers], tuple[Solvable]]:
         """Copied and pickled by the linkage."""
