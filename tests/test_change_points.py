@@ -176,6 +176,37 @@ def test_a_linkage_beside_a_change_is_one_circuit_or_two(off: float) -> None:
     assert (motion.motion_type == "change-point") == (close or abs(off) < 1e-12)
 
 
+@pytest.mark.parametrize("near", [3e-10, 1e-8, 8e-7, 1.2e-6, 1e-5, 1e-3])
+def test_a_hair_off_a_kite_folded_flat_the_two_limits_of_its_crank_meet(near: float) -> None:
+    # the crank of a kite turns fully; coupler and rocker nearly of a length stop it before half a turn, by the law
+    # of cosines; the poses at both limits are half a turn of the rocker apart, and no branches meet
+    crank, coupler = 0.06, 0.1
+    missing = 2 * crank * math.sin(near / 4)
+    motion = planar_rows(crank, coupler, coupler - missing, crank).motion(SAMPLES)
+    limits = [d.input for c in motion for d in c.dead_centres if d.kind == "input"]
+    assert len(limits) == 2
+    assert 2 * pi - abs(limits[0] - limits[1]) == pytest.approx(near, rel=1e-4)
+    assert (motion.motion_type == "change-point") == (near < 1e-6)
+    assert not motion.change_points
+
+
+RSSRS_NEAR_AN_ISOLATED_POSE = [
+    # their circuits next to it are 4e-8, 2e-7 and 5e-7 rad wide; the last has another circuit
+    ("rigid", (0.8609910264585372, -0.4532549689304044, 0.7834402749211726, 1.7711600058888775, 0.20291009344708955, -0.02228775898385682)),
+    ("rigid", (-0.8940115863075897, 0.881749560010467, 0.05164177388092317, 2.0520324557174674, 0.9066013200303089, 0.229997292198993)),
+    ("change-point", (0.5622559130860667, -0.2808659622127949, 0.905811863260557, 0.2368390894639874, 0.5099652902723408, 0.08310999454473444)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("word", "dimensions"), RSSRS_NEAR_AN_ISOLATED_POSE)
+def test_from_an_isolated_pose_a_circuit_may_grow(word: str, dimensions: Sequence[float]) -> None:
+    linkage = sb.rssr(**dict(zip(("M", "N", "L1", "L2", "L3", "D"), dimensions, strict=True)))
+    motion = linkage.motion(SAMPLES, method="general")
+    assert motion.motion_type == word
+    assert motion.change_points
+    assert all(point.isolated for point in motion.change_points)
+
+
 @pytest.mark.parametrize("lengths", [(3, 1, 1, 1), (6, 1, 2, 3), (0.7, 0.1, 0.2, 0.4)])
 def test_a_loop_that_closes_stretched_only_is_rigid(lengths: Sequence[float]) -> None:
     linkage = planar_rows(*lengths)

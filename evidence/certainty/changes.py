@@ -33,9 +33,6 @@ ON_CIRCUIT = 1e-4
 #: Two limits nearer than this [rad] make a change point, and from here on none; between it is left open.
 NEAR, APART = 1e-6, 1.3e-6
 
-#: A circuit narrower than this [rad] cannot be distinguished from an isolated pose.
-ALONE = 2e-7
-
 #: Decades by which a number is off a change point, and by which a node is opened.
 OFF, GAPS = (-13, -5), (-12, -3)
 
@@ -60,8 +57,8 @@ def worded(motion: sb.Motion, limits: Limits, others: Limits, seen: Counter[str]
     (real, every), other = nearest(limits), nearest(others)[1]
     changing = motion.motion_type == "change-point"
     seen["change-point"] += changing
-    if motion.motion_type == "rigid" and real < ALONE:
-        # the circuit is no wider than roundings: an isolated pose
+    if motion.motion_type == "rigid" and real < NEAR:
+        # nothing moves but a circuit so narrow, and it is reported as an isolated pose
         hold(motion.change_points and all(p.isolated for p in motion.change_points), "a pose is not named")
         seen["isolated pose"] += 1
         return

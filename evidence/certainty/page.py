@@ -40,7 +40,7 @@ ASKED = {
     changes.NEARBY: (
         "The same, with one number off by 1e-13 to 1e-5 to either side; RSSRs whose coupler is a "
         "stationary distance of both circles, off by 1e-16 to 1e-2, by a polynomial of degree four. A "
-        f"circuit narrower than {changes.ALONE:g} rad may be reported as an isolated pose."
+        f"circuit narrower than {changes.NEAR:g} rad may be reported as an isolated pose."
     ),
     moving.SHAKY: (
         "Loops whose drawn pose has infinitesimal freedoms, and no velocity for which all second-order "

@@ -252,7 +252,7 @@ enum RawThrough {
 
 impl Loop {
     fn circuit(&self, py: Python<'_>, circuit: Circuit) -> PyResult<RawCircuit> {
-        let Circuit { rows, course, measures } = circuit;
+        let Circuit { rows, course, measures, .. } = circuit;
         let arrays = self.arrays(py, &rows)?;
         let course = course.map(|course| Py::new(py, Course(course))).transpose()?;
         let rows = Some(Py::new(py, Rows(rows))?);

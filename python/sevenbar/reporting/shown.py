@@ -27,8 +27,11 @@ class Shown:
         return degrees(value, whole=whole)
 
     def range(self, low: float, high: float) -> tuple[str, str]:
-        """The ends of a range, angles in [0, 360) as limits are: from 350 to 20 degrees it goes through 0."""
-        whole = self._unit == "rad" and high - low <= math.tau
+        """The ends of a range, angles in [0, 360) as limits are: from 350 to 20 degrees it goes through 0.
+
+        A range of all but a turn keeps its ends apart: from -180 to 180 degrees.
+        """
+        whole = self._unit == "rad" and high - low <= math.tau and not self.same(low, high)
         return self(low, whole=whole), self(high, whole=whole)
 
     def same(self, a: float, b: float) -> bool:

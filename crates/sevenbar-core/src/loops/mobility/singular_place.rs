@@ -18,7 +18,7 @@ const AS_SMALL: f64 = 100.0;
 const NEAR: f64 = 0.05;
 
 /// Two limits of a joint nearer than this [rad, or relative to the size] are a change point.
-const SAME_LIMIT: f64 = 1e-6;
+pub(crate) const SAME_LIMIT: f64 = 1e-6;
 
 /// Curves that pass each other at more than this [rad, or relative to the size] are followed apart, whatever their limits.
 const APART: f64 = 1e-5;

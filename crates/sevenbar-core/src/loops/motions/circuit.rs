@@ -23,6 +23,31 @@ pub struct Circuit {
     pub course: Option<Course>,
     /// What it is measured by, at the speed of the rows; by a law there are no extremes of rates.
     pub measures: CircuitMeasures,
+    /// Where input and output turn back, as the chain counts them.
+    pub(super) limits: [Limits; 2],
+}
+
+/// Values at which a column turns back: the greatest near by, and the least.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Limits {
+    pub upper: Vec<f64>,
+    pub lower: Vec<f64>,
+}
+
+impl Limits {
+    /// Of the places at which a column turns back.
+    fn of<'a>(turnings: impl Iterator<Item = &'a Node>, column: usize) -> Self {
+        let mut limits = Self::default();
+        for node in turnings {
+            let side = if node.rates[1][column] < 0.0 {
+                &mut limits.upper
+            } else {
+                &mut limits.lower
+            };
+            side.push(node.at.values[column]);
+        }
+        limits
+    }
 }
 
 /// A circuit on a grid of inputs whose rows are computed when they are wanted, and may be dropped again.
@@ -154,7 +179,11 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
             tally,
         }
     });
-    Circuit { rows, course, measures: measures.at_speed(speed) }
+    let limits = [
+        Limits::of(passes.limits.iter(), driver.inner),
+        Limits::of(turnings.iter().map(|t| &t.node), follower.inner),
+    ];
+    Circuit { rows, course, measures: measures.at_speed(speed), limits }
 }
 
 /// The rows of a circuit on a grid of inputs, from its first to its last, and from the input zero where it goes round.

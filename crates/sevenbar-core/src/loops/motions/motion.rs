@@ -1,6 +1,6 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
-use super::circuit::{Circuit, Wanted, circuit, grid};
+use super::circuit::{Circuit, Limits, Wanted, circuit, grid};
 use super::passes::Passes;
 use crate::loops::branch_points::counting::Uncounted;
 use crate::loops::circuits::curve::Curve;
@@ -9,6 +9,8 @@ use crate::loops::circuits::known_curves::Curves;
 use crate::loops::circuits::search::curves;
 use crate::loops::description::described_loop::Loop;
 use crate::loops::description::joint_values::{configuration, joint_values};
+use crate::loops::equation::rotations::short_way;
+use crate::loops::mobility::singular_place::SAME_LIMIT;
 use crate::loops::modes::finder::Completeness;
 use crate::loops::modes::polish::{Settled, polish};
 
@@ -72,7 +74,7 @@ pub fn motion(
     let Some(chain) = &linkage.reduced.chain else {
         let search = Search::new(Completeness::Searched);
         return Some(Motion {
-            motion_type: motion_type(linkage, &search, &[], &[]),
+            motion_type: motion_type(linkage, &search, &[], &[], false),
             search,
             circuits: Vec::new(),
             change_points: Vec::new(),
@@ -123,8 +125,12 @@ pub fn motion(
         count.column = outer(count.column).ok_or(Uncounted::Searched)?;
         Ok(count)
     });
+    let meeting = [driver.inner, follower.inner]
+        .into_iter()
+        .enumerate()
+        .any(|(k, column)| limits_meet(circuits.iter().map(|c| &c.limits[k]), chain.is_turn(column)));
     Some(Motion {
-        motion_type: motion_type(linkage, &search, &circuits, &change_points),
+        motion_type: motion_type(linkage, &search, &circuits, &change_points, meeting),
         search,
         circuits,
         change_points,
@@ -132,30 +138,45 @@ pub fn motion(
     })
 }
 
-/// What the circuits have in common, or why there are none.
+/// Whether the greatest value of a column on a circuit is, up to `SAME_LIMIT`, the least on this or another one: it takes next to
+/// nothing to join the two, be they far apart in the other joints, as next to a kite folded flat.
+fn limits_meet<'a>(limits: impl Iterator<Item = &'a Limits> + Clone, is_turn: bool) -> bool {
+    let lower = limits.clone().flat_map(|l| &l.lower);
+    limits.flat_map(|l| &l.upper).any(|upper| {
+        lower.clone().any(|lower| {
+            let apart = lower - upper;
+            (if is_turn { short_way(apart) } else { apart }).abs() < SAME_LIMIT
+        })
+    })
+}
+
+/// What the circuits have in common, or why there are none; `meeting` says that two limits of a joint nearly do.
 fn motion_type(
     linkage: &Loop,
     search: &Search,
     circuits: &[Circuit],
     change_points: &[ChangePoint],
+    meeting: bool,
 ) -> &'static str {
-    if change_points.iter().any(|p| p.ways > 0 && !p.circuits.is_empty()) {
-        return "change-point";
-    }
-    if let Some((first, others)) = circuits.split_first() {
-        let one = first.measures.motion_type;
-        return if others.iter().all(|c| c.measures.motion_type == one) {
-            one
-        } else {
-            "mixed"
+    let Some((first, others)) = circuits.split_first() else {
+        return match &search.found {
+            Some(found) if found.finite > 1 => "two-inputs",
+            Some(_) => "rigid",
+            None if !change_points.is_empty() => "rigid",
+            // rank six at most
+            None if !linkage.can_be_driven() && linkage.freedoms() > 7 => "two-inputs",
+            None => "cannot-assemble",
         };
-    }
-    match &search.found {
-        Some(found) if found.finite > 1 => "two-inputs",
-        Some(_) => "rigid",
-        // rank six at most
-        None if !linkage.can_be_driven() && linkage.freedoms() > 7 => "two-inputs",
-        None => "cannot-assemble",
+    };
+    // from an isolated pose, too, a circuit may grow
+    let changes = |p: &ChangePoint| p.ways == 0 || !p.circuits.is_empty();
+    let one = first.measures.motion_type;
+    if meeting || change_points.iter().any(changes) {
+        "change-point"
+    } else if others.iter().all(|c| c.measures.motion_type == one) {
+        one
+    } else {
+        "mixed"
     }
 }
 
