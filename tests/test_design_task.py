@@ -356,6 +356,53 @@ def test_the_least_greatest_error_is_found_up_to_a_distance_or_the_wall_of_a_box
     assert held.cost > 1.01 * alone.cost
 
 
+def crossing(crank, rocker, inputs):
+    """The rocker's angle of a planar four-bar, coupler 100 and ground 90, by the law of cosines."""
+    x, y = 90 + crank * np.cos(inputs), crank * np.sin(inputs)
+    far = np.hypot(x, y)
+    return np.arctan2(y, x) + np.arccos((far**2 + rocker**2 - 100**2) / (2 * far * rocker))
+
+
+@pytest.mark.parametrize(
+    ("must", "crank"),
+    [
+        # over the ground the coupler is lowest at the crank's pin at 150 deg: half the crank
+        (Apart((2, 4), 22.0), 44.0),
+        # the pin is highest at 90 deg: the crank itself
+        (InBox((-1.0, -200.0, -200.0), (1.0, 200.0, 38.0), ("theta_2",)), 38.0),
+    ],
+    ids=["distance", "box"],
+)
+def test_the_least_greatest_error_up_to_a_must_is_that_of_the_law_of_cosines(must, crank):
+    inputs = np.radians(np.arange(60.0, 151.0, 15.0))
+    readings = crossing(40.0, 80.0, inputs)
+    free_numbers = (FreeNumber("length_1", 30, 60), FreeNumber("length_3", 60, 100))
+    want = FunctionWant(inputs, -readings, (0.0, None))
+    start = Draft.of_linkage(sb.load("planar_4r"))
+    (design,) = designed(
+        DesignTask(start, free_numbers, (want,), (must,), goal="minimax"), count=1, starts=0
+    ).designs
+    # the crank reaches its must, and of the rocker's lengths the least greatest error is left
+    every = np.linspace(60, 100, 400001)[:, None]
+    errors = np.ptp(crossing(crank, every, inputs) - readings, axis=1) / 2
+    assert design.values == pytest.approx([crank, every[errors.argmin(), 0]], abs=2e-4)
+    assert errors.min() - 1e-6 < design.met[0].greatest <= errors.min() + 1e-12
+    assert design.room == pytest.approx(0.0, abs=1e-9)
+    assert design.optimality < 1e-11
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("least", [880.0, 900.0])
+def test_a_path_at_any_inputs_keeps_links_apart_between_its_places_and_ends_at_an_optimum(least):
+    # fewer distances are equal than there are unknowns, and rods come nearest between two places
+    task = DesignTask(
+        START, free(START, ("L1", "M", "N"), 60.0), (PATH,), (Apart((1, 3), least),), goal="minimax"
+    )
+    (design,) = designed(task, count=1, starts=0).designs
+    assert design.optimality < 1e-10
+    assert abs(design.room) < 1e-6
+
+
 @pytest.mark.parametrize("timing", [None, INPUTS[2:3]])
 def test_a_single_pose_is_reached_with_its_musts(timing):
     want = PoseWant(3, poses_of(3, ROWS[2:3]), 100.0, timing)
