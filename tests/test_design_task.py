@@ -1,10 +1,12 @@
 """Design tasks: exact slopes, known answers found again, conditions of an optimum, defective designs refused."""
 
 import math
+from io import StringIO
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import sevenbar as sb
 from evidence.design.__main__ import FOUND, is_whole, unit_of
@@ -33,7 +35,8 @@ from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
-from sevenbar.design.task.search import designed
+from sevenbar.design.task.report import TaskDesigns, task_report
+from sevenbar.design.task.search import DesignsFound, designed
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
 from sevenbar.design.task.wants.figures import figure_left
@@ -389,6 +392,23 @@ def test_the_least_greatest_error_up_to_a_must_is_that_of_the_law_of_cosines(mus
     assert errors.min() - 1e-6 < design.met[0].greatest <= errors.min() + 1e-12
     assert design.room == pytest.approx(0.0, abs=1e-9)
     assert design.optimality < 1e-11
+
+
+def test_a_design_that_ends_where_its_motion_type_changes_says_so():
+    values = {"length_1": 64.0, "length_2": 61.0, "length_3": 87.1}
+    start = Draft.of_linkage(sb.load("planar_4r")).with_values(values)
+    bounds = [FreeNumber(name, 0.5 * x, 1.6 * x) for name, x in zip(values, (40, 100, 80), strict=True)]
+    task = DesignTask(start, tuple(bounds), (DwellWant((2.0, 3.0)), FigureWant("swing", 90.0, 60.0)))
+    (design,) = designed(task, count=1, starts=0).designs
+    crank, coupler, rocker = design.values
+    # Grashof's limit with the ground of 90: beyond it the swing jumps
+    assert coupler + 90 - crank - rocker == pytest.approx(0.0, abs=1e-3)
+    assert design.optimality > 1e-3
+    assert design.solution.ended == "edge"
+    found = TaskDesigns(DesignsFound(task, (design,), (), 1, ""), "dwell", "", 0, 0)
+    printed = Console(file=StringIO(), width=100, color_system=None)
+    printed.print(task_report(task, 1, "").text(found))
+    assert "KKT residual of design 1: ends at an edge" in printed.file.getvalue()
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -66,8 +66,15 @@ EXACT, NOTHING = 1e-7, 1e-13
 #: Below this of the conditions least squares have found an optimum, which Newton's method makes exact.
 ENDED = 1e-7
 
-#: Below this the conditions of an optimum are met.
-MET = 1e-11
+#: Below this the conditions of an optimum are met; above the second what they are missed by has a reason.
+MET, SAID = 1e-11, 1e-6
+
+#: A step down the slope [units of the unknowns] after which a cost so many times as great is a jump.
+BEYOND, JUMP = 1e-6, 2.0
+
+#: How a search ended: at a local optimum; at an edge, where a step further the linkage does not close or a
+#: measure jumps, so that slopes need not vanish; or in a valley, before an optimum.
+Ended = Literal["optimum", "edge", "valley"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +89,7 @@ class Solved:
     cost: float
     optimality: float
     room: float
+    ended: Ended = "optimum"
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +162,23 @@ def _as_solved(problem: TaskProblem, z: Floats, missed: float, *, minimax: bool)
         return None
     cost = float(_heights(problem, here)[0].max()) if minimax else float(np.linalg.norm(here.left))
     room = float(here.room.min(initial=math.inf))
-    return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room)
+    ended: Ended = "optimum"
+    if missed > SAID and cost > EXACT:
+        ended = "edge" if _at_edge(problem, z, minimax=minimax) else "valley"
+    return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room, ended)
+
+
+def _at_edge(problem: TaskProblem, z: Floats, *, minimax: bool) -> bool:
+    """Whether the linkage does not close, or the cost jumps, a small step down the slope that (1) leaves."""
+    x = np.append(z, _cost(problem, z, minimax=True)) if minimax else z
+    at = _conditions(problem, x, minimax=minimax)
+    if at is None:
+        return False
+    active, y, _ = _multipliers(at)
+    rest = (at.gradient - at.room_by[active].T @ y)[: len(z)]
+    step = BEYOND * rest / max(float(np.abs(rest).max(initial=0.0)), 1e-300)
+    beyond = _cost(problem, np.clip(z - step, problem.low, problem.high), minimax=minimax)
+    return beyond > JUMP * _cost(problem, z, minimax=minimax)
 
 
 @dataclass(frozen=True, eq=False)
