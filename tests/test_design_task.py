@@ -37,6 +37,7 @@ from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.report import TaskDesigns, task_report
 from sevenbar.design.task.search import DesignsFound, designed
+from sevenbar.design.task.small_moves import rotation_of_vector
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
 from sevenbar.design.task.wants.figures import figure_left
@@ -235,6 +236,20 @@ def test_musts_hold_to_the_stop_and_the_optimum_meets_its_conditions():
     (free_of_it,) = designed(DesignTask(START, task.free, (want,)), count=1, starts=0).designs
     assert free_of_it.cost < best.cost
     assert free_of_it.optimality < 1e-8
+
+
+def test_a_path_and_poses_of_a_linkage_that_may_stand_anywhere_are_found_together():
+    turn = rotation_of_vector(np.array([0.4, -0.9, 1.1]))
+    places = PLACES @ turn.T + [30.0, -80.0, 55.0]
+    poses = poses_of(3, ROWS[1:4:2])
+    poses[:, :3, :3], poses[:, :3, 3] = (
+        turn @ poses[:, :3, :3],
+        poses[:, :3, 3] @ turn.T + [30.0, -80.0, 55.0],
+    )
+    wants = (PathWant("Q", places), PoseWant(3, poses, 100.0))
+    task = DesignTask(START, free(START, NAMES), wants, placement="free")
+    (design,) = designed(task, count=1, starts=4).designs
+    assert max(met.greatest for met in design.met) < 1e-8
 
 
 @pytest.mark.slow
