@@ -133,6 +133,32 @@ def test_circuits_that_end_where_slides_are_infinite_are_counted_and_none_is_mis
     assert far > 0
 
 
+def test_a_circuit_between_two_inputs_with_infinite_slides_is_found_where_its_only_seed_is_too_far_out() -> (
+    None
+):
+    # the circuit goes from -133.4 to -120.2 deg, and at the input -120 deg its slides are 300 sizes out
+    joints = [
+        ("R", [0.031, -3.103, 0.0], [-0.752, 0.443, -0.488]),
+        ("P", [1.53, 1.786, 1.358], [-0.897, -0.326, 0.298]),
+        ("R", [-0.716, -0.466, 0.479], [-0.93, -0.064, 0.361]),
+        ("R", [-0.941, -0.049, -0.311], [-0.854, 0.281, 0.437]),
+        ("R", [1.403, -1.006, -1.575], [0.721, -0.036, 0.692]),
+        ("P", [0.326, 0.41, 0.051], [0.392, -0.304, -0.869]),
+        ("R", [0.984, -0.666, 0.105], [-0.253, 0.158, 0.954]),
+    ]
+    linkage = sb.from_axes([{"kind": k, "at": at, "axis": axis} for k, at, axis in joints])
+    at = math.radians(-127)
+    modes = linkage.assembly_modes(at).q
+    near = modes[np.abs(modes).max(axis=1) < 40 * linkage._general.size]
+    assert len(near) > 2
+    rows = np.concatenate([c.q for c in linkage.motion(360)])
+    for q in near:
+        turned = np.where(
+            [kind == "slide" for kind in linkage.column_kinds], 0, np.round((rows - q) / math.tau)
+        )
+        assert np.nanmin(np.abs(rows - q - math.tau * turned).max(axis=1)) < 1e-6
+
+
 @pytest.mark.parametrize("kinds", ["RCCC", "RPRRRPR"])
 def test_a_law_meets_an_open_circuit_at_its_own_inputs_and_nowhere_else(kinds: str) -> None:
     """Such a circuit has no dead centre and is not gone round: it begins and ends where slides are infinite."""
