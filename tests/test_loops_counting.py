@@ -17,6 +17,7 @@ import pytest
 import sevenbar as sb
 from evidence.fuzz.edges import isolated_pose
 from sevenbar import _core
+from sevenbar.reporting.facts import facts_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -151,12 +152,16 @@ def test_a_circuit_between_two_inputs_with_infinite_slides_is_found_where_its_on
     modes = linkage.assembly_modes(at).q
     near = modes[np.abs(modes).max(axis=1) < 40 * linkage._general.size]
     assert len(near) > 2
-    rows = np.concatenate([c.q for c in linkage.motion(360)])
+    motion = linkage.motion(360)
+    rows = np.concatenate([c.q for c in motion])
     for q in near:
         turned = np.where(
             [kind == "slide" for kind in linkage.column_kinds], 0, np.round((rows - q) / math.tau)
         )
         assert np.nanmin(np.abs(rows - q - math.tau * turned).max(axis=1)) < 1e-6
+    # those that far out are not followed, and the report does not claim it
+    assert motion.search.unfollowed == 2
+    assert "could not be followed" in dict(facts_of(motion))["completeness"]
 
 
 @pytest.mark.parametrize("kinds", ["RCCC", "RPRRRPR"])
