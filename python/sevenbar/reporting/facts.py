@@ -210,8 +210,8 @@ def meaning(motion: Motion) -> str:
             return say("no values of the joints were found that close the loop")
         case "change-point" if all(point.isolated for point in motion.change_points):
             return say(
-                "two limits of a joint lie within 1e-6 rad, or 1e-6 of the size: the smallest change of a "
-                "dimension joins or parts circuits there"
+                "two limits of a joint lie within 1e-6 rad, or 1e-6 of the size: a change of a dimension by "
+                "a millionth, or far less, joins or parts circuits there"
             )
         case "change-point":
             return say("the motion runs through a pose from which it can go on in more than one way")
