@@ -17,6 +17,7 @@ import pytest
 import sevenbar as sb
 from evidence.fuzz.edges import isolated_pose
 from sevenbar import _core
+from sevenbar.reporting.facts import facts_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -131,6 +132,36 @@ def test_circuits_that_end_where_slides_are_infinite_are_counted_and_none_is_mis
                     off = np.where(turns, (off + math.pi) % (2 * math.pi) - math.pi, off)
                     assert np.abs(off).max(axis=1).min() < 1e-6 * size
     assert far > 0
+
+
+def test_a_circuit_between_two_inputs_with_infinite_slides_is_found_where_its_only_seed_is_too_far_out() -> (
+    None
+):
+    # the circuit goes from -133.4 to -120.2 deg, and at the input -120 deg its slides are 300 sizes out
+    joints = [
+        ("R", [0.031, -3.103, 0.0], [-0.752, 0.443, -0.488]),
+        ("P", [1.53, 1.786, 1.358], [-0.897, -0.326, 0.298]),
+        ("R", [-0.716, -0.466, 0.479], [-0.93, -0.064, 0.361]),
+        ("R", [-0.941, -0.049, -0.311], [-0.854, 0.281, 0.437]),
+        ("R", [1.403, -1.006, -1.575], [0.721, -0.036, 0.692]),
+        ("P", [0.326, 0.41, 0.051], [0.392, -0.304, -0.869]),
+        ("R", [0.984, -0.666, 0.105], [-0.253, 0.158, 0.954]),
+    ]
+    linkage = sb.from_axes([{"kind": k, "at": at, "axis": axis} for k, at, axis in joints])
+    at = math.radians(-127)
+    modes = linkage.assembly_modes(at).q
+    near = modes[np.abs(modes).max(axis=1) < 40 * linkage._general.size]
+    assert len(near) > 2
+    motion = linkage.motion(360)
+    rows = np.concatenate([c.q for c in motion])
+    for q in near:
+        turned = np.where(
+            [kind == "slide" for kind in linkage.column_kinds], 0, np.round((rows - q) / math.tau)
+        )
+        assert np.nanmin(np.abs(rows - q - math.tau * turned).max(axis=1)) < 1e-6
+    # those that far out are not followed, and the report does not claim it
+    assert motion.search.unfollowed == 2
+    assert "could not be followed" in dict(facts_of(motion))["completeness"]
 
 
 @pytest.mark.parametrize("kinds", ["RCCC", "RPRRRPR"])

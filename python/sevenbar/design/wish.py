@@ -147,14 +147,14 @@ def wish_of_function(
         at = x[int(np.flatnonzero(~np.isfinite(y))[0])]
         raise RequestError(f"y: {title} has no value at x = {at:g}; give another range of x")
     least, most = float(y.min()), float(y.max())
+    if most - least <= 1e-12 * max(abs(least), abs(most), 1e-300):
+        raise RequestError(f"y: {title} is the same all over {low:g}:{high:g}; give a function that changes")
     rise = int(np.argmax(np.abs(np.diff(y))))
     if abs(y[rise + 1] - y[rise]) > MOST_OF_A_STEP * (most - least):
         raise RequestError(
-            f"y: {title} jumps between x = {x[rise]:.3g} and {x[rise + 1]:.3g}, from {y[rise]:.3g} to "
+            f"y: {title} jumps between x = {x[rise]:.6g} and {x[rise + 1]:.6g}, from {y[rise]:.3g} to "
             f"{y[rise + 1]:.3g}; give a range of x in which it is continuous"
         )
-    if most - least <= 1e-12 * max(abs(least), abs(most), 1e-300):
-        raise RequestError(f"y: {title} is the same all over {low:g}:{high:g}; give a function that changes")
 
     reading = partial(_reading, function, (low, high), (least, most), input_range, output_range)
     first, last = sorted(input_range)

@@ -38,6 +38,11 @@ COMPLETE_WITH_CURVE = {
     "searched": "one pose that a search found; a curve of poses closes here",
 }
 
+#: The same of a motion some of whose modes could not be followed.
+COMPLETE_BUT_UNFOLLOWED = {
+    "counted": "all modes are found, and all circuits but those through modes that could not be followed"
+}
+
 
 def side_lengths(linkage: Solvable) -> dict[str, float]:
     """Crank, coupler and rocker of an RSSR."""
@@ -90,7 +95,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits or motion.limits.size:
         facts.append(("input limits", _limits_text(motion)))
     facts.extend(_change_points(motion))
-    facts.append(("completeness", completeness_text(motion.completeness)))
+    unfollowed = motion.search.unfollowed > 0
+    facts.append(("completeness", completeness_text(motion.completeness, unfollowed=unfollowed)))
     if motion.completeness != "closed-form":
         facts.append(("how found", how_found(motion)))
         facts.append(("mobility", _mobility(motion.mobility)))
@@ -112,9 +118,14 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     return facts
 
 
-def completeness_text(word: str, *, curve: bool = False) -> str:
-    """The word for how it is known that nothing is missing, and its meaning; modes may have a `curve` too."""
+def completeness_text(word: str, *, curve: bool = False, unfollowed: bool = False) -> str:
+    """The word for how it is known that nothing is missing, and its meaning.
+
+    Modes may have a `curve` too; of a motion some modes may be `unfollowed`.
+    """
     meanings = COMPLETE_WITH_CURVE if curve else COMPLETE
+    if unfollowed:
+        meanings = meanings | COMPLETE_BUT_UNFOLLOWED
     return say("{word}: {meaning}", word=say(word), meaning=say(meanings[word]))
 
 
@@ -199,8 +210,8 @@ def meaning(motion: Motion) -> str:
             return say("no values of the joints were found that close the loop")
         case "change-point" if all(point.isolated for point in motion.change_points):
             return say(
-                "two limits of a joint lie within 1e-6 rad, or 1e-6 of the size: the smallest change of a "
-                "dimension joins or parts circuits there"
+                "two limits of a joint lie within 1e-6 rad, or 1e-6 of the size: a change of a dimension by "
+                "a millionth, or far less, joins or parts circuits there"
             )
         case "change-point":
             return say("the motion runs through a pose from which it can go on in more than one way")

@@ -18,6 +18,9 @@ const REAL_INPUT: f64 = 1e-6;
 /// Inputs closer than this [rad] are the same.
 const SAME_INPUT: f64 = 1e-9;
 
+/// Part of the range between two inputs with slides at infinity that is next to each.
+const MARGIN: f64 = 0.25;
+
 /// The joints watched on the way round, and the inputs at which they take their watched values.
 pub(crate) struct Survey<'a> {
     pub finder: &'a ModeFinder<'a>,
@@ -134,15 +137,19 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// The middle of each range between neighbouring inputs with slides at infinity that contains none of the inputs `2 pi k / count`.
-    /// A curve along which the input only rises ends at such inputs, so one seed between them finds it.
+    /// The middle of each range between neighbouring inputs with slides at infinity that contains none of the inputs `2 pi k / count`
+    /// well within: next to its ends slides are farther out than curves are followed. A curve along which the input only rises ends
+    /// at such inputs, so one seed between them finds it.
     pub fn unseeded(&self, count: usize) -> Vec<f64> {
         let spacing = TAU / count as f64;
         let mut ends: Vec<f64> = self.afar.iter().map(|a| a.input.rem_euclid(TAU)).collect();
         ends.sort_by(f64::total_cmp);
         ends.extend(ends.first().map(|e| e + TAU));
         let pairs = ends.windows(2).filter(|w| w[1] - w[0] > SAME_INPUT);
-        let within_one = pairs.filter(|w| (w[0] / spacing).floor() == (w[1] / spacing).floor());
-        within_one.map(|w| 0.5 * (w[0] + w[1])).collect()
+        let unseeded = pairs.filter(|w| {
+            let margin = MARGIN * (w[1] - w[0]);
+            ((w[0] + margin) / spacing).floor() == ((w[1] - margin) / spacing).floor()
+        });
+        unseeded.map(|w| 0.5 * (w[0] + w[1])).collect()
     }
 }

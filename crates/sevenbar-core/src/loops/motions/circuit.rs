@@ -8,7 +8,7 @@ use crate::loops::circuits::curve::{Curve, End, Node};
 use crate::loops::circuits::turnings::{self, Turning};
 use crate::loops::description::described_loop::{Column, Loop};
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
-use crate::loops::equation::dense::{COLUMNS, Columns};
+use crate::loops::equation::dense::{COLUMNS, Columns, length};
 use crate::loops::equation::rotations::short_way;
 use crate::loops::rates::velocities::ORDERS;
 use crate::outcome::{CircuitMeasures, DeadCentre, DeadCentreKind, Role, RowStatus};
@@ -25,6 +25,8 @@ pub struct Circuit {
     pub measures: CircuitMeasures,
     /// Where input and output turn back, as the chain counts them.
     pub(super) limits: [Limits; 2],
+    /// The distance of its farthest pose from its first [rad, or relative to the size].
+    pub(super) extent: f64,
 }
 
 /// Values at which a column turns back: the greatest near by, and the least.
@@ -183,7 +185,13 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
         Limits::of(passes.limits.iter(), driver.inner),
         Limits::of(turnings.iter().map(|t| &t.node), follower.inner),
     ];
-    Circuit { rows, course, measures: measures.at_speed(speed), limits }
+    let first = &curve.nodes[0].at;
+    let apart = curve
+        .nodes
+        .iter()
+        .map(|n| length(&chain.difference(first, &n.at)));
+    let extent = apart.fold(0.0, f64::max);
+    Circuit { rows, course, measures: measures.at_speed(speed), limits, extent }
 }
 
 /// The rows of a circuit on a grid of inputs, from its first to its last, and from the input zero where it goes round.

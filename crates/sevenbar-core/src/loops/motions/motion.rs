@@ -17,6 +17,10 @@ use crate::loops::modes::polish::{Settled, polish};
 /// How far a joint of a given pose [rad, or relative to the size] may be moved to close the loop.
 const PUT_RIGHT: f64 = 0.05;
 
+/// A circuit of less extent [rad, or relative to the size] is an isolated pose but for a hair: its other joints move about as little as
+/// the one whose limits meet.
+const NEARLY_A_POSE: f64 = 1e-3;
+
 /// A pose at which curves meet, or an isolated pose.
 #[derive(Clone, Debug)]
 pub struct ChangePoint {
@@ -125,10 +129,8 @@ pub fn motion(
         count.column = outer(count.column).ok_or(Uncounted::Searched)?;
         Ok(count)
     });
-    let meeting = [driver.inner, follower.inner]
-        .into_iter()
-        .enumerate()
-        .any(|(k, column)| limits_meet(circuits.iter().map(|c| &c.limits[k]), chain.is_turn(column)));
+    let turns = [driver, follower].map(|column| chain.is_turn(column.inner));
+    let meeting = limits_meet(&circuits, turns);
     Some(Motion {
         motion_type: motion_type(linkage, &search, &circuits, &change_points, meeting),
         search,
@@ -138,15 +140,28 @@ pub fn motion(
     })
 }
 
-/// Whether the greatest value of a column on a circuit is, up to `SAME_LIMIT`, the least on this or another one: it takes next to
-/// nothing to join the two, be they far apart in the other joints, as next to a kite folded flat.
-fn limits_meet<'a>(limits: impl Iterator<Item = &'a Limits> + Clone, is_turn: bool) -> bool {
-    let lower = limits.clone().flat_map(|l| &l.lower);
-    limits.flat_map(|l| &l.upper).any(|upper| {
-        lower.clone().any(|lower| {
+/// Whether less than `SAME_LIMIT` parts two limits of the input, or of the output, `turns` saying which of these turn.
+///
+/// Between an upper limit and a lower one nothing closes, and it takes next to nothing to join the two, be they far apart in the other
+/// joints, as next to a kite folded flat; and a whole circuit may be as narrow. Of two limits on one curve that overlap, where a joint
+/// hesitates and turns back a little, nothing depends.
+fn limits_meet(circuits: &[Circuit], turns: [bool; 2]) -> bool {
+    (0..2).any(|k| {
+        let all = || circuits.iter().map(|c| &c.limits[k]);
+        let gap = |upper: f64, lower: f64| {
             let apart = lower - upper;
-            (if is_turn { short_way(apart) } else { apart }).abs() < SAME_LIMIT
-        })
+            if turns[k] { short_way(apart) } else { apart }
+        };
+        let nearly_joined = all().flat_map(|l| &l.upper).any(|&upper| {
+            all()
+                .flat_map(|l| &l.lower)
+                .any(|&lower| (0.0..SAME_LIMIT).contains(&gap(upper, lower)))
+        });
+        let nearly_nothing = circuits.iter().filter(|c| c.extent < NEARLY_A_POSE).any(|c| {
+            let Limits { upper, lower } = &c.limits[k];
+            matches!((upper.as_slice(), lower.as_slice()), (&[up, ..], &[low, ..]) if up - low < SAME_LIMIT)
+        });
+        nearly_joined || nearly_nothing
     })
 }
 
