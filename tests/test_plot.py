@@ -450,7 +450,9 @@ def test_a_film_of_a_linkage_with_stops_goes_from_stop_to_stop_and_back(tmp_path
     assert output.min() == pytest.approx(0, abs=1)
     assert output.max() == pytest.approx(30, abs=1)
     assert (np.diff(times) > 0).all()
-    assert len(np.flatnonzero(np.diff(np.sign(np.diff(output))))) == 1
+    # of an odd number two pictures next to the turn are alike
+    steps = np.diff(output)
+    assert len(np.flatnonzero(np.diff(np.sign(steps[steps != 0])))) == 1
 
 
 @pytest.mark.slow

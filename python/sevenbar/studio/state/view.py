@@ -30,7 +30,7 @@ MOST_AXES, HALF_AXIS, FAR_AXIS = 120, 0.15, 1.5
 
 @dataclass(frozen=True, eq=False)
 class View(TimedWalk):
-    """A circuit of a motion on view: what is drawn of it, and what is said of it at a row."""
+    """A circuit of a motion on view: what is drawn of it, and its values at a row."""
 
     @cached_property
     def frame(self) -> Skeleton:
