@@ -140,7 +140,7 @@ def solved(
         problem, z = _programmed(problem, z, minimax=False)
         z = _descended(problem, z)
     z, missed = settled(problem, z, minimax=minimax)
-    if minimax and missed > ENDED:
+    if model.task.goal == "minimax" and missed > ENDED:
         problem, z = _programmed(problem, z, minimax=True)
         z, missed = settled(problem, z, minimax=True)
     if minimax and _exactly(model):
