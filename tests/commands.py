@@ -4,6 +4,7 @@ import contextlib
 import io
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from sevenbar.commands.cli import main
@@ -39,3 +40,13 @@ def mistake(*arguments, cwd=None, before=""):
     assert (run.returncode, run.stdout) == (2, "")
     assert "Traceback" not in run.stderr
     return run.stderr.removeprefix("sevenbar: ").rstrip("\n")
+
+
+def killed(*arguments, once):
+    """Begins a call as a program of its own, and kills it `once` something is so."""
+    command = [sys.executable, "-m", "sevenbar.commands.cli", *map(str, arguments)]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+        while not once():
+            assert run.poll() is None
+            time.sleep(0.05)
+        run.kill()

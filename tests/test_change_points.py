@@ -234,8 +234,11 @@ def test_from_an_isolated_pose_a_circuit_may_grow(word: str, dimensions: Sequenc
     linkage = sb.rssr(**dict(zip(("M", "N", "L1", "L2", "L3", "D"), dimensions, strict=True)))
     motion = linkage.motion(SAMPLES, method="general")
     assert motion.motion_type == word
-    assert motion.change_points
-    assert all(point.isolated for point in motion.change_points)
+    # turned over by its idle spin the coupler is in the same pose, of which the closed form knows nothing
+    (point,) = motion.change_points
+    (known,) = linkage.motion(SAMPLES).change_points
+    assert point.isolated
+    assert point.input == pytest.approx(known.input, abs=1e-6)
 
 
 @pytest.mark.parametrize("lengths", [(3, 1, 1, 1), (6, 1, 2, 3), (0.7, 0.1, 0.2, 0.4)])

@@ -97,6 +97,7 @@ def test_the_design_of_known_readings_is_found_and_reported(task_path, tmp_path)
     names = sorted(path.name for path in written)
     assert names == [
         "design_1.toml",
+        "design_1_linkage.png",
         "design_1_musts.png",
         "design_1_want_1.png",
         "summary.csv",

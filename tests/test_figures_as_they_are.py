@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import re
@@ -12,6 +13,9 @@ from typing import Any
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex
+from mpl_toolkits.mplot3d import proj3d
 
 import sevenbar as sb
 from commands import sevenbar
@@ -19,6 +23,7 @@ from sevenbar.drawing import plot
 from sevenbar.drawing.animate import animate
 from sevenbar.drawing.names import amount_text, quantity_label, shown_name
 from sevenbar.drawing.skeleton import skeleton
+from sevenbar.drawing.space import PANE
 from sevenbar.drawing.style import CIRCUIT_COLOURS, COUPLER, GROUND, INPUT, OUTPUT
 from sevenbar.drawing.ticks import DegreeLocator, settle
 from sevenbar.errors import RequestError
@@ -85,6 +90,22 @@ def test_a_spherical_loop_lies_on_the_sphere_of_its_farthest_point() -> None:
     np.testing.assert_allclose(np.linalg.norm(links, axis=2), radius, rtol=1e-9)
     entries = [text.get_text() for text in plot.configuration(motion).legends[0].get_texts()]
     assert "sphere, radius 78.1 mm" in entries
+
+
+def test_the_box_of_a_tall_linkage_is_whole() -> None:
+    linkage = sb.rssr(M=40, N=900, L1=30, L2=905, L3=60, D=20)
+    figure = plot.configuration(linkage.motion(36))
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    (axes,) = figure.axes
+    ends = axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()
+    assert max(np.ptp(ends, axis=1)) > 2 * min(np.ptp(ends, axis=1))
+    corners = np.array(list(itertools.product(*ends))).T
+    seen = axes.transData.transform(np.stack(proj3d.proj_transform(*corners, axes.get_proj())[:2], axis=-1))
+    top, middle = seen[seen[:, 1].argmax()], seen.mean(axis=0)
+    x, y = top + 8 * (middle - top) / np.linalg.norm(middle - top)
+    rows = np.asarray(canvas.buffer_rgba())
+    assert to_hex(rows[len(rows) - 1 - round(y), round(x)] / 255) == PANE
 
 
 def test_a_point_far_off_leaves_the_linkage_its_size() -> None:

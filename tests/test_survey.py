@@ -2,11 +2,6 @@
 
 import json
 import math
-import os
-import signal
-import subprocess
-import sys
-import time
 from functools import reduce
 from operator import add
 
@@ -14,7 +9,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from commands import mistake, sevenbar
+from commands import killed, mistake, sevenbar
 from sevenbar.curves.least_cone import half_angle
 from sevenbar.design.survey import SurveyTally, SurveyTask, SwingWish, Travel, survey
 from sevenbar.design.survey.journal import JOURNAL
@@ -242,18 +237,10 @@ def test_a_survey_that_was_killed_goes_on(tmp_path):
         "1",
         "--json",
     ]
-    run = subprocess.Popen(
-        [sys.executable, "-m", "sevenbar.commands.cli", *words, "--journal", str(tmp_path / "a")],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        env=dict(os.environ),
-    )
     journal = tmp_path / "a" / JOURNAL
-    while not (journal.exists() and journal.read_bytes().count(b"\n") >= 1):
-        assert run.poll() is None
-        time.sleep(0.05)
-    run.send_signal(signal.SIGKILL)
-    run.wait()
+    killed(
+        *words, "--journal", tmp_path / "a", once=lambda: journal.exists() and b"\n" in journal.read_bytes()
+    )
     lines = journal.read_bytes().count(b"\n")
     assert 1 <= lines < 5
     kept = journal.read_bytes()
@@ -350,9 +337,10 @@ def test_a_survey_is_printed_written_and_given_as_json(tmp_path):
     [
         (["--bound", "L9=1:2"], "bounds: 'L9' is no number of an RSSR"),
         (["--bound", "L1=2:1"], "L1: 2:1 is no range; give two numbers that rise"),
+        (["--bound", "L1=2..1"], "L1: 2:1 is no range; give two numbers that rise"),
         (["--bound", "L1=-1:1"], "L1: -1:1 holds no length only; give numbers > 0"),
-        (["--bound", "L1"], "--bound: 'L1' is no range of a number"),
-        (["--bound", "D=0", "--bound", "D=1"], "--bound: D is given twice"),
+        (["--bound", "L1"], "--bound: 'L1' is not a range of a number; give one as in"),
+        (["--bound", "D=0", "--bound", "D=1"], "--bound: 'D' is given twice"),
         (["--swing", "60deg", "--y", "x"], "--y: a function, a --table or a --swing; give one"),
         (["--swing", "60deg", "--motion-type", "double-crank"], "motion type: a double-crank has no swing"),
         (["--rank", "best"], "rank: 'best' is not offered"),

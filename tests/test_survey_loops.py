@@ -2,11 +2,6 @@
 
 import json
 import math
-import os
-import signal
-import subprocess
-import sys
-import time
 from functools import reduce
 from operator import add
 
@@ -14,7 +9,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from commands import mistake, sevenbar
+from commands import killed, mistake, sevenbar
 from sevenbar.description.draft import Draft
 from sevenbar.design.survey import LoopSurvey, survey
 from sevenbar.design.survey.journal import JOURNAL
@@ -103,20 +98,10 @@ def test_the_answer_is_the_same_however_the_work_is_divided(tmp_path, monkeypatc
 def test_two_processes_give_the_answer_of_one_and_a_killed_run_goes_on(tmp_path, task_file):
     asked = LoopSurvey(read_task(task_file), 600)
     words = ["design", "survey", str(task_file), "--count", "600", "--threads", "2"]
-    run = subprocess.Popen(
-        [sys.executable, "-m", "sevenbar.commands.cli", *words, "--journal", str(tmp_path / "a")],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        env=dict(os.environ),
-    )
     journal = tmp_path / "a" / JOURNAL
-    begin = time.monotonic()
-    while not (journal.exists() and journal.read_bytes().count(b"\n")):
-        assert run.poll() is None
-        assert time.monotonic() - begin < 300
-        time.sleep(0.05)
-    run.send_signal(signal.SIGKILL)
-    run.wait()
+    killed(
+        *words, "--journal", tmp_path / "a", once=lambda: journal.exists() and b"\n" in journal.read_bytes()
+    )
     again = survey(asked, designs_wanted=0, out=tmp_path / "a", resume=True, threads=2)
     assert again.tally.line() == survey(asked, designs_wanted=0, threads=1).tally.line()
 

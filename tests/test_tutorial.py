@@ -17,41 +17,19 @@ from tutorial_pages import (
     BOX,
     DOCS,
     IMAGES,
+    NUMBER,
     PAGES,
     PICTURES,
+    as_today,
     boxes,
-    commands,
     make_light,
-    printed,
     spoken,
     write_file,
 )
 
 ENGLISH, CHINESE = PAGES
-#: What is left of rounding differs between machines; below this a difference is rounding.
-ROUNDING = 1e-9
 #: Greatest share of pixels that may look otherwise with another release of matplotlib.
 OTHER_PIXELS = 0.01
-NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
-
-
-def alike(shown, told):
-    """Whether two lines say the same: words equal, numbers to two of their last places, errors to their size."""
-    version = re.compile(r"(Exudyn|MuJoCo) [\d.]+")
-    shown, told = (version.sub(r"\1", line) for line in (shown, told))
-    if [*re.split(NUMBER, shown.replace(" ", ""))] != [*re.split(NUMBER, told.replace(" ", ""))]:
-        return False
-    if "[" in shown and "e-" in shown:
-        # where an error of an engine is greatest depends on its rounding
-        shown, told = (re.sub(r"[\d.]+°", "°", line) for line in (shown, told))
-    for one, other in zip(re.findall(NUMBER, shown), re.findall(NUMBER, told), strict=True):
-        if "e" in one + other:
-            first, second = (max(abs(float(text)), ROUNDING) for text in (one, other))
-            if not 1 / 10 < first / second < 10:
-                return False
-        elif abs(float(one) - float(other)) > ("." in one) * 2.01 * 10 ** -len(one.partition(".")[2]):
-            return False
-    return True
 
 
 def prose(page):
@@ -86,14 +64,7 @@ def test_the_tutorial_shows_what_its_commands_print_and_draw_today(tmp_path):
             assert promised
             assert spoken(text, tmp_path) == promised
         else:
-            for command, shown in commands(text):
-                told = printed(command, tmp_path)
-                while shown and not shown[-1]:
-                    shown.pop()
-                assert len(shown) == len(told), command
-                for line, other in zip(shown, told, strict=True):
-                    assert alike(line, other), f"{command}\nshown {line}\ntoday {other}"
-                count += 1
+            count += as_today(text, tmp_path)
     assert count == 18
     for name, source in PICTURES.items():
         make_light(tmp_path / source, tmp_path / name)

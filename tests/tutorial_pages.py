@@ -35,6 +35,9 @@ PICTURES = {
 }
 #: Width [pixels] and colours of a picture, so that a page stays light.
 WIDTH, COLOURS = 1200, 220
+#: What is left of rounding differs between machines; below this a difference is rounding.
+ROUNDING = 1e-9
+NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 
 
 def boxes(page):
@@ -61,6 +64,38 @@ def printed(command, folder):
     assert run.returncode in (0, 2), run.stderr
     text = run.stdout if run.returncode == 0 else run.stderr
     return [line.rstrip() for line in text.strip("\n").splitlines()]
+
+
+def alike(shown, told):
+    """Whether two lines say the same: words equal, numbers to two of their last places, errors to their size."""
+    version = re.compile(r"(Exudyn|MuJoCo) [\d.]+")
+    shown, told = (version.sub(r"\1", line) for line in (shown, told))
+    if [*re.split(NUMBER, shown.replace(" ", ""))] != [*re.split(NUMBER, told.replace(" ", ""))]:
+        return False
+    if "[" in shown and "e-" in shown:
+        # where an error of an engine is greatest depends on its rounding
+        shown, told = (re.sub(r"[\d.]+°", "°", line) for line in (shown, told))
+    for one, other in zip(re.findall(NUMBER, shown), re.findall(NUMBER, told), strict=True):
+        if "e" in one + other:
+            first, second = (max(abs(float(text)), ROUNDING) for text in (one, other))
+            if not 1 / 10 < first / second < 10:
+                return False
+        elif abs(float(one) - float(other)) > ("." in one) * 2.01 * 10 ** -len(one.partition(".")[2]):
+            return False
+    return True
+
+
+def as_today(text, folder):
+    """How many commands a box `console` has, each of which must print in a folder what is shown below it."""
+    found = commands(text)
+    for command, shown in found:
+        today = printed(command, folder)
+        while shown and not shown[-1]:
+            shown.pop()
+        assert len(shown) == len(today), command
+        for line, other in zip(shown, today, strict=True):
+            assert alike(line, other), f"{command}\nshown {line}\ntoday {other}"
+    return len(found)
 
 
 def spoken(code, folder):

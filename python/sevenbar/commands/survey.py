@@ -23,8 +23,8 @@ from sevenbar.commands.given import angle, angles, numbers
 from sevenbar.commands.options import Force, Json, Mixed, Scheduler, Threads, count_option, number_option
 from sevenbar.commands.progress import progress_bar
 from sevenbar.commands.unfinished import end_of_work
-from sevenbar.errors import RequestError, shown
-from sevenbar.text.ranges import split_name
+from sevenbar.errors import RequestError
+from sevenbar.text.ranges import split_named
 
 if TYPE_CHECKING:
     from sevenbar.design.survey.task import SwingWish, Travel
@@ -178,14 +178,8 @@ def _readings(y: str | None, x: str, table: Path | None, input_range: str, outpu
 def _bounds(given: list[str]) -> dict[str, tuple[float, float]]:
     """The ranges of --bound: of ratios, and of the angle between the axes [rad]."""
     found: dict[str, tuple[float, float]] = {}
-    for text in given:
-        parts = split_name(text)
-        if parts is None:
-            raise RequestError(f"--bound: {shown(text)} is no range of a number; give one {EXAMPLE}")
-        name, ends = parts
-        if name in found:
-            raise RequestError(f"--bound: {name} is given twice; leave one out")
-        both = ends if ":" in ends else f"{ends}:{ends}"
+    for name, text in split_named("--bound", given, "a range of a number", f"give one {EXAMPLE}").items():
+        both = text if ":" in text or ".." in text else f"{text}:{text}"
         found[name] = angles("--bound", both) if name == "angle" else numbers("--bound", both)
     if "angle" in found and not all(math.isfinite(end) for end in found["angle"]):
         raise RequestError(f"--bound: angle is no angle; give one {EXAMPLE}")

@@ -20,6 +20,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.text.amounts import value_of
 from sevenbar.text.expression import cosd, sind
+from sevenbar.text.units import as_written
 
 #: A length or an angle as a caller gives it: a number, or a text with a unit.
 Given = float | str
@@ -436,8 +437,7 @@ def _angle(name: str, value: Given) -> float:
         raise RequestError(
             f"{name}: {radians:g} rad is more than a turn; give radians, or a text, as in '{radians:g} deg'"
         )
-    # pi/6 gives 30, not 29.999999999999996
-    return float(f"{math.degrees(radians):.15g}")
+    return as_written(math.degrees(radians))
 
 
 def _several(name: str, values: Sequence[Given], count: int) -> list[Given]:

@@ -22,7 +22,7 @@ from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.loop.rigid import unit
 from sevenbar.text.listed import listed
-from sevenbar.text.units import LENGTHS, measured_unit
+from sevenbar.text.units import LENGTHS, as_written, measured_unit
 
 if TYPE_CHECKING:
     from sevenbar.description.schema import JointForm, LinkageForm, LinkForm, RssrForm
@@ -391,9 +391,11 @@ def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...], source: str) -> Li
     """Denavit-Hartenberg rows: the ground's frame is that of the last link, or that of planar textbooks."""
     dimensions: dict[str, float] = {}
     for i, row in enumerate(rows, 1):
-        dimensions |= {f"length_{i}": row.length, f"twist_{i}_deg": _degrees(row.twist)}
+        dimensions |= {f"length_{i}": row.length, f"twist_{i}_deg": as_written(math.degrees(row.twist))}
         dimensions |= (
-            {f"angle_{i}_deg": _degrees(row.angle)} if row.joint == "P" else {f"offset_{i}": row.offset}
+            {f"angle_{i}_deg": as_written(math.degrees(row.angle))}
+            if row.joint == "P"
+            else {f"offset_{i}": row.offset}
         )
         dimensions |= {f"pitch_{i}": row.pitch} if row.joint == "H" else {}
     joints = tuple(
@@ -472,8 +474,3 @@ def _coincident_balls(drawn: tuple[JointForm, ...]) -> list[Problem]:
             message = f"{place}; link {last + 1} between two balls has no length, so leave one ball out"
             problems.append(Problem(f"joint[{i + 1}].at", message))
     return problems
-
-
-def _degrees(angle: float) -> float:
-    """An angle as a person wrote it: without the last digit, which the way to radians and back may change."""
-    return float(f"{math.degrees(angle):.15g}")

@@ -19,7 +19,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed, brief, lines, text_of
-from sevenbar.text.words import say
+from sevenbar.text.words import language, say
 
 #: Inputs of a turn with which a design is checked: rows stand half a degree apart.
 CHECK_SAMPLES = 720
@@ -375,18 +375,16 @@ def transmits_best(kept: Sequence[Candidate]) -> str:
     return "" if best is None else f"best: transmission angle {math.degrees(best):.3g} deg"
 
 
-def tally(refusals: Iterable[Refusal]) -> str:
-    """What was refused, the commonest first: "12 by transmission, 3 by order"."""
-    counts = Counter(refusal.fault for refusal in refusals)
-    return ", ".join(f"{count} by {fault}" for fault, count in counts.most_common())
+def tally(refusals: Iterable[Refusal], code: str | None = "en") -> str:
+    """What was refused, the commonest first: "12 by transmission, 3 by order".
 
-
-def spoken_tally(refusals: Iterable[Refusal]) -> str:
-    """The same in the language that is spoken."""
+    In a language by its code, or with `None` in the one that is spoken.
+    """
     counts = Counter(refusal.fault for refusal in refusals)
-    return say(", ").join(
-        say("{count} by {fault}", count=count, fault=say(fault)) for fault, count in counts.most_common()
-    )
+    with language(code):
+        return say(", ").join(
+            say("{count} by {fault}", count=count, fault=say(fault)) for fault, count in counts.most_common()
+        )
 
 
 def likeness(draft: Draft, *, scale_free: bool, mirrored: bool = False) -> Floats:

@@ -35,6 +35,9 @@ OFF, BEYOND = 4.0, 2.0
 #: Height of a name with its brackets, as a share of the size of its letters; points in an inch.
 UPRIGHT, POINTS = 1.4, 72.0
 
+#: A tall box reaches out of the axes in which matplotlib puts it.
+WHOLE: dict[str, Any] = {"clip_on": False}
+
 PANE, EDGE, GRID = "#f3f3f5", "#9a9a9a", "#dedede"
 
 
@@ -54,7 +57,7 @@ class ViewAxes:
             # its limits are those of the view
             self.axes.add_artist(artist) if not len(places) else self.axes.add_line(artist)
             return artist
-        artist = Line3D(*places.T, **look)
+        artist = Line3D(*places.T, **look, **WHOLE)
         self.axes.add_line(artist)
         return artist
 
@@ -73,7 +76,7 @@ class ViewAxes:
         if self.view.flat:
             self.axes.add_collection(LineCollection([self.view.seen(s) for s in segments], **look))
         else:
-            self.axes.add_collection3d(Line3DCollection(list(segments), **look))
+            self.axes.add_collection3d(Line3DCollection(list(segments), **look, **WHOLE))
 
     def face(self, corners: Floats, colour: Any, edge: Any, width: float, order: float) -> None:
         """Draws a filled polygon (n, 3) that stays."""
@@ -86,7 +89,7 @@ class ViewAxes:
         if self.view.flat:
             self.axes.add_collection(PolyCollection([self.view.seen(corners)], **look))
         else:
-            self.axes.add_collection3d(Poly3DCollection([corners], **look))
+            self.axes.add_collection3d(Poly3DCollection([corners], **look, **WHOLE))
 
     def anchor(self, places: Floats) -> Floats:
         """Where places (n, 3) are in the data coordinates of the page (n, 2)."""

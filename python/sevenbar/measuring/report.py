@@ -11,6 +11,7 @@ import numpy as np
 from rich.console import RenderableType
 from rich.table import Table
 
+from sevenbar.kinematics.loop.columns import unit_in_column
 from sevenbar.measuring.calibrate import Calibration, Parameter
 from sevenbar.measuring.compare import Comparison, alike, name_of, per_cent
 from sevenbar.measuring.extremes import Extent, ExtremesComparison
@@ -435,16 +436,12 @@ def _units(ends: Ends) -> dict[str, str]:
 
 def _rows(ends: Ends, line: Any, inputs: Any, sides: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """A line for each measured row: its line in the file, the input, each quantity on each side."""
-    columns = {"line": line, f"input_{_suffix(ends.unit('input'))}": inputs}
+    columns = {"line": line, f"input_{unit_in_column(ends.unit('input'))}": inputs}
     for quantity in next(iter(sides.values())):
         for side, values in sides.items():
-            name = f"{ends.word(quantity)}_{side}_{_suffix(ends.unit(quantity))}"
+            name = f"{ends.word(quantity)}_{side}_{unit_in_column(ends.unit(quantity))}"
             columns[name] = values[quantity]
     return columns
-
-
-def _suffix(unit: str) -> str:
-    return unit.replace("/", "_").replace("\u00b2", "2")
 
 
 @text_of.register(Comparison)

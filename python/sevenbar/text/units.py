@@ -29,6 +29,15 @@ SLOWEST, FASTEST = 1e-50, 1e50
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 
+def as_written(value: float) -> float:
+    """A number as a person wrote it: without the last digit, which the way to radians and back may change.
+
+    >>> math.degrees(math.pi / 6), as_written(math.degrees(math.pi / 6))
+    (29.999999999999996, 30.0)
+    """
+    return float(f"{value:.15g}")
+
+
 def unknown_unit(given: object, known: Iterable[str]) -> str:
     """The message for a unit that does not exist."""
     known = list(known)

@@ -17,7 +17,7 @@ from sevenbar.design.points.least import LeastPoint
 from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import poles_of
 from sevenbar.drawing.figure import slides
-from sevenbar.kinematics.loop.columns import joint_column
+from sevenbar.kinematics.loop.columns import joint_column, unit_in_column
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
 from sevenbar.reporting.page import Facts, drive_text, number_table, opening, page
 from sevenbar.text.printing import text_of
@@ -359,7 +359,7 @@ def _row_columns(cycle: Cycle) -> dict[str, Floats]:
 
 def _rate_columns(found: LeastPoint, name: str) -> dict[str, Floats]:
     columns = _row_columns(found.cycle)
-    unit = found.unit.replace("/", "_").replace("^", "")
+    unit = unit_in_column(found.unit)
     for point, at in [*((p.name, np.array(p.at)) for p in found.before), (name, found.at)]:
         sizes = np.linalg.norm(found.cycle.rates.of(found.of, at), axis=1)
         columns[f"{point}_{found.of}_{unit}"] = sizes

@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.console import RenderableType
 
-from sevenbar.design.candidates import spoken_tally
+from sevenbar.design.candidates import tally
 from sevenbar.design.files import design_files
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.task import SurveyTask
@@ -62,7 +62,7 @@ def text(count: int, found: SurveyResult) -> RenderableType:
         facts.add(label, _spoken(words), "bold" if label == "answer" else "")
     facts.add("polished", say("{count} of the best", count=found.polished))
     if found.refusals:
-        reasons = spoken_tally(found.refusals)
+        reasons = tally(found.refusals, None)
         facts.add("of the best", say("{reasons} refused after polishing", reasons=reasons))
     best = found.candidates[:count]
     tables = (columns_table(best, heads) for heads in (PRINTED, NUMBER_COLUMNS)) if best else ()

@@ -11,7 +11,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.candidates import Candidate
+from sevenbar.design.candidates import CHECK_SAMPLES, Candidate
 from sevenbar.design.files import design_files
 from sevenbar.design.tables import plain_designs, sheets
 from sevenbar.design.task.along import DesignAlong
@@ -20,6 +20,7 @@ from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
 from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust
 from sevenbar.design.task.words import must_words, task_facts, want_words
+from sevenbar.drawing.configuration import configuration
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.page import Facts, page
 
@@ -105,6 +106,7 @@ def task_report(
     for place in range(count):
         name = f"design_{place + 1}"
         files[f"{name}.toml"] = toml[f"{name}.toml"]
+        files |= figure_files(f"{name}_linkage", formats, partial(_of_linkage, place=place))
         for number, (want, _) in enumerate(task.sampled):
             files |= figure_files(
                 f"{name}_want_{want + 1}", formats, partial(_of_want, place=place, number=number)
@@ -112,6 +114,13 @@ def task_report(
         if any(isinstance(must, PoseMust) for must in task.musts):
             files |= figure_files(f"{name}_musts", formats, partial(_of_musts, place=place))
     return Report(text, as_dict, files | {name: toml[name] for name in ("summary.csv", "summary.json")})
+
+
+def _of_linkage(found: TaskDesigns, *, place: int) -> Any:
+    if place >= len(found.found.designs):
+        return None
+    own = found.found.designs[place].candidate
+    return configuration(own.draft.linkage.motion(CHECK_SAMPLES), own.circuit)
 
 
 def _of_want(found: TaskDesigns, *, place: int, number: int) -> Any:

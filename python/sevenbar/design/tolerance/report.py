@@ -19,6 +19,7 @@ from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.tolerances import CUT
 from sevenbar.design.tolerance.words import output_unit, output_values, output_words, shown_input
 from sevenbar.design.tolerance.worst import WorstCase
+from sevenbar.kinematics.loop.columns import unit_in_column
 from sevenbar.kinematics.measures import MEASURES
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
@@ -213,12 +214,12 @@ def _sensitivities(findings: Findings) -> dict[str, Any]:
 
 
 def _suffix(linear: Linear) -> str:
-    return output_unit(linear).replace("/", "_").replace("²", "2")
+    return unit_in_column(output_unit(linear))
 
 
 def _per(unit: str, dimension: str) -> str:
     """The unit of a derivative, as columns of tables have it."""
-    return f"{unit}_per_{dimension.replace('/', '_') or 'one'}"
+    return f"{unit}_per_{unit_in_column(dimension) or 'one'}"
 
 
 def _worst_text(worst: WorstCase) -> str:

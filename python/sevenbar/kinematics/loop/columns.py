@@ -55,5 +55,14 @@ def point_column(name: str, axis: str, *, order: int, length: str, who: str = ""
     return f"{_whose(f'{name}_{LETTERS[order]}{axis}', who)}_{length}{RATES[order]}"
 
 
+def unit_in_column(unit: str) -> str:
+    """A unit as it ends a column's name.
+
+    >>> unit_in_column("mm/s^2"), unit_in_column("deg/s²")
+    ('mm_s2', 'deg_s2')
+    """
+    return unit.replace("/", "_").replace("^", "").replace("²", "2")
+
+
 def _whose(name: str, who: str) -> str:
     return f"{name}_{who}" if who else name

@@ -15,7 +15,7 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joint_text import given_number
 from sevenbar.kinematics.loop.stops import Cone, Stops, check_range
 from sevenbar.kinematics.ranges.ball_angle import joint_at
-from sevenbar.text.units import ANGLES
+from sevenbar.text.units import ANGLES, as_written
 
 L = TypeVar("L", bound=Loop)
 
@@ -46,19 +46,14 @@ def tables_of(linkage: Loop, stops: Stops) -> dict[str, list[dict[str, Any]]]:
     rows: list[dict[str, Any]] = []
     for name, ends in stops.ranges.items():
         size = angle if linkage.unit_of(name) == "rad" else 1.0
-        rows.append({"joint": name, "range": [_written(end / size) for end in ends]})
+        rows.append({"joint": name, "range": [as_written(end / size) for end in ends]})
     for name, cone in stops.cones.items():
         row: dict[str, Any] = {"joint": name}
-        row |= {} if cone.angle is None else {"cone": _written(cone.angle / angle)}
+        row |= {} if cone.angle is None else {"cone": as_written(cone.angle / angle)}
         row |= {key: list(way) for key in ("seat", "stud") if (way := getattr(cone, key)) is not None}
         rows.append(row)
     rods = [{"link": int(link), "radius": radius} for link, radius in stops.radii.items()]
     return {"stop": rows, "rod": rods}
-
-
-def _written(value: float) -> float:
-    """A number without the last digit, which the way to radians and back may change."""
-    return float(f"{value:.15g}")
 
 
 def _ranges(linkage: Loop, given: Ranges) -> dict[str, tuple[float, float]]:

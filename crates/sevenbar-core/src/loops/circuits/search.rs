@@ -12,7 +12,7 @@ use crate::loops::branch_points::survey::Survey;
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
 use crate::loops::modes::circle::Circle;
 use crate::loops::modes::finder::{Completeness, ModeFinder, REAL};
-use crate::loops::modes::many_starts::any_pose;
+use crate::loops::modes::many_starts::ALL_FREE;
 use crate::loops::modes::polish::CLOSED;
 use std::f64::consts::TAU;
 
@@ -165,7 +165,7 @@ fn look_for_a_structure(curves: &mut Curves, chain: &Chain) {
     if finder.algebraic().is_none_or(|a| !a.own().is_empty()) {
         return;
     }
-    if let Some(pose) = any_pose(chain, column) {
+    if let Some(pose) = ALL_FREE.first(chain, column, None, |_| true) {
         curves.search.completeness = Completeness::Searched;
         curves.search.count = Err(Uncounted::Searched);
         curves.take(chain, &[pose], curves.wished[0]);
@@ -219,7 +219,9 @@ fn look_into(curves: &mut Curves, chain: &Chain, finder: &ModeFinder, count: &mu
         let (middle, wide) = (0.5 * (open.from + open.to), open.to - open.from);
         // solutions that meet at one real input are complex beside it
         for place in finder.rough_at(middle, REAL.max(NEARLY_REAL * wide)) {
-            if curves.holds(chain, &place) || !curves.branches(chain, &place, false) {
+            // turned over with an idle link it is the same pose
+            if !chain.counts(&place) || curves.holds(chain, &place) || !curves.branches(chain, &place, false)
+            {
                 continue;
             }
             if let Some(point) = curves.arcs.at(chain, &place) {

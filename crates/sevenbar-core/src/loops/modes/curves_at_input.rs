@@ -3,14 +3,10 @@
 //! A path that leads to such a curve ends nowhere in particular, so none of its poses is among the modes. A rhombus folded flat has one:
 //! its coupler and rocker turn about the same point. Where paths are missing, Newton's method from many places searches for such a pose.
 
-use super::many_starts::anywhere;
+use super::many_starts::ON_CURVE;
 use super::polish::polish_with_spare;
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, Columns, length, singular_values};
-use crate::random::Random;
-
-/// Starts of the search: a curve draws many of them, since Newton's method need not find one place on it.
-const STARTS: usize = 40;
 
 /// The least singular value, as a part of the greatest, of joints that can move with the input held.
 const STILL_MOVES: f64 = 1e-7;
@@ -20,11 +16,7 @@ const ALONG: f64 = 0.02;
 
 /// A pose on a curve of poses that close at this input; `None` where none was found.
 pub(super) fn pose_on_curve(chain: &Chain, input: usize, value: f64) -> Option<Configuration> {
-    let mut random = Random(0xc4a1e5);
-    (0..STARTS).find_map(|_| {
-        let at = polish_with_spare(chain, Some(input), &anywhere(chain, input, value, &mut random))?;
-        (chain.counts(&at) && runs_on(chain, input, &at)).then_some(at)
-    })
+    ON_CURVE.first(chain, input, Some(value), |at| runs_on(chain, input, at))
 }
 
 /// Whether another pose next to this one, in the direction that the held input leaves free, closes and can move as well. At a dead

@@ -8,10 +8,10 @@
 use super::chain_closure::{Closure, Input};
 use super::circle::{Circle, InputClosure};
 use super::continuation::{BRISK, CAREFUL, Pace};
-use super::many_starts::{SAME_MODE, anywhere, same, searched};
+use super::many_starts::{PATHS_LOST, SAME_MODE, same, searched};
 use super::phases::Watch;
 use super::poles::{poles, unwatched_three};
-use super::polish::{self, Settled, polish};
+use super::polish::{Settled, polish};
 use super::starts::{distinct, general_count};
 use super::straight::carried;
 use crate::loops::equation::chain::{BALLS, Chain, Configuration, Joint};
@@ -61,9 +61,6 @@ const FARTHER: f64 = 5.0;
 /// `|e^(i t)|` of the general value of an input that turns: near the real ones, and beside the places on them where solutions
 /// meet.
 pub(crate) const CIRCLE: f64 = 1.05;
-
-/// The same where paths were lost: most starts lead to a pose where there is one, and each costs more.
-const SPARE_STARTS: usize = 300;
 
 /// What an unknown of the closure stands for.
 #[derive(Clone, Copy, Debug)]
@@ -172,12 +169,7 @@ impl<'a> ModeFinder<'a> {
 
     /// A mode by search, also where there is an algebraic way and the passive joints have freedoms to spare; none where none is found.
     pub fn one_by_search(&self, value: f64) -> Option<Configuration> {
-        let mut random = Random(0x5ea4c4);
-        let mut found = (0..SPARE_STARTS).filter_map(|_| {
-            let rough = anywhere(self.chain, self.input, value, &mut random);
-            polish::polish_with_spare(self.chain, Some(self.input), &rough)
-        });
-        let found = found.find(|at| self.chain.counts(at));
+        let found = PATHS_LOST.first(self.chain, self.input, Some(value), |_| true);
         self.in_order(found.into_iter().collect()).pop()
     }
 

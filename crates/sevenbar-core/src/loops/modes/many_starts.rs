@@ -8,8 +8,20 @@ use crate::random::Random;
 /// Starts of the search where there is no algebraic way.
 const SEARCH_STARTS: usize = 1500;
 
-/// Starts of the search for any pose, where all joints are free: a triangle is found from one start in two or three.
-const ANY_STARTS: usize = 60;
+/// A search for one pose from many places: its random numbers, and after how many places it gives up.
+pub(crate) struct Starts {
+    seed: u64,
+    most: usize,
+}
+
+/// With all joints free: a triangle is found from one start in two or three.
+pub(crate) const ALL_FREE: Starts = Starts { seed: 0x57a7e, most: 60 };
+
+/// For a pose on a curve of them: a curve draws many starts, since Newton's method need not find one place on it.
+pub(super) const ON_CURVE: Starts = Starts { seed: 0xc4a1e5, most: 40 };
+
+/// Where paths were lost: most starts lead to a pose where there is one, and each costs more than one of [`SEARCH_STARTS`].
+pub(super) const PATHS_LOST: Starts = Starts { seed: 0x5ea4c4, most: 300 };
 
 /// Turns to each side within which a screw joint is searched.
 pub(super) const SCREW_TURNS: f64 = 1.0;
@@ -22,7 +34,7 @@ pub(crate) fn same(chain: &Chain, a: &Configuration, b: &Configuration) -> bool 
 }
 
 /// Any configuration with the input at a value; screws within [`SCREW_TURNS`].
-pub(super) fn anywhere(chain: &Chain, input: usize, value: f64, random: &mut Random) -> Configuration {
+fn anywhere(chain: &Chain, input: usize, value: f64, random: &mut Random) -> Configuration {
     let mut rough = Configuration::ZERO;
     for (joint, &column) in chain.joints.iter().zip(&chain.first) {
         let centred = 2.0 * random.uniform() - 1.0;
@@ -42,14 +54,23 @@ pub(super) fn anywhere(chain: &Chain, input: usize, value: f64, random: &mut Ran
     rough
 }
 
-/// A pose at any value of the input, from [`ANY_STARTS`] places.
-pub(crate) fn any_pose(chain: &Chain, input: usize) -> Option<Configuration> {
-    let mut random = Random(0x57a7e);
-    (0..ANY_STARTS).find_map(|_| {
-        let value = std::f64::consts::PI * (2.0 * random.uniform() - 1.0);
-        let found = polish_with_spare(chain, None, &anywhere(chain, input, value, &mut random));
-        found.filter(|at| chain.counts(at))
-    })
+impl Starts {
+    /// The first pose found that is `wanted`, with the input held at a value, or at any value and free where none is given.
+    pub fn first(
+        &self,
+        chain: &Chain,
+        input: usize,
+        value: Option<f64>,
+        wanted: impl Fn(&Configuration) -> bool,
+    ) -> Option<Configuration> {
+        let mut random = Random(self.seed);
+        (0..self.most).find_map(|_| {
+            let start = value.unwrap_or_else(|| std::f64::consts::PI * (2.0 * random.uniform() - 1.0));
+            let rough = anywhere(chain, input, start, &mut random);
+            let found = polish_with_spare(chain, value.map(|_| input), &rough);
+            found.filter(|at| chain.counts(at) && wanted(at))
+        })
+    }
 }
 
 /// Newton from many places; screws within [`SCREW_TURNS`]. Redundant constraints may keep some of them open.

@@ -9,7 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from sevenbar.design.candidates import Candidate, spoken_tally
+from sevenbar.design.candidates import Candidate, tally
 from sevenbar.design.closure import NAMES
 from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
@@ -48,7 +48,7 @@ def text(found: Synthesis) -> RenderableType:
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
     if found.refusals:
-        facts.add("refused", spoken_tally(found.refusals))
+        facts.add("refused", tally(found.refusals, None))
     unit = found.candidates[0].draft.linkage.length_unit
     wanted = {n: head for n, head in PRINTED.items() if found.wish is not None or n not in OF_SWING}
     dimensions = {f"{name}_{unit}": f"{name} [{unit}]" for name in NAMES}
