@@ -232,6 +232,12 @@ def test_a_key_of_another_table_is_sent_home():
     assert complaints("", "stiffness = 3") == ["stiffness: is a key of [[spring]]; write it below that head"]
 
 
+@pytest.mark.parametrize("body", [1.2, "rod", None, [sb.Body(1, solid="rod"), 3]])
+def test_a_mass_alone_is_no_body(body):
+    with pytest.raises(RequestError, match=r"bodies\[2\]: .* is not a body; give one, as in sevenbar.Body"):
+        sb.load("rssr").loaded(bodies={2: body})
+
+
 @pytest.mark.parametrize("link", [True, "2", 2.5, None])
 def test_a_link_in_python_is_a_whole_number(link):
     with pytest.raises(RequestError, match=r"bodies: link .* is not a link; give 1 to 3"):

@@ -282,6 +282,11 @@ def test_extremes_are_marked_at_the_papers_numbers(figure: Figure) -> None:
         np.testing.assert_allclose(values, [low, high], rtol=5e-4)
 
 
+def test_one_quantity_may_be_a_word() -> None:
+    (axes,) = plot.curves(sb.load("rssr").motion(36), "input", quantities="velocity").axes
+    assert axes.get_ylabel() == "rocker velocity [rad/s]"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("over", ["input", "time"])
 def test_extremes_lie_on_their_curves(over: str) -> None:

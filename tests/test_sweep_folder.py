@@ -172,6 +172,21 @@ def test_a_folder_of_other_things_is_left_alone(tmp_path: Path) -> None:
         Sweep.of_folder(tmp_path / "none")
 
 
+def test_a_hidden_file_of_another_program_is_neither_taken_for_a_part_nor_deleted(tmp_path: Path) -> None:
+    own, part = tmp_path / ".notes.aside", tmp_path / ".part-000001.parquet.aside"
+    own.write_text("mine")
+    part.write_bytes(b"half")
+    with pytest.raises(OutputError, match=r"holds '.notes.aside' and no sweep.json"):
+        swept(tmp_path)
+    own.unlink()
+    swept(tmp_path)
+    own.write_text("mine")
+    part.write_bytes(b"half")
+    swept(tmp_path, resume=True)
+    assert own.read_text() == "mine"
+    assert not part.exists()
+
+
 def test_two_runs_do_not_fill_one_folder(tmp_path: Path) -> None:
     def second(done: int, _total: int) -> None:
         if done == 0:

@@ -1,12 +1,12 @@
-//! Numbers that look random and are the same everywhere.
+//! Pseudorandom numbers, the same on every machine.
 
 use num_complex::Complex64;
 
-/// Numbers that look random and are the same everywhere (Steele, Lea and Flood's SplitMix64).
+/// SplitMix64 by Steele, Lea and Flood, begun at a seed.
 pub(crate) struct Random(pub u64);
 
 impl Random {
-    /// In [0, 1).
+    /// Evenly in [0, 1).
     pub fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -15,12 +15,12 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 * 2.0_f64.powi(-53)
     }
 
-    /// A complex number of about unit size.
+    /// A complex number of size 0.7 to 1.4, in any direction.
     pub fn phase(&mut self) -> Complex64 {
         Complex64::from_polar(0.7 + 0.7 * self.uniform(), std::f64::consts::TAU * self.uniform())
     }
 
-    /// A complex number of about half that size.
+    /// A complex number of size 0.2 to 0.8, in any direction.
     pub fn number(&mut self) -> Complex64 {
         Complex64::from_polar(0.2 + 0.6 * self.uniform(), std::f64::consts::TAU * self.uniform())
     }

@@ -157,6 +157,8 @@ def curves(
     """
     chosen_circuit(motion, 0)
     check_word("against", against, ("both", "input", "time"))
+    # a word is a sequence of its letters
+    quantities = (quantities,) if isinstance(quantities, str) else quantities
     for quantity in quantities:
         check_word("quantities", quantity, QUANTITIES, "drawn")
     turning = motion.law is None and all(circuit.goes_round for circuit in motion)

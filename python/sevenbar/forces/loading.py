@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from sevenbar.arrays import triple
+from sevenbar.errors import RequestError, shown
 
 # most linkages have none
 if TYPE_CHECKING:
@@ -45,10 +46,20 @@ class Loading:
 
 
 def _by_link(given: Mapping[int, Body | Sequence[Body]]) -> dict[int, tuple[Body, ...]]:
-    """Bodies by their link, one or several given for each."""
+    """Bodies by their link, one or several given for each; raises `RequestError` for what is no body."""
     from sevenbar.forces.bodies import Body
 
-    return {link: (own,) if isinstance(own, Body) else tuple(own) for link, own in given.items()}
+    found = {}
+    for link, own in given.items():
+        bodies = tuple(own) if isinstance(own, (list, tuple)) else (own,)
+        for body in bodies:
+            if not isinstance(body, Body):
+                raise RequestError(
+                    f"bodies[{link}]: {shown(body)} is not a body; give one, as in "
+                    "sevenbar.Body(1.2, solid='rod')"
+                )
+        found[link] = bodies
+    return found
 
 
 #: What acts on a linkage that was given no bodies and no loads.

@@ -11,6 +11,9 @@ from typing import Any, ClassVar, Protocol
 
 from sevenbar.errors import OutputError, RequestError, shown
 
+#: How the name of a file ends that is not yet whole; it begins with a dot.
+ASIDE = ".aside"
+
 
 class Parted(Protocol):
     """What is made in parts."""
@@ -57,7 +60,7 @@ class HeldFolder:
             self.path.mkdir(parents=True, exist_ok=True)
             self._lock = hold_folder(self.path)
             names = sorted(file.name for file in self.path.iterdir())
-            aside = [name for name in names if name.startswith(".") and name.endswith(".aside")]
+            aside = [name for name in names if self._is_aside(name)]
             strange = [name for name in names if name not in aside]
             if strange and self.description not in names:
                 raise OutputError(
@@ -74,12 +77,20 @@ class HeldFolder:
             self.close()
             raise
 
+    def _is_file(self, name: str) -> bool:
+        """Whether a name is that of a file which `_put` writes."""
+        return name == self.description
+
+    def _is_aside(self, name: str) -> bool:
+        """Whether a name is that of a file which a run that was killed left half written."""
+        return name.startswith(".") and name.endswith(ASIDE) and self._is_file(name[1 : -len(ASIDE)])
+
     def _describe(self, description: Mapping[str, Any]) -> None:
         self._put(self.description, (json.dumps(description, indent=1, ensure_ascii=False) + "\n").encode())
 
     def _put(self, name: str, content: bytes) -> None:
         """Writes a file aside, brings it to the disk and renames it."""
-        aside = self.path / f".{name}.aside"
+        aside = self.path / f".{name}{ASIDE}"
         try:
             with aside.open("wb") as file:
                 file.write(content)

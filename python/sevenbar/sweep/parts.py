@@ -85,6 +85,9 @@ class PartsFolder(HeldFolder):
         """The parts that are there."""
         return frozenset(self._done)
 
+    def _is_file(self, name: str) -> bool:
+        return super()._is_file(name) or _PART.fullmatch(name) is not None
+
     def keep(self, part: int, content: bytes) -> None:
         """Puts a part into its place; raises `OutputError` where it cannot, and leaves nothing half."""
         try:

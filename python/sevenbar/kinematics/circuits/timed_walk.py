@@ -84,7 +84,7 @@ class TimedWalk:
         """The linkage that moves."""
         return self.motion.linkage
 
-    @property
+    @cached_property
     def path(self) -> Walk:
         """The circuit's rows in the order of its motion."""
         return walk(self.circuit)

@@ -110,7 +110,7 @@ pub(super) fn poles(parameters: &Parameters) -> Option<Vec<Complex64>> {
 }
 
 /// The first of three passive joints in a row that neither become infinite nor move alone, the others at rest: where solutions run to
-/// infinity, or move with the input at rest, another joint tells of it. `None` where special geometry leaves no such three.
+/// infinity, or move with the input at rest, another joint does so, too. `None` where special geometry leaves no such three.
 pub(super) fn unwatched_three(parameters: &Parameters, slides: &Slides) -> Option<usize> {
     let links: [Motion; JOINTS] = std::array::from_fn(|k| transform(parameters, k));
     (0..UNKNOWNS - 2).find(|&j| !slides[j..j + 3].contains(&true) && !is_special(&links[j], &links[j + 1]))
