@@ -56,8 +56,8 @@ STEPS, FARTHEST, DIFFERENCE = 8, 0.1, 1e-5
 #: greatest curvature that is rounding; halvings of a step's multiplier.
 DESCENTS, MOST_UNKNOWNS, MOST_REACH, SHORTEST, FLAT, HALVINGS = 12, 60, 0.5, 1e-9, 1e-13, 60
 
-#: Most steps of sequential quadratic programs.
-PROGRAMS = 200
+#: Most steps of sequential quadratic programs; for the greatest residual, which begin near their end.
+PROGRAMS, FEWER = 200, 80
 
 #: Residuals below this leave the second derivatives of the squares to the slopes alone: what is wanted can be
 #: met exactly, down to rounding.
@@ -372,7 +372,7 @@ def _programmed(begun: TaskProblem, z: Floats, *, minimax: bool) -> tuple[TaskPr
             bounds=[*ends, (0.0, math.inf)] if minimax else ends,
             constraints=[rooms] if len(first.room) else [],
             method="SLSQP",
-            options={"maxiter": PROGRAMS, "ftol": 1e-14},
+            options={"maxiter": FEWER if minimax else PROGRAMS, "ftol": 1e-14},
         )
     end = np.asarray(found.x[:-1] if minimax else found.x)
     then = problem.at(end)
