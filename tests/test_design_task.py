@@ -1,10 +1,12 @@
 """Design tasks: exact slopes, known answers found again, conditions of an optimum, defective designs refused."""
 
 import math
+from io import StringIO
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import sevenbar as sb
 from evidence.design.__main__ import FOUND, is_whole, unit_of
@@ -33,7 +35,9 @@ from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
-from sevenbar.design.task.search import designed
+from sevenbar.design.task.report import TaskDesigns, task_report
+from sevenbar.design.task.search import DesignsFound, designed
+from sevenbar.design.task.small_moves import rotation_of_vector
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
 from sevenbar.design.task.wants.figures import figure_left
@@ -234,6 +238,20 @@ def test_musts_hold_to_the_stop_and_the_optimum_meets_its_conditions():
     assert free_of_it.optimality < 1e-8
 
 
+def test_a_path_and_poses_of_a_linkage_that_may_stand_anywhere_are_found_together():
+    turn = rotation_of_vector(np.array([0.4, -0.9, 1.1]))
+    places = PLACES @ turn.T + [30.0, -80.0, 55.0]
+    poses = poses_of(3, ROWS[1:4:2])
+    poses[:, :3, :3], poses[:, :3, 3] = (
+        turn @ poses[:, :3, :3],
+        poses[:, :3, 3] @ turn.T + [30.0, -80.0, 55.0],
+    )
+    wants = (PathWant("Q", places), PoseWant(3, poses, 100.0))
+    task = DesignTask(START, free(START, NAMES), wants, placement="free")
+    (design,) = designed(task, count=1, starts=4).designs
+    assert max(met.greatest for met in design.met) < 1e-8
+
+
 @pytest.mark.slow
 def test_the_least_greatest_error_ripples_evenly():
     want = FunctionWant(
@@ -354,6 +372,70 @@ def test_the_least_greatest_error_is_found_up_to_a_distance_or_the_wall_of_a_box
     assert abs(held.room) < 1e-9
     assert held.optimality < 1e-9
     assert held.cost > 1.01 * alone.cost
+
+
+def crossing(crank, rocker, inputs):
+    """The rocker's angle of a planar four-bar, coupler 100 and ground 90, by the law of cosines."""
+    x, y = 90 + crank * np.cos(inputs), crank * np.sin(inputs)
+    far = np.hypot(x, y)
+    return np.arctan2(y, x) + np.arccos((far**2 + rocker**2 - 100**2) / (2 * far * rocker))
+
+
+@pytest.mark.parametrize(
+    ("must", "crank"),
+    [
+        # over the ground the coupler is lowest at the crank's pin at 150 deg: half the crank
+        (Apart((2, 4), 22.0), 44.0),
+        # the pin is highest at 90 deg: the crank itself
+        (InBox((-1.0, -200.0, -200.0), (1.0, 200.0, 38.0), ("theta_2",)), 38.0),
+    ],
+    ids=["distance", "box"],
+)
+def test_the_least_greatest_error_up_to_a_must_is_that_of_the_law_of_cosines(must, crank):
+    inputs = np.radians(np.arange(60.0, 151.0, 15.0))
+    readings = crossing(40.0, 80.0, inputs)
+    free_numbers = (FreeNumber("length_1", 30, 60), FreeNumber("length_3", 60, 100))
+    want = FunctionWant(inputs, -readings, (0.0, None))
+    start = Draft.of_linkage(sb.load("planar_4r"))
+    (design,) = designed(
+        DesignTask(start, free_numbers, (want,), (must,), goal="minimax"), count=1, starts=0
+    ).designs
+    # the crank reaches its must, and of the rocker's lengths the least greatest error is left
+    every = np.linspace(60, 100, 400001)[:, None]
+    errors = np.ptp(crossing(crank, every, inputs) - readings, axis=1) / 2
+    assert design.values == pytest.approx([crank, every[errors.argmin(), 0]], abs=2e-4)
+    assert errors.min() - 1e-6 < design.met[0].greatest <= errors.min() + 1e-12
+    assert design.room == pytest.approx(0.0, abs=1e-9)
+    assert design.optimality < 1e-11
+
+
+def test_a_design_that_ends_where_its_motion_type_changes_says_so():
+    values = {"length_1": 64.0, "length_2": 61.0, "length_3": 87.1}
+    start = Draft.of_linkage(sb.load("planar_4r")).with_values(values)
+    bounds = [FreeNumber(name, 0.5 * x, 1.6 * x) for name, x in zip(values, (40, 100, 80), strict=True)]
+    task = DesignTask(start, tuple(bounds), (DwellWant((2.0, 3.0)), FigureWant("swing", 90.0, 60.0)))
+    (design,) = designed(task, count=1, starts=0).designs
+    crank, coupler, rocker = design.values
+    # Grashof's limit with the ground of 90: beyond it the swing jumps
+    assert coupler + 90 - crank - rocker == pytest.approx(0.0, abs=1e-3)
+    assert design.optimality > 1e-3
+    assert design.solution.ended == "edge"
+    found = TaskDesigns(DesignsFound(task, (design,), (), 1, ""), "dwell", "", 0, 0)
+    printed = Console(file=StringIO(), width=100, color_system=None)
+    printed.print(task_report(task, 1, "").text(found))
+    assert "KKT residual of design 1: ends at an edge" in printed.file.getvalue()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("least", [880.0, 900.0])
+def test_a_path_at_any_inputs_keeps_links_apart_between_its_places_and_ends_at_an_optimum(least):
+    # fewer distances are equal than there are unknowns, and rods come nearest between two places
+    task = DesignTask(
+        START, free(START, ("L1", "M", "N"), 60.0), (PATH,), (Apart((1, 3), least),), goal="minimax"
+    )
+    (design,) = designed(task, count=1, starts=0).designs
+    assert design.optimality < 1e-10
+    assert abs(design.room) < 1e-6
 
 
 @pytest.mark.parametrize("timing", [None, INPUTS[2:3]])

@@ -96,9 +96,12 @@ def test_rssrs_of_hostile_numbers_are_answered_or_refused() -> None:
         for side in ("crank", "rocker", "coupler"):
             door("modes", lambda s=side, o=rssr, v=speed: o.assembly_modes(v, s))
             door("motion", lambda s=side, o=rssr, v=speed: o.motion(s, 12, v))
-            for rows, orders in ((50, 4), (5, 4), (50, 9)):
-                out = [np.empty((2, rows)) for _ in range(orders)]
-                door("outputs", lambda s=side, o=rssr, v=values, x=out: o.outputs(v, x, s, 1.0))
+            for order, rows in ((3, None), (8, None), (3, 50), (3, 5)):
+                law = None if rows is None else (rng.choice(HOSTILE, rows),) * 3
+                door(
+                    "outputs",
+                    lambda s=side, o=rssr, v=values, n=order, w=law: o.outputs(v, n, s, 1.0, w),
+                )
         rates = rng.choice(HOSTILE, (5, 4))
         door("point", lambda o=rssr, r=rates: o.point(int(rng.integers(0, 9)), rng.choice(HOSTILE, 3), r, r))
     assert {"rssr answered", "rssr refused", "motion answered", "motion refused", "point refused"} <= set(

@@ -14,6 +14,7 @@ from rich.console import Console
 
 import sevenbar as sb
 from commands import sevenbar
+from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.solvers.general import AGREE
 from sevenbar.reporting.report import as_dict, text
@@ -136,25 +137,9 @@ def test_dimensions_of_an_overconstrained_loop_are_printed_to_the_last_digit():
     assert "98.48077530122082" not in told(sb.load("seven_r").motion(24))
 
 
-FILE = """format = 1
-[[link]]
-length = 50
-twist = 30
-[[link]]
-length = 98.48
-twist = 100
-[[link]]
-length = 50
-twist = 30
-[[link]]
-length = 98.48
-twist = 100
-"""
-
-
 def test_the_commands_take_it(tmp_path):
     file = tmp_path / "own.toml"
-    file.write_text(FILE)
+    file.write_text(Draft.of_linkage(bennett(*(50, 98.48) * 2)).toml())
     report = json.loads(sevenbar("analyze", file, "--agree", "1e-5", "--json").stdout)
     assert (report["motion_type"], report["agree"]) == ("double-crank", 1e-5)
     plain = json.loads(sevenbar("analyze", file, "--json").stdout)

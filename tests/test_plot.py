@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import subprocess
 import xml.etree.ElementTree as ET
@@ -440,6 +441,23 @@ def test_a_rocking_input_goes_forth_and_back(name: str) -> None:
     turns = np.flatnonzero(np.diff(np.sign(np.diff(inputs))))
     assert len(turns) == 1
     assert np.ptp(inputs) == pytest.approx(np.ptp(motion.circuits[0].input), rel=0.03)
+
+
+@pytest.mark.parametrize("frames", [60, 61])
+def test_a_film_of_a_linkage_with_stops_goes_from_stop_to_stop_and_back(tmp_path: Path, frames: int) -> None:
+    stops = '[[stop]]\njoint = "rocker"\nrange = [0, 30]\n'
+    text = "format = 1\n[rssr]\nM = 700\nN = 700\nL1 = 250\nL3 = 550\nD = 0\n" + stops
+    motion = sb.loads(text).motion(72)
+    page = animate(motion, tmp_path / "film.html", frames=frames).read_text()
+    film = json.JSONDecoder().raw_decode(page, page.index('{"fps"'))[0]
+    output, times = np.array(film["curves"][0]["y"]), np.array(film["reading"])
+    # the turn may lie between two pictures
+    assert output.min() == pytest.approx(0, abs=1)
+    assert output.max() == pytest.approx(30, abs=1)
+    assert (np.diff(times) > 0).all()
+    # of an odd number two pictures next to the turn are alike
+    steps = np.diff(output)
+    assert len(np.flatnonzero(np.diff(np.sign(steps[steps != 0])))) == 1
 
 
 @pytest.mark.slow

@@ -213,6 +213,17 @@ def test_an_import_of_the_package_loads_no_words_of_results():
     assert subprocess.run(run, capture_output=True, text=True, check=True).stdout == "False\n"
 
 
+def test_json_of_a_motion_loads_nothing_that_prints_pages():
+    code = (
+        "import sys, sevenbar as sb\n"
+        "from sevenbar.reporting.report import as_json\n"
+        "as_json(sb.load('rssr').motion())\n"
+        "print([name for name in ('rich.console', 'sevenbar.reporting.printed') if name in sys.modules])"
+    )
+    run = [sys.executable, "-c", code]
+    assert subprocess.run(run, capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
 def test_results_of_all_packages_print_themselves():
     from sevenbar.design.maps import motion_map
     from sevenbar.design.tolerance import sensitivities

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.ranges.reach import reaches, stopped_by
 from sevenbar.studio.panels.playback import _rows
-from sevenbar.studio.state.reach import reaches, stopped_by
 from sevenbar.studio.state.session import Session
 
 RSSR = "format = 1\n[rssr]\nM = 700\nN = 700\nL1 = 250\nL3 = 550\nD = 0\n"
@@ -35,16 +35,16 @@ def test_each_end_of_a_stretch_is_a_stop_and_none_of_its_poses_lies_beyond(text,
     session = Session(text, "stops.toml")
     assert session.reaches
     for reach in session.reaches:
-        column_at = reach.view.linkage.columns.index(column)
+        column_at = reach.way.linkage.columns.index(column)
         rows = [reach.rolled(row) for row in np.linspace(reach.low, reach.high, 60)]
-        values = [math.degrees(reach.view.joints(row)[column_at] + math.pi) % 360 - 180 for row in rows]
+        values = [math.degrees(reach.way.joints(row)[column_at] + math.pi) % 360 - 180 for row in rows]
         # between two rows the joints are on a straight line
         assert min(values) > low - 2e-2
         assert max(values) < high + 2e-2
         for row, stop in ((reach.low, reach.first_stop), (reach.high, reach.last_stop)):
             if stop:
                 assert stop == f"range of {column}"
-                value = math.degrees(reach.view.joints(reach.rolled(row))[column_at] + math.pi) % 360 - 180
+                value = math.degrees(reach.way.joints(reach.rolled(row))[column_at] + math.pi) % 360 - 180
                 assert min(abs(value - low), abs(value - high)) < 2e-2
                 assert reach.stop_at(reach.rolled(row)) == stop
 

@@ -83,7 +83,7 @@ def real_array(name: str, values: npt.ArrayLike) -> Floats:
         raise RequestError(f"{name}: {shown(values)} is not {wanted}; give {wanted}")
     if given.ndim > 1:
         raise RequestError(f"{name}: an array of shape {given.shape} does not fit; give one dimension")
-    return array.reshape(-1)
+    return array
 
 
 def whole_number(name: str, value: object, low: int, high: int | None, what: str, hint: str = "") -> int:
@@ -92,7 +92,7 @@ def whole_number(name: str, value: object, low: int, high: int | None, what: str
     >>> whole_number("circuit", np.int64(1), 0, 3, "a circuit")
     1
     """
-    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
     if not whole or not low <= value or not (high is None or value <= high):  # type: ignore[operator]
         allowed = f"{low} or more" if high is None else f"{low} to {high}" if low < high else f"{low}"
         raise RequestError(f"{name}: {shown(value)} is not {what}; give {allowed}{hint}")

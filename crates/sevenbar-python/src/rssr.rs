@@ -5,7 +5,7 @@ use crate::values::{RawCircuit, RawMotion, RowArrays};
 use crate::{CoreError, in_rows, input_named, law_rows, raise};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyReadonlyArray3, PyReadwriteArray2,
+    PyReadonlyArray3,
 };
 use pyo3::prelude::*;
 use sevenbar_core::rssr::{self, BatchRates, Row};
@@ -51,17 +51,17 @@ impl Rssr {
         self.0.size()
     }
 
-    /// Fills arrays of shape (2, n) with both branches and their derivatives, one array for each order from 0.
-    #[pyo3(signature = (inputs, outputs, input, speed, law=None))]
+    /// Both branches and their derivatives up to an order: an array (2, n) for each order from 0.
+    #[pyo3(signature = (inputs, order, input, speed, law=None))]
     fn outputs<'py>(
         &self,
         py: Python<'py>,
         inputs: PyReadonlyArray1<'py, f64>,
-        mut outputs: Vec<PyReadwriteArray2<'py, f64>>,
+        order: u8,
         input: &str,
         speed: f64,
         law: Option<[PyReadonlyArray1<'py, f64>; 3]>,
-    ) -> PyResult<()> {
+    ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
         let pair = self.0.pair(input_named(input)?);
         let values = in_rows(&inputs);
         let law = law.as_ref().map(|rates| rates.each_ref().map(in_rows));
@@ -69,17 +69,18 @@ impl Rssr {
             None => BatchRates::Constant(speed),
             Some(rates) => BatchRates::Law(rates.each_ref().map(|d| &**d)),
         };
-        let mut slices = outputs
+        let outputs = (0..=order)
+            .map(|_| PyArray2::zeros(py, [2, values.len()], false))
+            .collect::<Vec<_>>();
+        let mut arrays = outputs.iter().map(|array| array.readwrite()).collect::<Vec<_>>();
+        let mut slices = arrays
             .iter_mut()
-            .map(|array| {
-                array
-                    .as_array_mut()
-                    .into_slice()
-                    .ok_or_else(|| CoreError::new_err("outputs: an array is not in rows"))
-            })
-            .collect::<PyResult<Vec<_>>>()?;
+            .map(|array| array.as_slice_mut())
+            .collect::<Result<Vec<_>, _>>()?;
         py.detach(|| pair.outputs(&values, rates, &mut slices))
-            .map_err(raise)
+            .map_err(raise)?;
+        drop(arrays);
+        Ok(outputs)
     }
 
     /// Joint values (m, 8) and closure errors (m,) of each assembly mode at one input.

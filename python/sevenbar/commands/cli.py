@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 import traceback
 import warnings
@@ -409,6 +410,8 @@ def _tell_warning(
 
 def main() -> NoReturn:
     """The program: exit 0 well, 2 the caller's mistake, 1 our own fault."""
+    # looking for plugins reads the metadata of every package that is installed
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     with warnings.catch_warnings():
         warnings.showwarning = _tell_warning
         warnings.simplefilter("always", AngleUnitWarning)

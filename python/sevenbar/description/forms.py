@@ -299,8 +299,9 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     """
     from sevenbar.description import formulas, schema
 
-    raw = formulas.with_numbers(raw, source)
-    form = schema.check(raw, source=source)
+    context = schema.context_of(raw, source)
+    raw = formulas.with_numbers(raw, context)
+    form = schema.check(raw, context, source=source)
     if problems := disproportions(form):
         raise DescriptionError(problems, source)
     if form.rssr is not None:
@@ -311,10 +312,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
         linkage = _from_rows(form, form.link or (), source)
     return replace(
         linkage,
-        name=form.name,
-        length_unit=form.length_unit,
         points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
-        drive=Drive(*form.driven, form.drive.speed),
         description=raw,
         loading=_loading(form),
         stops=stops_of(form.stop, form.rod, form.first_columns),
@@ -342,7 +340,7 @@ def _values(form: LinkageForm) -> dict[Place, float]:
     """The numbers of a form by their places, as its word asks for them."""
     found: dict[Place, float] = {}
     if form.rssr is not None:
-        dimensions = {**form.rssr.model_dump(), "L2": form.rssr.coupler}
+        dimensions = {**dict(form.rssr), "L2": form.rssr.coupler}
         found |= {("rssr", key): value for key, value in dimensions.items()}
     for i, row in enumerate(form.link or ()):
         found |= {("link", i, key): getattr(row, key) for key in ("length", "twist", "offset", "angle")}
@@ -357,19 +355,20 @@ def _values(form: LinkageForm) -> dict[Place, float]:
 def _linkage(form: LinkageForm, written: Form, joints: tuple[Joint, ...], **parts: Any) -> Linkage:
     """The linkage of a form's word at its numbers."""
     # `import sevenbar` needs no words
-    from sevenbar.kinematics.numbers.word import Slots, word_of
+    from sevenbar.kinematics.numbers.word import Slots, outer_of
 
     numbers = _values(form)
     slots, values = Slots(zip(numbers, count())), np.array([*numbers.values()], dtype=np.float64)
-    word = word_of(written, [joint.kind for joint in joints], slots)
+    base, links, ground, frames = outer_of(written, [joint.kind for joint in joints], slots)
     return Linkage(
         name=form.name,
         joints=joints,
-        base=word.base.pose(values),
-        ground=word.ground.pose(values),
-        links=np.stack([link.pose(values) for link in word.links]),
-        point_frames=np.stack([frame.pose(values) for frame in word.frames]),
-        drive=Drive(*form.driven),
+        base=base.pose(values),
+        ground=ground.pose(values),
+        links=np.stack([link.pose(values) for link in links]),
+        point_frames=np.stack([frame.pose(values) for frame in frames]),
+        drive=Drive(*form.driven, form.drive.speed),
+        length_unit=form.length_unit,
         form=written,
         **parts,
     )

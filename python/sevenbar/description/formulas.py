@@ -8,7 +8,6 @@ from typing import Any
 
 from sevenbar.description.load_tables import with_rows
 from sevenbar.description.load_values import load_kinds, spring_kinds
-from sevenbar.description.schema import context_of
 from sevenbar.description.stop_schema import stop_kinds
 from sevenbar.description.values import NumberKind, value_in_file
 from sevenbar.errors import RequestError
@@ -31,16 +30,17 @@ KINDS_OF_NUMBERS: Mapping[str, Mapping[str, NumberKind]] = {
 _KINDS_IN = {"load": load_kinds, "spring": spring_kinds, "stop": stop_kinds}
 
 
-def with_numbers(raw: Mapping[str, Any], source: str = "") -> Mapping[str, Any]:
+def with_numbers(raw: Mapping[str, Any], context: Mapping[str, Any]) -> Mapping[str, Any]:
     """A description with the number of each formula in its place, in the units of the file.
 
-    Tables of loads, in the folder of the file `source`, are in it with their rows.
+    `context` is that of the description. Tables of loads are in it with their rows.
     A text that is no formula stays, for the schema to refuse it.
 
-        >>> with_numbers({"angle_unit": "deg", "link": [{"twist": "pi/3", "length": "2 cm"}]})["link"]
+        >>> from sevenbar.description.schema import context_of
+        >>> raw = {"angle_unit": "deg", "link": [{"twist": "pi/3", "length": "2 cm"}]}
+        >>> with_numbers(raw, context_of(raw))["link"]
         [{'twist': 60.0, 'length': 20.0}]
     """
-    context = context_of(raw, source)
     raw = with_rows(raw, context)
     found = {}
     for key, value in raw.items():

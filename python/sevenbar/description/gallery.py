@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 #: Names that a message offers for one that does not exist.
@@ -13,6 +14,7 @@ MOST_OFFERED = 3
 _FOLDER = Path(__file__).with_name("gallery")
 
 
+@cache
 def names() -> tuple[str, ...]:
     """The names of all linkages of the gallery, in alphabetic order.
 

@@ -251,12 +251,11 @@ def json_schema() -> dict[str, Any]:
     return {"$schema": GenerateJsonSchema.schema_dialect, **schema, "oneOf": one_form}
 
 
-def check(raw: object, *, source: str = "") -> LinkageForm:
+def check(raw: Mapping[str, Any], context: Mapping[str, Any], *, source: str = "") -> LinkageForm:
     """The checked form, or `DescriptionError` with every problem in it; `source` is the file it came from."""
-    if isinstance(raw, Mapping) and (other := other_file(raw)):
+    if other := other_file(raw):
         raise DescriptionError.of_all(source, other)
-    ground_places = grounds(raw) if isinstance(raw, Mapping) else {}
-    context = context_of(raw, source) if isinstance(raw, Mapping) else None
+    ground_places = grounds(raw)
     try:
         form = LinkageForm.model_validate(raw, context=context)
         problems = []
@@ -270,14 +269,13 @@ def check(raw: object, *, source: str = "") -> LinkageForm:
             # an entry that is nothing but a second ground is reported once
             if place in ground_places or place[:2] not in ground_places
         ]
-    if isinstance(raw, Mapping) and context is not None:
-        joints = joints_of(raw)
-        problems += contradictions(raw)
-        if not raw.keys().isdisjoint(("body", "load", "spring")):
-            from sevenbar.description.load_contradictions import load_contradictions
+    joints = joints_of(raw)
+    problems += contradictions(raw)
+    if not raw.keys().isdisjoint(("body", "load", "spring")):
+        from sevenbar.description.load_contradictions import load_contradictions
 
-            problems += load_contradictions(raw, joints, context)
-        problems += stop_contradictions(raw, joints, context)
+        problems += load_contradictions(raw, joints, context)
+    problems += stop_contradictions(raw, joints, context)
     if problems:
         raise DescriptionError(problems, source)
     return form

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 from sevenbar.errors import Problem, no_joint, shown
 from sevenbar.kinematics.loop.joints import KINDS, column_names
@@ -15,7 +17,8 @@ GROUND_WORDS = ("g", "ground", "fixed", "frame", "base")
 RSSR_JOINTS = (("crank", "R"), ("ball_a", "S"), ("ball_b", "S"), ("rocker", "R"))
 
 
-class Written(NamedTuple):
+@dataclass(frozen=True)
+class Written:
     """A joint as far as it can be read from an unchecked file: its kind is empty where that is unknown."""
 
     place: str
@@ -32,7 +35,7 @@ class Written(NamedTuple):
         """Whether it is known to turn about more than one axis through one place."""
         return bool(self.kind) and KINDS[self.kind].bends
 
-    @property
+    @cached_property
     def columns(self) -> dict[str, str]:
         """What each of its freedoms does, by the name of its column."""
         freedoms = KINDS[self.kind].freedoms if self.kind else ("turn",)

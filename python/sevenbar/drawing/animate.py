@@ -33,6 +33,8 @@ from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
 from sevenbar.kinematics.circuits.poses import Walk, walk
+from sevenbar.kinematics.circuits.timed_walk import TimedWalk
+from sevenbar.kinematics.ranges.reach import reaches
 from sevenbar.text.progress import Progress, silent
 from sevenbar.text.words import say
 
@@ -69,8 +71,10 @@ def animate(
 
     The film shows `frames` pictures at `fps` [1/s], or takes `seconds`; 120 pictures where neither is given.
     A rocking circuit goes forth and back; the last picture leads over to the first, save where a law drives:
-    then the law is run once. An HTML page plays by itself in any browser: it can be stopped, and a spatial
-    linkage turned with the mouse. `view`, `figsize`, `style` and `title` are those of `plot.configuration`.
+    then the law is run once. Stops of the linkage end the way: it goes from stop to stop and back, on the
+    first stretch where there are several. An HTML page plays by itself in any browser: it can be stopped, and
+    a spatial linkage turned with the mouse. `view`, `figsize`, `style` and `title` are those of
+    `plot.configuration`.
     `progress(done, total)` is called after each picture.
 
     Raises `RequestError` for a circuit, count, rate or view that is not offered, `OutputError` for another
@@ -94,8 +98,8 @@ def animate(
         usual = f"{title_of(motion)}\n{say('circuit {number}', number=chosen.index)}"
         heading = title_text(title, usual)
         if ending == ".html":
-            rows = _rows(motion, walk(chosen), frames)
-            text = film_page(motion, chosen, frame, seen, rows, fps=float(fps), title=heading)
+            rows, times = _course(motion, chosen, frames)
+            text = film_page(motion, chosen, frame, seen, rows, times, fps=float(fps), title=heading)
             file.write_text(text, encoding="utf-8")
             return target
         shown_as = _pictures(motion, chosen, frame, seen, frames, size, heading)
@@ -159,6 +163,16 @@ def _reported(pictures: Iterator[Picture], total: int, progress: Progress | None
     for done, picture in enumerate(pictures, start=1):
         yield picture
         report(done, total)
+
+
+def _course(motion: Motion, circuit: Circuit, frames: int) -> tuple[Floats, Floats]:
+    """Where on the walk each picture is (frames,), and its time [s]; between stops where there are some."""
+    path = walk(circuit)
+    found = reaches(TimedWalk(motion, circuit)) if motion.law is None else ()
+    if found:
+        return next((one for one in found if one.holds(0.0)), found[0]).forth_and_back(frames)
+    rows = _rows(motion, path, frames)
+    return rows, np.interp(rows, np.arange(len(path.time)), path.time)
 
 
 def _rows(motion: Motion, path: Walk, frames: int) -> Floats:
@@ -234,7 +248,7 @@ def _pictures(
     courses = ((motion.input, path.input), (motion.output, path.output))
     units = [f" {motion.linkage.length_unit}" if slides(motion, c) else "°" for c in ends]
     said = [shown_name(name, 14) for name in ends]
-    for row in _rows(motion, path, frames):
+    for row, time in zip(*_course(motion, circuit, frames), strict=True):
         angle, output = (
             float(shown_value(motion, column, np.interp(row, count, values))) for column, values in courses
         )
@@ -245,7 +259,6 @@ def _pictures(
                 text.xy = tuple(space.anchor(pose[where][None])[0])
         cursor.set_data([angle, angle], curve.get_ylim())
         dot.set_data([angle], [output])
-        time = float(np.interp(row, count, path.time))
         reading.set_text(
             f"t = {time:.3f} s   {said[0]} {_tenths(angle)}{units[0]}   {said[1]} {_tenths(output)}{units[1]}"
         )

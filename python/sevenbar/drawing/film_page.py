@@ -32,17 +32,18 @@ def film_page(
     frame: Skeleton,
     view: Projection,
     rows: Floats,
+    times: Floats,
     *,
     fps: float,
     title: str,
 ) -> str:
-    """The HTML of a film with a picture at each of `rows` (n,) of the walk, shown at `fps` [1/s]."""
+    """The HTML of a film: a picture at each of `rows` (n,) of the walk with its time [s], at `fps` [1/s]."""
     found = json.dumps(
         {
             "fps": fps,
             "linkage": _linkage(motion, frame, view, rows),
             "curves": _curves(motion, circuit, rows),
-            "reading": _reading(circuit, rows),
+            "reading": _plain(times),
             "words": {
                 "play": say("Play"),
                 "pause": say("Pause"),
@@ -160,13 +161,6 @@ def _curves(motion: Motion, circuit: Circuit, rows: Floats) -> list[dict[str, An
             }
         )
     return made
-
-
-def _reading(circuit: Circuit, rows: Floats) -> list[float | None]:
-    """The time [s] of each picture."""
-    path = walk(circuit)
-    found: list[float | None] = _plain(np.interp(rows, np.arange(len(path.time)), path.time))
-    return found
 
 
 def _plain(values: Floats) -> Any:

@@ -90,16 +90,20 @@ class Skeleton:
         return ends + [pair for stay in self.stays for pair in pairwise(stay)]
 
     @cached_property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """The least and the greatest coordinates (k, 3) that each place has in any pose."""
+        return np.fmin.reduce(self.places, axis=0), np.fmax.reduce(self.places, axis=0)
+
+    @cached_property
     def far(self) -> frozenset[int]:
         """The named points that are too far off to be in one picture with the linkage."""
-        solid = self.places[:, : self.solid]
-        middle = np.nanmean(solid, axis=(0, 1))
-        most = FARTHEST * _extent(solid)
-        return frozenset(
-            place
-            for place in self.points
-            if np.nanmax(np.abs(self.places[:, place] - middle), initial=0.0) > most > 0
-        )
+        if not self.points:
+            return frozenset()
+        middle = np.nanmean(self.places[:, : self.solid], axis=(0, 1))
+        most = FARTHEST * self._extent_of(range(self.solid))
+        low, high = self.bounds
+        away = np.fmax(high - middle, middle - low)
+        return frozenset(place for place in self.points if np.nanmax(away[place], initial=0.0) > most > 0)
 
     @property
     def shown(self) -> list[int]:
@@ -110,7 +114,11 @@ class Skeleton:
     def span(self) -> float:
         """The largest extent along x, y or z [length] of what a picture shows, rails aside."""
         rails = {end for _, word, ends in self.marks if word == "rail" for end in ends}
-        return _extent(self.places[:, [place for place in self.shown if place not in rails]])
+        return self._extent_of([place for place in self.shown if place not in rails])
+
+    def _extent_of(self, places: Sequence[int]) -> float:
+        low, high = self.bounds
+        return _extent(np.stack([low[places], high[places]]))
 
 
 def skeleton_of(
@@ -136,7 +144,7 @@ def skeleton_of(
     places: list[Floats] = []
 
     def add(place: Floats) -> int:
-        places.append(np.broadcast_to(place, (rows, 3)))
+        places.append(place if place.ndim == 2 else np.broadcast_to(place, (rows, 3)))
         return len(places) - 1
 
     span = like.extent if like else 1.6 * sphere.radius if sphere else spread

@@ -181,7 +181,7 @@ class Linkage(Solvable):
             law = tuple(
                 _rate(name, 0.0 if value is None else value, array.size) for name, value in rates.items()
             )
-        return solver.outputs(array, int(order), column, constant, law)
+        return solver.outputs(array, order, column, constant, law)
 
     @ends_here
     def assembly_modes(

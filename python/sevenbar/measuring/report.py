@@ -19,7 +19,8 @@ from sevenbar.measuring.measured import Ends
 from sevenbar.measuring.passes import PassFit
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
 from sevenbar.reporting.folder import write_columns, write_csv
-from sevenbar.reporting.page import Facts, drive_text, number_table, opening, page
+from sevenbar.reporting.page import Facts, number_table, opening, page
+from sevenbar.reporting.shown import drive_text
 from sevenbar.text.printing import text_of
 from sevenbar.text.words import retold, say
 

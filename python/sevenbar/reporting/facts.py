@@ -14,8 +14,7 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.reporting.extents import usable_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
-from sevenbar.reporting.page import drive_text
-from sevenbar.reporting.shown import Shown
+from sevenbar.reporting.shown import Shown, drive_text
 from sevenbar.text.words import retold, say
 
 if TYPE_CHECKING:

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy.typing as npt
-from rich.console import Console, RenderableType
 
 from sevenbar.reporting.folder import check_targets, fill_folder, write_columns, write_parts
 from sevenbar.text.progress import Progress, silent
@@ -20,6 +19,7 @@ from sevenbar.text.words import language
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from rich.console import Console, RenderableType
 
 T = TypeVar("T")
 
@@ -77,6 +77,9 @@ class Report(Generic[T]):
 
     def print(self, found: T, console: Console | None = None) -> None:
         """Prints a result for people."""
+        # a program that reads JSON waits for no rich
+        from rich.console import Console
+
         with language(None if self.spoken else "en"):
             (console or Console()).print(self.text(found))
 

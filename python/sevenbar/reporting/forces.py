@@ -41,8 +41,8 @@ from sevenbar.reporting.force_words import (
     spin_facts,
     unbounded_facts,
 )
-from sevenbar.reporting.page import Facts, drive_text, number_table, page
-from sevenbar.reporting.shown import number, rows_text
+from sevenbar.reporting.page import Facts, number_table, page
+from sevenbar.reporting.shown import drive_text, number, rows_text
 from sevenbar.text.words import say
 
 if TYPE_CHECKING:

@@ -11,7 +11,6 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.text.printing import WIDTH
-from sevenbar.text.units import split_quantity
 from sevenbar.text.words import say
 
 
@@ -31,33 +30,6 @@ class Facts:
         """Adds a line for each label and text, those with some labels bold."""
         for label, text in facts:
             self.add(label, text, "bold" if label in bold else "")
-
-
-def drive_text(input: str, speed: float | None, unit: str, output: str = "", *, written: str = "") -> str:
-    """How a linkage is driven, `speed` [unit/s] or `None` for a law, and what is read of it.
-
-    `written` is the speed as a person wrote it, in a unit that may be another.
-
-    >>> drive_text("crank", 10.0, "rad", "rocker")
-    'crank at 10 rad/s, output rocker'
-    >>> drive_text("crank", 314.159265, "rad", written="3000 rpm")
-    'crank at 3000 rpm (314.159 rad/s)'
-    """
-    if speed is None:
-        driven = say("{joint} by a law", joint=input)
-    else:
-        driven = say("{joint} at {speed}", joint=input, speed=speed_text(speed, f"{unit}/s", written))
-    return say("{driven}, output {output}", driven=driven, output=output) if output else driven
-
-
-def speed_text(speed: float, unit: str, written: str = "") -> str:
-    """A speed in the unit of results, after what was `written` where that is another."""
-    plain = f"{speed:.6g} {unit}"
-    own = " ".join(written.split())
-    parts = split_quantity(own)
-    if parts is None or parts[1] in ("", unit):
-        return plain
-    return f"{own} ({plain})"
 
 
 def number_table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: Sequence[int] = ()) -> Table:

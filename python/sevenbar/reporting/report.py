@@ -6,15 +6,10 @@ A report only writes down what the motion holds; it solves nothing.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
-
-from rich.box import SIMPLE_HEAD
-from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
-from rich.table import Table
-from rich.text import Text
+from typing import TYPE_CHECKING, Any
 
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
@@ -23,16 +18,16 @@ from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.extents import extents_dict
-from sevenbar.reporting.facts import closure_error, completeness_text, side_lengths
+from sevenbar.reporting.facts import closure_error, side_lengths
 from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures
 from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
 from sevenbar.reporting.force_peaks import peaks_dict
-from sevenbar.reporting.how_found import how_found, left_open
-from sevenbar.reporting.page import Facts
-from sevenbar.reporting.shown import value_text
-from sevenbar.reporting.summary import GAP, Sheet, modes_sheets, summary
+from sevenbar.reporting.how_found import how_found
+from sevenbar.reporting.summary import summary
 from sevenbar.text.markdown import escaped, table
-from sevenbar.text.words import language, say, spoken
+
+if TYPE_CHECKING:
+    from rich.console import Console, RenderableType
 
 __all__ = [
     "as_dict",
@@ -158,39 +153,17 @@ def as_json(motion: Motion, *, ranges: bool = False) -> str:
     return json_text(as_dict(motion, ranges=ranges))
 
 
-class _Page:
-    """A page that is laid out for the width in which it is printed, in the language it was made in."""
-
-    def __init__(self, parts: Callable[[int], Iterable[RenderableType]]) -> None:
-        self.parts, self.language = parts, spoken()
-
-    def __rich_console__(self, _console: Console, options: ConsoleOptions) -> RenderResult:
-        with language(self.language):
-            made = list(self.parts(options.max_width))
-        yield from made
-
-
 def text(motion: Motion, *, ranges: bool = False) -> RenderableType:
     """The report for people, to be printed by rich; angles in degrees; with `ranges` of all joints."""
+    # a program that reads JSON waits for no rich
+    from sevenbar.reporting.printed import motion_page
 
-    def parts(width: int) -> Iterator[RenderableType]:
-        page = summary(motion, width, ranges=ranges)
-        facts = Facts()
-        facts.add_all(page.facts, bold=[say("motion type")])
-        yield Text(page.title, style="bold underline")
-        yield facts.grid
-        for sheet in page.sheets:
-            yield Text()
-            yield _table(sheet)
-            if sheet.note:
-                yield Text(sheet.note, style="dim")
-
-    return _Page(parts)
+    return motion_page(motion, ranges=ranges)
 
 
 def print_text(motion: Motion, console: Console | None = None) -> None:
     """Prints the report for people; angles in degrees."""
-    (console or Console()).print(text(motion))
+    motion_report().print(motion, console)
 
 
 def markdown(motion: Motion, pictures: Sequence[str] = (), *, ranges: bool = False) -> str:
@@ -211,20 +184,6 @@ def markdown(motion: Motion, pictures: Sequence[str] = (), *, ranges: bool = Fal
         parts += [sheet.note] if sheet.note else []
     parts += [f"![{name.rpartition('.')[0]}]({name})" for name in pictures]
     return "\n\n".join(parts) + "\n"
-
-
-def _table(sheet: Sheet) -> Table:
-    # the box has a space of its own between columns
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, GAP - 1, 0, 0))
-    for place, head in enumerate(sheet.heads):
-        right = place in sheet.right
-        table.add_column(Text(head), justify="right" if right else "left", overflow="fold", no_wrap=right)
-    several = any("\n" in cell for row in sheet.rows for cell in row)
-    for row in sheet.rows:
-        table.add_row(*map(Text, row), end_section=False)
-        if several and row is not sheet.rows[-1]:
-            table.add_row()
-    return table
 
 
 def motion_report(
@@ -331,21 +290,7 @@ def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
 
 
 def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
-    def parts(width: int) -> Iterator[RenderableType]:
-        yield Text(linkage.heading, style="bold underline")
-        count = len(modes)
-        yield Text(
-            say(
-                "{count} assembly mode{s} at {joint} = {value}, {completeness}",
-                count=count or say("no"), s="s" * (count != 1), joint=linkage.columns[column],
-                value=value_text(linkage, column, modes.input),
-                completeness=completeness_text(modes.completeness, curve=modes.on_curve is not None),
-            )
-        )  # fmt: skip
-        if modes.open_by.size:
-            yield Text(left_open(modes.open_by, modes.agree))
-        for sheet in modes_sheets(linkage, modes, width) if count else ():
-            yield Text()
-            yield _table(sheet)
+    # a program that reads JSON waits for no rich
+    from sevenbar.reporting.printed import modes_page
 
-    return _Page(parts)
+    return modes_page(linkage, column, modes)

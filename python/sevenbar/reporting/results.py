@@ -25,8 +25,7 @@ from sevenbar.reporting.facts import (
     facts_of,
     joints_text,
 )
-from sevenbar.reporting.page import drive_text
-from sevenbar.reporting.shown import Shown, rows_text
+from sevenbar.reporting.shown import Shown, drive_text, rows_text
 from sevenbar.reporting.summary import circuit_facts
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 

@@ -16,7 +16,8 @@ from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.kinematics.loop.screw_axes import ScrewAxes
 from sevenbar.reporting.files import Report, columns_file, json_file
-from sevenbar.reporting.page import drive_text, number_table
+from sevenbar.reporting.page import number_table
+from sevenbar.reporting.shown import drive_text
 
 #: A pitch or slide rate below this share of the size, or of the fastest turn of the size, is printed as 0.
 ROUNDING = 1e-12

@@ -1,4 +1,4 @@
-"""How values of joints and numbers are written in reports."""
+"""How values of joints, speeds and numbers are written in reports."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import math
 
 from sevenbar.arrays import Words, counted
 from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.text.units import split_quantity
+from sevenbar.text.words import say
 
 #: Values below this share of what the linkage's size and its drive make are rounding.
 REST = 1e-12
@@ -52,6 +54,33 @@ def number(value: float) -> str:
 def value_text(linkage: Loop, column: int, value: float) -> str:
     """The value of a column with its unit."""
     return Shown(linkage.unit_of(column))(value)
+
+
+def drive_text(input: str, speed: float | None, unit: str, output: str = "", *, written: str = "") -> str:
+    """How a linkage is driven, `speed` [unit/s] or `None` for a law, and what is read of it.
+
+    `written` is the speed as a person wrote it, in a unit that may be another.
+
+    >>> drive_text("crank", 10.0, "rad", "rocker")
+    'crank at 10 rad/s, output rocker'
+    >>> drive_text("crank", 314.159265, "rad", written="3000 rpm")
+    'crank at 3000 rpm (314.159 rad/s)'
+    """
+    if speed is None:
+        driven = say("{joint} by a law", joint=input)
+    else:
+        driven = say("{joint} at {speed}", joint=input, speed=speed_text(speed, f"{unit}/s", written))
+    return say("{driven}, output {output}", driven=driven, output=output) if output else driven
+
+
+def speed_text(speed: float, unit: str, written: str = "") -> str:
+    """A speed in the unit of results, after what was `written` where that is another."""
+    plain = f"{speed:.6g} {unit}"
+    own = " ".join(written.split())
+    parts = split_quantity(own)
+    if parts is None or parts[1] in ("", unit):
+        return plain
+    return f"{own} ({plain})"
 
 
 def six_digits(value: float) -> str:

@@ -24,7 +24,8 @@ from sevenbar.reporting.files import (
     text_file,
     without_nan,
 )
-from sevenbar.reporting.page import Facts, drive_text, number_table, opening, page
+from sevenbar.reporting.page import Facts, number_table, opening, page
+from sevenbar.reporting.shown import drive_text
 from sevenbar.simulation.agreement import Difference, Simulation
 from sevenbar.text.printing import text_of
 

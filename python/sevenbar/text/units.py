@@ -132,23 +132,15 @@ def _quotient(size: float, other: float) -> float:
 
 
 def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str) -> float:
-    hint = f"give a number and a unit, as in {example}"
-    if isinstance(value, bool) or not isinstance(value, (str, int, float)):
-        raise RequestError(f"{shown(value)} is not a speed; {hint}")
     if isinstance(value, str):
-        match = _QUANTITY.fullmatch(value.replace("\u00b0", "deg"))
-        if match is None:
-            raise RequestError(f"{shown(value)} is not a speed; {hint}")
-        number, unit = match.groups()
-        # zero is zero in any unit
-        if unit not in sizes and (unit or float(number) != 0):
-            raise RequestError(_no_such_speed(value, unit, sizes, motion, hint))
-        speed = float(number) * sizes.get(unit, 1.0)
-    else:
+        speed = _written_speed(value, sizes, motion, example)
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
         try:
             speed = float(value)
         except OverflowError:
             speed = math.inf
+    else:
+        raise RequestError(f"{shown(value)} is not a speed; {_with_unit(example)}")
     if SLOWEST <= abs(speed) <= FASTEST:
         return speed
     first = example.split(" or ")[0]
@@ -157,6 +149,21 @@ def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str)
     raise RequestError(
         f"{shown(value)} is out of range; give a speed of {SLOWEST:g} to {FASTEST:g} in size, as in {first}"
     )
+
+
+def _written_speed(value: str, sizes: Mapping[str, float], motion: str, example: str) -> float:
+    match = _QUANTITY.fullmatch(value.replace("\u00b0", "deg"))
+    if match is None:
+        raise RequestError(f"{shown(value)} is not a speed; {_with_unit(example)}")
+    number, unit = match.groups()
+    # zero is zero in any unit
+    if unit not in sizes and (unit or float(number) != 0):
+        raise RequestError(_no_such_speed(value, unit, sizes, motion, _with_unit(example)))
+    return float(number) * sizes.get(unit, 1.0)
+
+
+def _with_unit(example: str) -> str:
+    return f"give a number and a unit, as in {example}"
 
 
 def _no_such_speed(value: str, unit: str, sizes: Mapping[str, float], motion: str, hint: str) -> str:

@@ -44,6 +44,10 @@ TORN = 1e-6
 #: which it was held [rad, or relative to the size].
 DENSE, MISSED = 361, 1e-4
 
+#: A must missed between those by more is held tighter by as much, and solved again; by more than the second
+#: it is missed for another reason.
+TIGHT, NEAR = 1e-7, 1e-2
+
 #: By how much a measure may miss its limit through rounding, relative to it.
 ROUNDING = 1e-6
 
@@ -100,10 +104,7 @@ def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
     draft = model.loop.drawn(solution.seed.values)
     try:
         linkage = Draft.of(draft.toml(), "design", agree=draft.agree).linkage
-        ways = [
-            _ways(one, linkage, inputs, u, solution.seed.placing)
-            for one, inputs, u in zip(model.wanted, solution.inputs, solution.seed.own, strict=True)
-        ]
+        ways = _all_ways(model, solution, linkage)
         motion = linkage.motion(CHECK_SAMPLES)
     except (DescriptionError, RequestError, NotCoveredError) as error:
         return Refusal("assembly", str(error))
@@ -135,6 +136,14 @@ def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
         solution.seed.values,
         solution,
     )
+
+
+def _all_ways(model: TaskModel, solution: Solved, linkage: Linkage) -> list[list[_Way]]:
+    """The ways of each want."""
+    return [
+        _ways(one, linkage, inputs, u, solution.seed.placing)
+        for one, inputs, u in zip(model.wanted, solution.inputs, solution.seed.own, strict=True)
+    ]
 
 
 def _ways(one: Wanted, linkage: Linkage, inputs: Floats, u: Floats, placing: Placing) -> list[_Way]:
@@ -249,11 +258,32 @@ def _figures(model: TaskModel, motion: Motion, circuit: Circuit) -> Mapping[str,
     return found
 
 
-def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: Linkage) -> float | Refusal:
-    """The least room of the musts over all that is used, or which is missed."""
-    loop, musts, values = model.loop, model.task.musts, solution.seed.values
-    rooms = pose_rooms(loop, musts)
-    least = math.inf
+def missed_between(model: TaskModel, solution: Solved) -> dict[int, float]:
+    """By how much musts about poses, by their places, are missed between the poses at which they were held.
+
+    Empty where none is, by more than rounding, or one for another reason.
+    """
+    draft = model.loop.drawn(solution.seed.values)
+    try:
+        linkage = Draft.of(draft.toml(), "design", agree=draft.agree).linkage
+        ways = _all_ways(model, solution, linkage)
+    except (DescriptionError, RequestError, NotCoveredError):
+        return {}
+    if not all(ways):
+        return {}
+    missed = {place: -room for place, room in _used_rooms(model, solution, ways, linkage).items()}
+    if not max(missed.values(), default=0.0) <= NEAR:
+        return {}
+    return {place: room for place, room in missed.items() if room > TIGHT}
+
+
+def _used_rooms(
+    model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: Linkage
+) -> dict[int, float]:
+    """The least room of each must about poses, by its place, over all that is used."""
+    loop, values = model.loop, solution.seed.values
+    rooms = pose_rooms(loop, model.task.musts)
+    least: dict[int, float] = {}
     for one, own, inputs in zip(model.wanted, ways, solution.inputs, strict=True):
         if not rooms:
             break
@@ -262,12 +292,22 @@ def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: L
         here = loop.here(values, loop.poses(values, _dense(loop, linkage, own[0], dense)))
         for place, room in rooms:
             worst = float(room(here)[0].min())
-            if not worst >= -MISSED:
-                must = musts[place]
-                unit = room_unit(must, loop.linkage)  # type: ignore[arg-type]
-                missed = f"{-worst * (math.degrees(1) if unit == 'deg' else loop.size):.3g} {unit}"
-                return Refusal(FAULTS[type(must)], f"{must_words(must, loop.linkage)}: missed by {missed}")
-            least = min(least, worst)
+            # NaN is less than any
+            least[place] = worst if not worst >= least.get(place, math.inf) else least[place]
+    return least
+
+
+def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: Linkage) -> float | Refusal:
+    """The least room of the musts over all that is used, or which is missed."""
+    loop, musts = model.loop, model.task.musts
+    least = math.inf
+    for place, worst in _used_rooms(model, solution, ways, linkage).items():
+        if not worst >= -MISSED:
+            must = musts[place]
+            unit = room_unit(must, loop.linkage)  # type: ignore[arg-type]
+            missed = f"{-worst * (math.degrees(1) if unit == 'deg' else loop.size):.3g} {unit}"
+            return Refusal(FAULTS[type(must)], f"{must_words(must, loop.linkage)}: missed by {missed}")
+        least = min(least, worst)
     for must in musts:
         if isinstance(must, Most):
             number = model.sampled.index(must.want)

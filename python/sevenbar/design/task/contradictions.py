@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.task.loop import TaskLoop
-from sevenbar.design.task.must_contradictions import Flaws, figure_flaw, of_must
+from sevenbar.design.task.must_contradictions import Flaws, figure_flaw, of_must, value_flaw
 from sevenbar.design.task.musts import places_in
 from sevenbar.design.task.task import (
     DesignTask,
@@ -288,6 +288,9 @@ def _poses(task: DesignTask, want: PoseWant, *, exact: bool) -> Flaws:
     if not (math.isfinite(want.arm) and want.arm > 0):
         yield "arm", f"{want.arm:g} is no length; give a number > 0"
     poses = want.poses
+    if not poses.size:
+        yield "poses", "none given; give tables of at, axis and angle, as in { at = [0, 0, 0], angle = 30 }"
+        return
     if poses.ndim != 3 or poses.shape[1:] != (4, 4) or not len(poses) or not np.isfinite(poses).all():
         yield "poses", f"an array of shape {poses.shape} holds no poses; give finite ones (n, 4, 4)"
         return
@@ -325,10 +328,12 @@ def _figure(task: DesignTask, want: FigureWant) -> Flaws:
             )
     elif not math.isfinite(want.value):
         yield "value", f"{want.value} is no value; give a finite number"
-    elif want.name == "time_ratio" and want.value < 1:
-        yield "value", f"{want.value:g} is no time ratio; the slower stroke over the quicker is at least 1"
-    elif want.name in ("swing", "peak_torque", "rms_torque") and want.value < 0:
-        yield "value", f"{want.value:g} cannot be: {want.name} is never below 0; give another value"
+    else:
+        if flaw := value_flaw(task.draft.linkage, want.name, float(want.value)):
+            yield "value", flaw
+        for i, other in enumerate(task.wants[: task.wants.index(want)]):
+            if isinstance(other, FigureWant) and other.name == want.name and other.value != want.value:
+                yield "name", f"want {i + 1} wants {want.name}, too, and another value; leave one out"
 
 
 def _range(linkage: Linkage, want: DwellWant | StraightWant) -> Flaws:

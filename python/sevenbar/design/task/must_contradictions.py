@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.task.task import (
     Apart,
     DesignTask,
@@ -37,6 +38,18 @@ from sevenbar.kinematics.ranges.circuit_extents import chosen
 
 #: Messages, each with the key that it is of; "" for a whole table.
 Flaws = Iterator[tuple[str, str]]
+
+#: Relative rounding of a value that lies on the end of a range.
+ROUNDING = 1e-9
+
+#: Between which values measures lie, in the unit that they are read in.
+BOUNDS = {
+    "swing": (0.0, 360.0),
+    "time_ratio": (1.0, math.inf),
+    "transmission_lowest": (0.0, 180.0),
+    "peak_torque": (0.0, math.inf),
+    "rms_torque": (0.0, math.inf),
+}
 
 #: Inputs of a turn that show whether a measure has a meaning.
 FEW = 12
@@ -87,6 +100,18 @@ def figure_flaw(linkage: Linkage, name: str) -> str:
     return ""
 
 
+def value_flaw(linkage: Linkage, name: str, value: float, key: str = "value") -> str:
+    """Why a measure never has a value, as wanted, or as the `least` or the `most`; empty where it may."""
+    low, high = BOUNDS.get(name, (-math.inf, math.inf))
+    if name == "swing" and not linkage.turns(linkage.drive.output):
+        high = math.inf
+    if value < low and key != "least":
+        return f"{value:g} cannot be: {name} is never below {low:g}; give another value"
+    if value > high and key != "most":
+        return f"{value:g} cannot be: {name} is never above {high:g}; give another value"
+    return ""
+
+
 def _transmits(linkage: Linkage) -> bool:
     """Whether the linkage has a transmission angle: as its circuits have it."""
     return any(circuit.transmission is not None for circuit in linkage.motion(FEW).circuits)
@@ -104,15 +129,29 @@ def _range(task: DesignTask, must: InRange) -> Flaws:
         return
     drive = (linkage.drive.joint, linkage.drive.output)
     name = linkage.columns[column]
+    # angles may be a turn further
+    turn = math.tau if linkage.turns(column) else 0.0
     for i, want in enumerate(task.wants):
-        if not isinstance(want, FunctionWant) or name not in drive or linkage.turns(column):
-            # angles may be a turn further
+        if not isinstance(want, FunctionWant) or name not in drive:
             continue
         which = drive.index(name)
         zero = want.zeros[which]
-        values = want.input if which == 0 else want.output
-        if zero is not None and (zero + values.min() < must.low or zero + values.max() > must.high):
+        if zero is not None and _beyond(zero + (want.input, want.output)[which], must.low, must.high, turn):
             yield "range", f"want {i + 1} needs {name} outside it; widen it, or want less"
+    before = task.musts[: task.musts.index(must)]
+    for i, other in enumerate(before):
+        if isinstance(other, InRange) and other.column == must.column:
+            one, own = np.array([other.low]), np.array([must.low])
+            if _beyond(one, must.low, must.high, turn) and _beyond(own, other.low, other.high, turn):
+                yield "range", f"has nothing in common with that of must {i + 1}; widen one of the two"
+
+
+def _beyond(values: Floats, low: float, high: float, turn: float) -> bool:
+    """Whether any of values (n,) is outside a range, wherever whole turns bring it."""
+    if turn:
+        values = values + turn * np.ceil((low - values) / turn - ROUNDING)
+    slack = ROUNDING * max(abs(low), abs(high), 1.0)
+    return bool(((values < low - slack) | (values > high + slack)).any())
 
 
 def _cone(linkage: Linkage, must: InCone) -> Flaws:
@@ -170,6 +209,15 @@ def _figure(task: DesignTask, must: FigureMust) -> Flaws:
         yield "", "has no end; give least, most, or both"
     elif not least <= most:
         yield "least", f"{least:g} is above the most, {most:g}; give the lower end in least"
+    for key, end in (("least", must.least), ("most", must.most)):
+        if end is not None and (flaw := value_flaw(task.draft.linkage, must.name, end, key)):
+            yield key, flaw
+    for i, other in enumerate(task.musts[: task.musts.index(must)]):
+        if isinstance(other, FigureMust) and other.name == must.name:
+            low = -math.inf if other.least is None else other.least
+            high = math.inf if other.most is None else other.most
+            if max(least, low) > min(most, high):
+                yield "name", f"must {i + 1} wants {must.name} outside these ends; leave one out, or widen it"
     for i, want in enumerate(task.wants):
         same = isinstance(want, FigureWant) and want.name == must.name and not isinstance(want.value, str)
         if same and not least <= want.value <= most:  # type: ignore[union-attr, operator]

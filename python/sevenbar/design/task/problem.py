@@ -86,10 +86,13 @@ class TaskValues:
 
 
 class TaskModel:
-    """The parts of a task that stay as they are: its loop, its wants and musts in it."""
+    """The parts of a task that stay as they are: its loop, its wants and musts in it.
 
-    def __init__(self, task: DesignTask) -> None:
-        self.task = task
+    Musts about poses are held by `margins` more, by their places [rad, or relative to the size].
+    """
+
+    def __init__(self, task: DesignTask, margins: Mapping[int, float] | None = None) -> None:
+        self.task, self.margins = task, margins or {}
         self.loop = loop = loop_of(task)
         self.wanted: list[Wanted] = [
             self._wanted(loop, want) for want in task.wants if not isinstance(want, FigureWant)
@@ -398,6 +401,7 @@ class TaskProblem:
             wide = here.along(self._stations.by)
             for place, room in self.model.rooms:
                 values, by = room(wide)
+                values = values - self.model.margins.get(place, 0.0)
                 fault = FAULTS[type(self.model.task.musts[place])]
                 rooms.append((fault, values.ravel(), self._joined(by.reshape(values.size, -1))))
         for i, one in enumerate(self.model.wanted):

@@ -163,7 +163,29 @@ def text(found: TaskDesigns) -> RenderableType:
     tables = _tables(found) if found.found.designs else []
     if any(_on_bound(design, found.task) for design in found.found.designs):
         tables[-1] = Group(tables[-1], Text("* on its bound", style="dim"))
+    tables += _reasons(found.found.designs)
     return page(f"Design: {found.name}", facts, *tables)
+
+
+#: Why the conditions of an optimum are missed, by how the search ended.
+REASONS = {
+    "edge": "ends at an edge: a small step further the linkage does not close, or a measure jumps where the "
+    "motion type changes, so slopes need not vanish; along the edge there may be better ones. Bound a "
+    "measure or a range so that designs keep off it, or take another design",
+    "valley": "ends in a narrow valley before an optimum, where each step gains next to nothing. Begin again "
+    "with this design as the linkage, give a measure a greater unit, or take more --starts",
+}
+
+
+def _reasons(designs: Sequence[TaskDesign]) -> list[RenderableType]:
+    """A line for each way in which designs ended before an optimum."""
+    lines: list[RenderableType] = []
+    for ended, words in REASONS.items():
+        numbers = [str(i + 1) for i, design in enumerate(designs) if design.solution.ended == ended]
+        if numbers:
+            some = f"design{'s' * (len(numbers) > 1)} {', '.join(numbers)}"
+            lines.append(Text(f"KKT residual of {some}: {words}", style="yellow"))
+    return lines
 
 
 def _on_bound(design: TaskDesign, task: DesignTask) -> bool:
@@ -237,6 +259,7 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
                     for (place, _), met in zip(task.sampled, design.met, strict=True)
                 ],
                 "musts": _rooms(task, design),
+                "ended": design.solution.ended,
                 "values": dict(zip(task.names, map(float, design.values), strict=True)),
             }
             for own, design in zip(plain_designs(found), found.found.designs, strict=True)

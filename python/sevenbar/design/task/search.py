@@ -12,7 +12,8 @@ import numpy.typing as npt
 from sevenbar.design.candidates import Candidate, Refusal, distinct, least_error, likeness, renamed, tally
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.extra import need_scipy
-from sevenbar.design.task.check import TaskDesign, checked_design
+from sevenbar.design.task.check import TIGHT, TaskDesign, checked_design, missed_between
+from sevenbar.design.task.musts import FAULTS
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.solve import LOOK, Solved, solved
 from sevenbar.design.task.starts import apart, seeds, seeds_at
@@ -204,12 +205,24 @@ def _take(
         return
     if solution.cost > most:
         return
-    answer = checked_design(model, solution)
+    answer = _answer(model, solution, most)
     if isinstance(answer, Refusal):
         refusals.append(answer)
     else:
         kept.append(answer)
         kept.sort(key=lambda design: design.cost)
+
+
+def _answer(model: TaskModel, solution: Solved, most: float) -> TaskDesign | Refusal:
+    """What the check says of a solution; a must missed between the poses solved for is held tighter."""
+    answer = checked_design(model, solution)
+    missed = answer.room < -TIGHT if isinstance(answer, TaskDesign) else answer.fault in FAULTS.values()
+    margins = missed_between(model, solution) if missed else {}
+    if not margins:
+        return answer
+    tighter = solved(TaskModel(model.task, margins), solution.seed, most=most)
+    again = None if tighter is None else checked_design(model, tighter)
+    return again if isinstance(again, TaskDesign) else answer
 
 
 def _first_look(model: TaskModel, one: TaskSeed) -> Solved | None:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -66,8 +66,15 @@ EXACT, NOTHING = 1e-7, 1e-13
 #: Below this of the conditions least squares have found an optimum, which Newton's method makes exact.
 ENDED = 1e-7
 
-#: Below this the conditions of an optimum are met.
-MET = 1e-11
+#: Below this the conditions of an optimum are met; above the second what they are missed by has a reason.
+MET, SAID = 1e-11, 1e-6
+
+#: A step down the slope [units of the unknowns] after which a cost so many times as great is a jump.
+BEYOND, JUMP = 1e-6, 2.0
+
+#: How a search ended: at a local optimum; at an edge, where a step further the linkage does not close or a
+#: measure jumps, so that slopes need not vanish; or in a valley, before an optimum.
+Ended = Literal["optimum", "edge", "valley"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +89,7 @@ class Solved:
     cost: float
     optimality: float
     room: float
+    ended: Ended = "optimum"
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,9 +137,12 @@ def solved(
         problem = TaskProblem(model, problem.seed(z), minimax=True)
         z = _lowered(problem)
     elif not _ended(problem, z):
-        problem, z = _programmed(problem, z)
+        problem, z = _programmed(problem, z, minimax=False)
         z = _descended(problem, z)
     z, missed = settled(problem, z, minimax=minimax)
+    if model.task.goal == "minimax" and missed > ENDED:
+        problem, z = _programmed(problem, z, minimax=True)
+        z, missed = settled(problem, z, minimax=True)
     if minimax and _exactly(model):
         z = _kept(problem, z)
     return _as_solved(problem, z, missed, minimax=minimax)
@@ -151,7 +162,23 @@ def _as_solved(problem: TaskProblem, z: Floats, missed: float, *, minimax: bool)
         return None
     cost = float(_heights(problem, here)[0].max()) if minimax else float(np.linalg.norm(here.left))
     room = float(here.room.min(initial=math.inf))
-    return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room)
+    ended: Ended = "optimum"
+    if missed > SAID and cost > EXACT:
+        ended = "edge" if _at_edge(problem, z, minimax=minimax) else "valley"
+    return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room, ended)
+
+
+def _at_edge(problem: TaskProblem, z: Floats, *, minimax: bool) -> bool:
+    """Whether the linkage does not close, or the cost jumps, a small step down the slope that (1) leaves."""
+    x = np.append(z, _cost(problem, z, minimax=True)) if minimax else z
+    at = _conditions(problem, x, minimax=minimax)
+    if at is None:
+        return False
+    active, y, _ = _multipliers(at)
+    rest = (at.gradient - at.room_by[active].T @ y)[: len(z)]
+    step = BEYOND * rest / max(float(np.abs(rest).max(initial=0.0)), 1e-300)
+    beyond = _cost(problem, np.clip(z - step, problem.low, problem.high), minimax=minimax)
+    return beyond > JUMP * _cost(problem, z, minimax=minimax)
 
 
 @dataclass(frozen=True, eq=False)
@@ -272,50 +299,93 @@ def _kept(problem: TaskProblem, z: Floats) -> Floats:
     return z
 
 
-def _programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
-    """The unknowns after sequential quadratic programs, which hold the rooms: better ones, or the same."""
+@dataclass(frozen=True, eq=False)
+class _Aim:
+    """What is made least at unknowns x, its gradient (m,), rooms (c,) without the bounds, and their slopes.
+
+    x is z, and for the greatest residual t / unit behind it; the least squares are relative to the unit, too.
+    """
+
+    cost: float
+    gradient: Floats
+    room: Floats
+    room_by: Floats
+
+
+def _aim(problem: TaskProblem, x: Floats, unit: float, *, minimax: bool) -> _Aim | None:
+    here = problem.at(x[:-1] if minimax else x)
+    if here is None:
+        return None
+    if not minimax:
+        pull = np.asarray(2 * here.left_by.T @ here.left / unit)
+        return _Aim(float(here.left @ here.left) / unit, pull, here.room, here.room_by)
+    height, slopes = _heights(problem, here)
+    pull = np.append(np.zeros(len(x) - 1), 1.0)
+    below = np.column_stack([-slopes / unit, np.ones(len(height))])
+    by = np.concatenate([below, np.column_stack([here.room_by, np.zeros(len(here.room))])])
+    return _Aim(float(x[-1]), pull, np.concatenate([x[-1] - height / unit, here.room]), by)
+
+
+def _programmed(begun: TaskProblem, z: Floats, *, minimax: bool) -> tuple[TaskProblem, Floats]:
+    """The unknowns after sequential quadratic programs, which hold the rooms: better ones, or the same.
+
+    Where fewer heights are equal to the greatest than there are unknowns, linear programs go from side to
+    side of a valley; these know its curvature.
+    """
     from scipy.optimize import minimize
 
-    here = begun.at(z)
-    assert here is not None
     # what was begun stays at its poses, which may not be found again from others
-    problem = TaskProblem(begun.model, begun.seed(z))
-    unit = float(here.left @ here.left)
-    last = [here]
+    problem = TaskProblem(begun.model, begun.seed(z), minimax=minimax)
+    begin = np.clip(problem.start, problem.low, problem.high)
+    x = np.append(begin, 1.0) if minimax else begin
+    now, unit = begun.at(z), _cost(begun, z, minimax=minimax)
+    first = _aim(problem, x, unit, minimax=minimax)
+    if now is None or first is None:
+        return begun, z
+    last = [first]
 
-    def at(z: Floats) -> TaskValues | None:
-        found = problem.at(z)
+    def at(x: Floats) -> _Aim | None:
+        found = _aim(problem, x, unit, minimax=minimax)
         if found is not None:
             last[0] = found
         return found
 
-    def cost(z: Floats) -> float:
-        found = at(z)
-        return 1e3 if found is None else float(found.left @ found.left) / unit
+    def cost(x: Floats) -> float:
+        found = at(x)
+        return 1e3 if found is None else found.cost
 
-    def slopes(z: Floats) -> Floats:
-        problem.take(z)
-        found = at(z) or last[0]
-        return np.asarray(2 * found.left_by.T @ found.left / unit)
+    def slopes(x: Floats) -> Floats:
+        problem.take(x[:-1] if minimax else x)
+        return (at(x) or last[0]).gradient
 
     rooms: Any = {
         "type": "ineq",
-        "fun": lambda z: (at(z) or last[0]).room,
-        "jac": lambda z: (at(z) or last[0]).room_by,
+        "fun": lambda x: (at(x) or last[0]).room,
+        "jac": lambda x: (at(x) or last[0]).room_by,
     }
+    ends = list(zip(problem.low, problem.high, strict=True))
     with np.errstate(all="ignore"):
         found = minimize(
             cost,
-            z,
+            x,
             jac=slopes,
-            bounds=list(zip(problem.low, problem.high, strict=True)),
-            constraints=[rooms] if len(here.room) else [],
+            bounds=[*ends, (0.0, math.inf)] if minimax else ends,
+            constraints=[rooms] if len(first.room) else [],
             method="SLSQP",
             options={"maxiter": PROGRAMS, "ftol": 1e-14},
         )
-    then = problem.at(found.x)
-    better = then is not None and (_lack(then), float(then.left @ then.left)) < (_lack(here), unit)
-    return (problem, np.asarray(found.x)) if better else (begun, z)
+    end = np.asarray(found.x[:-1] if minimax else found.x)
+    then = problem.at(end)
+    better = then is not None and (_lack(then), _cost(problem, end, minimax=minimax)) < (_lack(now), unit)
+    return (problem, end) if better else (begun, z)
+
+
+def _cost(problem: TaskProblem, z: Floats, *, minimax: bool) -> float:
+    """The sum of squares, or the greatest height."""
+    here = problem.at(z)
+    if here is None:
+        return math.inf
+    return float(_heights(problem, here)[0].max()) if minimax else float(here.left @ here.left)
 
 
 def _descended(problem: TaskProblem, z: Floats) -> Floats:

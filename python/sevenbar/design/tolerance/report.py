@@ -23,7 +23,8 @@ from sevenbar.kinematics.loop.columns import unit_in_column
 from sevenbar.kinematics.measures import MEASURES
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
-from sevenbar.reporting.page import Facts, drive_text, number_table, page
+from sevenbar.reporting.page import Facts, number_table, page
+from sevenbar.reporting.shown import drive_text
 from sevenbar.text.words import retold, say, spoken
 
 #: Dimensions of a corner design that the page names; the JSON has all.

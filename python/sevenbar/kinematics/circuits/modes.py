@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -73,8 +74,9 @@ class Modes(Printed):
         At a dead centre two modes are one, which a solver finds twice, apart by the root of its rounding.
         """
         # no two poses are near whose sums are not: most often that is all there is to compute
-        sums = np.sort(np.cos(self.q).sum(axis=1))
-        if (sums[1:] - sums[:-1] > ONE_POSE * len(self.columns) * max(size, 1.0)).all():
+        sums = sorted(np.cos(self.q).sum(axis=1).tolist())
+        least = ONE_POSE * len(self.columns) * max(size, 1.0)
+        if all(after - before > least for before, after in pairwise(sums)):
             return self
         turns = np.array([loop.turns(name) for name in self.columns])
         apart = self.q[:, None] - self.q

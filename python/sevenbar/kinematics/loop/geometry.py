@@ -204,7 +204,7 @@ class Loop(Drawable):
     def turns(self, column: int | str) -> bool:
         """Whether a column, by its number or name, is an angle, not a length."""
         place = self.columns.index(column) if isinstance(column, str) else column
-        return bool(self.turning[place])
+        return self.column_kinds[place] == "turn"
 
     def unit_of(self, column: int | str) -> str:
         """The unit of a column's values, by its number or name: "rad", or the length unit."""
@@ -240,7 +240,7 @@ class Loop(Drawable):
 
     def input_column(self, name: str | None = None, key: str = "input") -> int:
         """The place of the input's column: that named by the caller under a key, or the drive's."""
-        return self.column(self.drive.joint if name is None else name, key)
+        return self.columns.index(self.drive.joint) if name is None else self.column(name, key)
 
     def end_columns(self, input: str | None = None, output: str | None = None) -> tuple[int, int]:
         """The places of the columns of input and output, those named or the drive's; two different ones."""

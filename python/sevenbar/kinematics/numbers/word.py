@@ -182,8 +182,7 @@ def word_of(
             own = [WordStep(step.letter, i, (c,)) for c, step in zip(columns, row.steps, strict=True)]
             inner.append(_inner(kinds, slots, i, row))
         freedoms.append(tuple(own))
-    shape = {"rssr": _rssr, "rows": _rows, "planar": _planar, "drawn": _drawn}[form]
-    return Word(slots, *shape(kinds, slots), tuple(freedoms), tuple(inner))
+    return Word(slots, *outer_of(form, kinds, slots), tuple(freedoms), tuple(inner))
 
 
 def _rows_of(form: Form, kinds: Sequence[str]) -> list[JointKind]:
@@ -212,6 +211,12 @@ def holding_axis(
 
 
 _Outer = tuple[Product, tuple[Product, ...], Product, tuple[Product, ...]]
+
+
+def outer_of(form: Form, kinds: Sequence[str], slots: Slots) -> _Outer:
+    """What is fixed in the word of a form: `base`, `links`, `ground` and `frames` of points."""
+    shape = {"rssr": _rssr, "rows": _rows, "planar": _planar, "drawn": _drawn}[form]
+    return shape(kinds, slots)
 
 
 def _rssr(kinds: Sequence[str], slots: Slots) -> _Outer:

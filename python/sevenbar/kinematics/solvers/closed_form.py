@@ -56,12 +56,10 @@ class ClosedForm:
         law: tuple[Floats, ...] | None,
     ) -> Output:
         """Both branches of the other side at many inputs."""
-        results = [np.empty((2, values.size)) for _ in range(order + 1)]
         try:
-            self._core.outputs(values, results, _side(column), speed, law)
+            return Output(*self._core.outputs(values, order, _side(column), speed, law))
         except _core.CoreError as error:
             raise RequestError(str(error)) from None
-        return Output(*results)
 
     def modes(self, column: int, value: float) -> Modes:
         """Both ways to assemble it at one input."""

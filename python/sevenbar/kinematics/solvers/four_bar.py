@@ -40,7 +40,7 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     columns = [loop.columns[c] for c in parts.columns]
     found = in_plane(loop)
     if found is None:
-        if sphere_of(loop) is None or parts.letters != "RRRR":
+        if parts.letters != "RRRR" or sphere_of(loop) is None:
             return None
         moves: tuple[int, ...] = (0, 1, 2, 3)
     elif found.held is not None and loop.in_rows:

@@ -15,8 +15,8 @@ from sevenbar.drawing.figure import FORMATS as FIGURES
 from sevenbar.errors import RequestError
 from sevenbar.export import FORMATS, Bodies, export
 from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.ranges.reach import Reach
 from sevenbar.reporting import report
-from sevenbar.studio.state.reach import Reach
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
 

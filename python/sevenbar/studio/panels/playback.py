@@ -6,10 +6,10 @@ from html import escape
 
 import numpy as np
 
+from sevenbar.kinematics.ranges.reach import Reach, within
 from sevenbar.studio.local_server import LocalServer
 from sevenbar.studio.panels.transport import CYCLE
 from sevenbar.studio.pictures.stage import FIELD, Stage
-from sevenbar.studio.state.reach import Reach, within
 from sevenbar.studio.state.verdict import facts_html
 from sevenbar.studio.state.view import View, views_of
 from sevenbar.studio.svg.curves import panels
@@ -73,5 +73,4 @@ def _rows(view: View, reach: Reach | None) -> list[float]:
     """The rows of the pictures, evenly in time."""
     if reach is None:
         return [view.row_at(float(time)) for time in np.linspace(0, view.period, PICTURES + 1)[:-1]]
-    way = np.linspace(*reach.times, PICTURES // 2 + 1)
-    return [reach.row_at(float(time)) for time in (*way[:-1], *way[:0:-1])]
+    return [float(row) for row in reach.forth_and_back(PICTURES)[0]]

@@ -11,9 +11,9 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import places_of, skeleton_of
 from sevenbar.drawing.style import ACCELERATION, CIRCUIT_COLOURS, VELOCITY
 from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.ranges.reach import within
 from sevenbar.studio.panels.controls import Asked, offer
 from sevenbar.studio.pictures.stage import FIELD, Stage
-from sevenbar.studio.state.reach import within
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
 

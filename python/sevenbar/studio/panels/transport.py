@@ -11,9 +11,9 @@ import viser
 
 from sevenbar.kinematics.circuits.poses import at_row
 from sevenbar.kinematics.loop.joint_text import joint_value
+from sevenbar.kinematics.ranges.reach import Reach, stopped_by
 from sevenbar.reporting.shown import value_text
 from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, offer, put
-from sevenbar.studio.state.reach import Reach, stopped_by
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import heading
 from sevenbar.studio.state.view import View

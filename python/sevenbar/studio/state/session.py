@@ -12,9 +12,9 @@ from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Place
+from sevenbar.kinematics.ranges.reach import Reach, reaches, stopped_by, within
 from sevenbar.reporting.facts import meaning
 from sevenbar.studio.state.acting import SwitchedLoading
-from sevenbar.studio.state.reach import Reach, reaches, stopped_by, within
 from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
 
 #: Inputs in a full turn.
@@ -112,7 +112,7 @@ class Session:
         """Has the linkage stop at its stops, or go through; a place beyond one goes to the nearest within."""
         self.held = held
         if self.reaches and self.reach is None:
-            view, last = self.reaches[0].view, len(self.reaches[0].view.path.rows) - 1
+            view, last = self.reaches[0].way, len(self.reaches[0].way.path.rows) - 1
 
             def apart(row: float) -> float:
                 gap = abs(row - self.row)

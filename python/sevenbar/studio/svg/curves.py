@@ -18,7 +18,7 @@ from sevenbar.drawing.ticks import FLAT
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.extents import Flags
 from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.studio.state.reach import within
+from sevenbar.kinematics.ranges.reach import within
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.panel import Panel
 from sevenbar.studio.svg.picture import (

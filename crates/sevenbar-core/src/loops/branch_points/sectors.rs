@@ -5,6 +5,7 @@
 use super::locating::Branching;
 use super::survey::{Infinite, Survey};
 use crate::loops::equation::closure::{Slides, Solution, UNKNOWNS};
+use crate::loops::equation::rotations::short_way;
 use crate::loops::modes::circle::{Circle, InputClosure};
 use crate::loops::modes::continuation::Place;
 use crate::loops::modes::many_starts::SAME_MODE;
@@ -225,8 +226,7 @@ pub(super) fn within(angle: f64, from: f64, to: f64) -> bool {
 
 /// Distance of two angles [rad], modulo whole turns.
 pub(super) fn apart(a: f64, b: f64) -> f64 {
-    let off = (a - b).rem_euclid(TAU);
-    off.min(TAU - off)
+    short_way(a - b).abs()
 }
 
 /// Square of the distance of two solutions, the greatest of all unknowns' [relative to their values].

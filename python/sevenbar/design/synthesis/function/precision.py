@@ -19,6 +19,9 @@ linear in five numbers that are free of each other, as many as the ratios of the
 Zeros count mod pi: half a turn of u is L1 < 0. A point reflection of the linkage (M, N, D negative, both
 zeros half a turn on) has the same function; of the two the one with M >= 0 is kept.
 
+`sevenbar.design.exact.function` has axes at any angle, and all linkages that there are; this has starts for a
+search, a thousand at a time, so each solves its own form of the closure.
+
 Source: docs/theory_design.md, (23) to (25).
 """
 

@@ -8,21 +8,22 @@ from functools import cached_property
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits.extents import Flags
+from sevenbar.kinematics.circuits.timed_walk import SAME_ROW, TimedWalk
 from sevenbar.kinematics.paths.circuit_path import NotFollowedError
-from sevenbar.studio.state.view import SAME_ROW, View
 
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """A stretch of a view's path from row `low` to row `high`, within all stops.
+    """A stretch of a walk from row `low` to row `high`, within all stops.
 
     On a closed circuit `high` may be greater than the last row: the stretch then goes on over the end.
     `first_stop` and `last_stop` say what ends it: "range of rocker", "cone of ball_a", "links 1 and 3"; empty
     where the circuit itself ends.
     """
 
-    view: View
+    way: TimedWalk
     low: float
     high: float
     first_stop: str
@@ -31,7 +32,7 @@ class Reach:
     @property
     def _round(self) -> float:
         """Rows of a whole cycle of a closed circuit."""
-        return float(len(self.view.path.rows) - 1)
+        return float(len(self.way.path.rows) - 1)
 
     def holds(self, row: float) -> bool:
         """Whether a row of the path lies on the stretch, its ends with it."""
@@ -39,7 +40,7 @@ class Reach:
 
     def unrolled(self, row: float) -> float:
         """A row counted on from the stretch's first, over the end of a closed circuit."""
-        if not self.view.circuit.closed or row >= self.low - SAME_ROW:
+        if not self.way.circuit.closed or row >= self.low - SAME_ROW:
             return row
         return row + self._round
 
@@ -54,7 +55,7 @@ class Reach:
     def time_at(self, row: float) -> float:
         """The time [s] of a row that is counted as `unrolled` does."""
         over = row > self._round
-        return self.view.time_at(self.rolled(row)) + (self.view.period if over else 0.0)
+        return self.way.time_at(self.rolled(row)) + (self.way.period if over else 0.0)
 
     @cached_property
     def times(self) -> tuple[float, float]:
@@ -66,7 +67,14 @@ class Reach:
         first, last = self.times
         if not first < time < last:
             return self.rolled(self.low if time <= first else self.high)
-        return self.view.row_at(time)
+        return self.way.row_at(time)
+
+    def forth_and_back(self, pictures: int) -> tuple[Floats, Floats]:
+        """The rows of so many pictures, evenly in time, from stop to stop and back; and their times [s]."""
+        first, last = self.times
+        share = 2 * np.arange(pictures) / pictures
+        times = first + (last - first) * np.minimum(share, 2 - share)
+        return np.array([self.row_at(float(time)) for time in times]), (last - first) * share
 
     def stop_at(self, row: float) -> str:
         """The stop at which a row of the path is; empty between the stops."""
@@ -77,49 +85,49 @@ class Reach:
         return self.first_stop if abs(place - self.low) <= SAME_ROW else ""
 
 
-def within(view: View) -> Flags:
-    """Whether the rows of a view's path are within the stops of its linkage (n,); where unknown they are."""
+def within(way: TimedWalk) -> Flags:
+    """Whether the rows of a walk are within the stops of its linkage (n,); where unknown they are."""
     try:
-        return np.asarray(view.circuit.allowed.within[view.path.rows])
+        return np.asarray(way.circuit.allowed.within[way.path.rows])
     except NotFollowedError:
-        return np.ones(len(view.path.rows), dtype=bool)
+        return np.ones(len(way.path.rows), dtype=bool)
 
 
-def stopped_by(view: View, row: float) -> str:
-    """Which stops forbid the row of the circuit nearest to a row of a view's path; empty where none does."""
+def stopped_by(way: TimedWalk, row: float) -> str:
+    """Which stops forbid the row of the circuit nearest to a row of a walk; empty where none does."""
     try:
-        return str(view.circuit.allowed.stopped_by[view.path.rows[round(row)]])
+        return str(way.circuit.allowed.stopped_by[way.path.rows[round(row)]])
     except NotFollowedError:
         return ""
 
 
-def reaches(view: View) -> tuple[Reach, ...]:
-    """The stretches of a view's path within all stops, none where nothing, or everything, is stopped."""
-    if not view.linkage.stops.stops or (free := within(view)).all() or not free.any():
+def reaches(way: TimedWalk) -> tuple[Reach, ...]:
+    """The stretches of a walk within all stops, none where nothing, or everything, is stopped."""
+    if not way.linkage.stops.stops or (free := within(way)).all() or not free.any():
         return ()
-    allowed, last = view.circuit.allowed, len(free) - 1
+    allowed, last = way.circuit.allowed, len(free) - 1
     ends = [
         (row, stop)
         for span in allowed.spans
         for value, stop in ((span.start, span.first_stop), (span.end, span.last_stop))
-        for row in (view.rows_at(value) if stop else ())
+        for row in (way.rows_at(value) if stop else ())
     ]
 
     def end(inside: int, outside: int) -> tuple[float, str]:
         """Where the path leaves the stops between two neighbouring rows, and by which stop."""
         if not 0 <= outside <= last:
             return float(inside), ""
-        names = str(allowed.stopped_by[view.path.rows[outside]])
+        names = str(allowed.stopped_by[way.path.rows[outside]])
         low = min(inside, outside)
         met = (one for one in ends if low <= one[0] <= low + 1 and one[1] in names.split(", "))
         return next(met, (float(inside), names))
 
     found = []
-    for first, past in _runs(free, closed=view.circuit.closed):
+    for first, past in _runs(free, closed=way.circuit.closed):
         laps = last if past - 1 > last else 0
         low, first_stop = end(first, first - 1)
         high, last_stop = end(past - 1 - laps, past - laps)
-        found.append(Reach(view, low, high + laps, first_stop, last_stop))
+        found.append(Reach(way, low, high + laps, first_stop, last_stop))
     return tuple(found)
 
 

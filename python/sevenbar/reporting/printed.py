@@ -1,0 +1,87 @@
+"""The pages of a motion and of assembly modes as rich prints them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
+from rich.table import Table
+from rich.text import Text
+
+from sevenbar.kinematics.circuits.modes import Modes
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.reporting.facts import completeness_text
+from sevenbar.reporting.how_found import left_open
+from sevenbar.reporting.page import Facts
+from sevenbar.reporting.shown import value_text
+from sevenbar.reporting.summary import GAP, Sheet, modes_sheets, summary
+from sevenbar.text.words import language, say, spoken
+
+
+class _Page:
+    """A page that is laid out for the width in which it is printed, in the language it was made in."""
+
+    def __init__(self, parts: Callable[[int], Iterable[RenderableType]]) -> None:
+        self.parts, self.language = parts, spoken()
+
+    def __rich_console__(self, _console: Console, options: ConsoleOptions) -> RenderResult:
+        with language(self.language):
+            made = list(self.parts(options.max_width))
+        yield from made
+
+
+def motion_page(motion: Motion, *, ranges: bool = False) -> RenderableType:
+    """The report of a motion; angles in degrees; with `ranges` of all joints."""
+
+    def parts(width: int) -> Iterator[RenderableType]:
+        page = summary(motion, width, ranges=ranges)
+        facts = Facts()
+        facts.add_all(page.facts, bold=[say("motion type")])
+        yield Text(page.title, style="bold underline")
+        yield facts.grid
+        for sheet in page.sheets:
+            yield Text()
+            yield _table(sheet)
+            if sheet.note:
+                yield Text(sheet.note, style="dim")
+
+    return _Page(parts)
+
+
+def modes_page(linkage: Loop, column: int, modes: Modes) -> RenderableType:
+    """All assembly modes at a value of a column, a row each."""
+
+    def parts(width: int) -> Iterator[RenderableType]:
+        yield Text(linkage.heading, style="bold underline")
+        count = len(modes)
+        yield Text(
+            say(
+                "{count} assembly mode{s} at {joint} = {value}, {completeness}",
+                count=count or say("no"), s="s" * (count != 1), joint=linkage.columns[column],
+                value=value_text(linkage, column, modes.input),
+                completeness=completeness_text(modes.completeness, curve=modes.on_curve is not None),
+            )
+        )  # fmt: skip
+        if modes.open_by.size:
+            yield Text(left_open(modes.open_by, modes.agree))
+        for sheet in modes_sheets(linkage, modes, width) if count else ():
+            yield Text()
+            yield _table(sheet)
+
+    return _Page(parts)
+
+
+def _table(sheet: Sheet) -> Table:
+    # the box has a space of its own between columns
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, GAP - 1, 0, 0))
+    for place, head in enumerate(sheet.heads):
+        right = place in sheet.right
+        table.add_column(Text(head), justify="right" if right else "left", overflow="fold", no_wrap=right)
+    several = any("\n" in cell for row in sheet.rows for cell in row)
+    for row in sheet.rows:
+        table.add_row(*map(Text, row), end_section=False)
+        if several and row is not sheet.rows[-1]:
+            table.add_row()
+    return table
