@@ -209,6 +209,29 @@ def test_an_output_that_turns_back_by_a_hair_is_no_change_point() -> None:
     assert motion.motion_type == circuit.motion_type == "double-rocker"
 
 
+#: Loops of round numbers: joints, lengths, twists [deg], offsets. An upper limit of the input is a lower one, by symmetry.
+ROUND = [
+    ("RPRRRRR", (0, 2, 1, 0, 1.5, 2, 1.5), (60, -90, 180, -90, 0, 90, 60), (0.5, 0, 1, 0, 0.5, 0, 1)),
+    ("RRPRRPR", (1.5, 0, 0.5, 1, 2, 0, 1.5), (45, 0, 90, 180, 120, 0, 180), (1, 0, 0, 1, 0, 0, 0)),
+]
+
+
+@pytest.mark.parametrize(("kinds", "length", "twist", "offset"), ROUND)
+@pytest.mark.parametrize("off", [-1e-5, 0, 1e-5])
+def test_limits_that_are_equal_by_symmetry_join_nothing(
+    kinds: str, length: Sequence[float], twist: Sequence[float], offset: Sequence[float], off: float
+) -> None:
+    changed = (length[0] + off, *length[1:])
+    angles = [radians(t) for t in twist]
+    motion = sb.from_dh(kinds, length=changed, twist=angles, offset=offset).motion(SAMPLES)
+    ranges = sorted(circuit.input_range for circuit in motion)
+    # no circuit comes or goes, nor are two joined
+    assert len(ranges) == {"RPRRRRR": 2, "RRPRRPR": 3}[kinds]
+    assert off or abs(ranges[-1][0] - ranges[-2][1]) < 1e-9
+    assert motion.motion_type == "double-rocker"
+    assert not motion.change_points
+
+
 @pytest.mark.parametrize("crank", [1e-3, 1e-6, 1e-7])
 def test_a_crank_that_moves_its_rocker_by_a_hair_stays_a_crank(crank: float) -> None:
     linkage = sb.four_bar(ground=1, crank=crank, coupler=1, rocker=1)

@@ -29,11 +29,18 @@ pub struct Circuit {
     pub(super) extent: f64,
 }
 
-/// Values at which a column turns back: the greatest near by, and the least.
+/// A value at which a column turns back, and the column's second derivative there by the length of the curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limit {
+    pub value: f64,
+    pub bend: f64,
+}
+
+/// The limits of a column: its greatest values near by, and its least.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Limits {
-    pub upper: Vec<f64>,
-    pub lower: Vec<f64>,
+    pub upper: Vec<Limit>,
+    pub lower: Vec<Limit>,
 }
 
 impl Limits {
@@ -41,12 +48,13 @@ impl Limits {
     fn of<'a>(turnings: impl Iterator<Item = &'a Node>, column: usize) -> Self {
         let mut limits = Self::default();
         for node in turnings {
-            let side = if node.rates[1][column] < 0.0 {
+            let limit = Limit { value: node.at.values[column], bend: node.rates[1][column] };
+            let side = if limit.bend < 0.0 {
                 &mut limits.upper
             } else {
                 &mut limits.lower
             };
-            side.push(node.at.values[column]);
+            side.push(limit);
         }
         limits
     }

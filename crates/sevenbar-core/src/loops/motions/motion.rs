@@ -1,6 +1,6 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
-use super::circuit::{Circuit, Limits, Wanted, circuit, grid};
+use super::circuit::{Circuit, Limit, Limits, Wanted, circuit, grid};
 use super::passes::Passes;
 use crate::loops::branch_points::counting::Uncounted;
 use crate::loops::circuits::curve::Curve;
@@ -20,6 +20,10 @@ const PUT_RIGHT: f64 = 0.05;
 /// A circuit of less extent [rad, or relative to the size] is an isolated pose but for a hair: its other joints move about as little as
 /// the one whose limits meet.
 const NEARLY_A_POSE: f64 = 1e-3;
+
+/// A second derivative of a column by the length of the curve [1/rad, or relative to the size] below which it rests at a limit: where
+/// curves part at a gap it is about half the gap, elsewhere about 1.
+const RESTING: f64 = 1e-4;
 
 /// A pose at which curves meet, or an isolated pose.
 #[derive(Clone, Debug)]
@@ -140,26 +144,28 @@ pub fn motion(
     })
 }
 
-/// Whether less than `SAME_LIMIT` parts two limits of the input, or of the output, `turns` saying which of these turn.
+/// Whether a gap of less than `SAME_LIMIT` parts two limits of the input, or of the output, at both of which it hardly moves while other
+/// joints do, or a circuit is as narrow; `turns` says which of the two turn.
 ///
-/// Between an upper limit and a lower one nothing closes, and it takes next to nothing to join the two, be they far apart in the other
-/// joints, as next to a kite folded flat; and a whole circuit may be as narrow. Of two limits on one curve that overlap, where a joint
-/// hesitates and turns back a little, nothing depends.
+/// Next to a kite folded flat the other joints nearly move with the input at rest, from one limit to the other, and it takes next to nothing
+/// to join these. Limits that are equal otherwise, as by symmetry, or overlap where an output dwells, join nothing.
 fn limits_meet(circuits: &[Circuit], turns: [bool; 2]) -> bool {
     (0..2).any(|k| {
         let all = || circuits.iter().map(|c| &c.limits[k]);
+        let resting = |limit: &&Limit| limit.bend.abs() < RESTING;
         let gap = |upper: f64, lower: f64| {
             let apart = lower - upper;
             if turns[k] { short_way(apart) } else { apart }
         };
-        let nearly_joined = all().flat_map(|l| &l.upper).any(|&upper| {
+        let nearly_joined = all().flat_map(|l| &l.upper).filter(resting).any(|upper| {
             all()
                 .flat_map(|l| &l.lower)
-                .any(|&lower| (0.0..SAME_LIMIT).contains(&gap(upper, lower)))
+                .filter(resting)
+                .any(|lower| (0.0..SAME_LIMIT).contains(&gap(upper.value, lower.value)))
         });
         let nearly_nothing = circuits.iter().filter(|c| c.extent < NEARLY_A_POSE).any(|c| {
             let Limits { upper, lower } = &c.limits[k];
-            matches!((upper.as_slice(), lower.as_slice()), (&[up, ..], &[low, ..]) if up - low < SAME_LIMIT)
+            matches!((upper.as_slice(), lower.as_slice()), (&[up, ..], &[low, ..]) if up.value - low.value < SAME_LIMIT)
         });
         nearly_joined || nearly_nothing
     })
