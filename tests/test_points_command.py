@@ -1,6 +1,8 @@
 """`sevenbar design point` and `sevenbar design inertia`: what they print, write, and say of mistakes."""
 
+import contextlib
 import csv
+import io
 import json
 import re
 from pathlib import Path
@@ -8,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import typer
-from typer.testing import CliRunner
 
 import sevenbar as sb
 from sevenbar.commands.points import inertia, point
@@ -24,12 +25,16 @@ app.command()(inertia)
 CUBE = "--box=-200:200,-200:200,-200:200"
 
 
+@pytest.fixture(autouse=True)
+def width(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+
+
 def run(*words):
-    result = CliRunner().invoke(app, [str(word) for word in words], env={"COLUMNS": "100"})
-    if result.exception is not None and not isinstance(result.exception, SystemExit):
-        raise result.exception
-    assert result.exit_code == 0, result.output
-    return result.stdout
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out):
+        assert not app([str(word) for word in words], standalone_mode=False)
+    return out.getvalue()
 
 
 def rows(path):

@@ -60,6 +60,8 @@ def _allowed(key: dict[str, Any]) -> str:
         return " ".join(code(f'"{word}"') for word in key["enum"])
     if "$ref" in key:
         return "table"
+    if "allOf" in key:  # so pydantic 2.8 writes a table that has a description of its own
+        return " and ".join(map(_allowed, key["allOf"]))
     if "anyOf" in key:
         return " or ".join(map(_allowed, key["anyOf"]))
     if key["type"] == "array":

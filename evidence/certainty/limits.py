@@ -9,6 +9,7 @@ Source: the cosine laws of plane and sphere; Sun and Zhou, eq. (5).
 from __future__ import annotations
 
 import itertools
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -69,7 +70,10 @@ def _times(a: list[Any], b: list[Any]) -> list[Any]:
 def _roots(u: list[Any], v: list[Any], w: list[Any]) -> Limits:
     squares = zip(_times(u, u), _times(v, v), _times(w, w), strict=True)
     rising = [a + b - c for a, b, c in squares]
-    found = mp.polyroots(rising[::-1], maxsteps=500, extraprec=600)
+    with warnings.catch_warnings():
+        # mpmath 1.4 wants the order of the coefficients in words that 1.3 does not know
+        warnings.simplefilter("ignore", DeprecationWarning)
+        found = mp.polyroots(rising[::-1], maxsteps=500, extraprec=600)
     return [-1j * mp.log(z) for z in found if z]
 
 
