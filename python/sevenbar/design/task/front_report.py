@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -80,7 +80,8 @@ def _write_table(found: FrontFound, path: Path) -> None:
 def _text(found: FrontFound) -> RenderableType:
     front = found.front
     facts = Facts()
-    facts.add_all(task_facts(found.task), bold=["wanted"])
+    # whatever the goal of the task
+    facts.add_all(task_facts(replace(found.task, goal="minimax")), bold=["wanted"])
     both = " and ".join(str(place + 1) for place in front.wants)
     facts.add(
         "front", f"of wants {both}: {len(front.points)} points of {front.solved} searches, seed {found.seed}"
@@ -122,13 +123,12 @@ def front_figure(found: FrontFound) -> Any:
     with styled():
         figure = page_figure(6.4, 5.2, pads=(0.05, 0.06))
         axes = figure.subplots()
-        axes.plot(values[:, 0], values[:, 1], color=COMPUTED, lw=1.0, marker="o", ms=5.0, mfc="white")
+        axes.plot(values[:, 0], values[:, 1], color=COMPUTED, lw=0.8, ls=":", marker="o", ms=5.0, mfc="white")
         for i, (x, y) in enumerate(values, 1):
             axes.annotate(str(i), (x, y), xytext=(5, 5), textcoords="offset points")
-        linkage = front.task.draft.linkage
         labels = [
-            f"{short(want_words(front.task.wants[place], linkage), 70)}" + (f"\n[{unit}]" if unit else "")
-            for place, (_, unit) in zip(front.wants, found.axes, strict=True)
+            _label(front.task, place, name, unit)
+            for place, (name, unit) in zip(front.wants, found.axes, strict=True)
         ]
         axes.set_xlabel(labels[0])
         axes.set_ylabel(labels[1])
@@ -136,3 +136,11 @@ def front_figure(found: FrontFound) -> Any:
         axes.grid(lw=0.6)
         headline(figure, f"{short(found.name, 60)}\n{say('none is better in both')}")
     return figure
+
+
+def _label(task: DesignTask, place: int, name: str, unit: str) -> str:
+    """What an axis says: the measure, or the greatest error and of what."""
+    want, own = task.wants[place], f" [{unit}]" if unit else ""
+    if isinstance(want, FigureWant):
+        return f"{name.replace('_', ' ')}{own}"
+    return f"greatest error of want {place + 1}{own}\n{short(want_words(want, task.draft.linkage), 62)}"
