@@ -208,7 +208,8 @@ def test_the_paper_s_loop_has_no_branch_point() -> None:
         motion.search.count.dead_centres,
         motion.search.count.complex_branch_points,
         motion.search.count.open,
-    ) == (0, 0, ())
+        motion.search.count.circles,
+    ) == (0, 0, (), 1)
 
 
 def test_the_count_is_of_all_dead_centres_of_its_joint() -> None:

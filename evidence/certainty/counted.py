@@ -45,6 +45,7 @@ def searched(draw: Callable[[np.random.Generator], sb.Linkage]) -> Judge:
         count = motion.search.count
         seen["complex branch points"] += count.complex_branch_points if count else 0
         seen["poles"] += count.poles if count else 0
+        seen["accounts from more than one circle"] += bool(count and count.circles > 1)
         hold(not lost, f"{lost} modes of the search lie on no circuit")
         hold(motion.completeness == "counted", f"{motion.completeness}: {left_open(motion)}")
 

@@ -26,8 +26,8 @@ ASKED = {
         f"points closes in every range; and all modes at each of {counted.INPUTS} inputs, found without "
         f"regard to circuits, must lie on one, to {counted.ON_CIRCUIT:g} rad. A slide as input is driven "
         f"over {2 * counted.FAR_INPUT:g} sizes, and modes with slides beyond {counted.FARTHEST:g} sizes "
-        "are left out, since circuits are followed to 50. How many accounts needed a second circle the "
-        "result does not say."
+        "are left out, since circuits are followed to 50. An account takes another circle where a mode is "
+        "lost on one, or a range does not balance."
     ),
     changes.PART: (
         "Linkages with change points: the motion type must be `change-point` where two limits of the "

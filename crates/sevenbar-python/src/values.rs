@@ -178,6 +178,7 @@ pub(crate) struct RawCount {
     dead_centres: usize,
     complex_branch_points: usize,
     poles: usize,
+    circles: usize,
     open: Vec<(f64, f64, Option<i64>)>,
 }
 
@@ -188,6 +189,7 @@ impl From<Count> for RawCount {
             dead_centres: count.dead_centres,
             complex_branch_points: count.complex_branch_points,
             poles: count.poles,
+            circles: count.circles,
             open: count.open.iter().map(|o| (o.from, o.to, o.missing)).collect(),
         }
     }

@@ -52,6 +52,7 @@ def search_from(raw: _core.RawSearch, columns: Sequence[str]) -> Search:
             count.dead_centres,
             count.complex_branch_points,
             count.poles,
+            count.circles,
             tuple(OpenRange(*each) for each in count.open),
         ),
         uncounted=raw.uncounted,

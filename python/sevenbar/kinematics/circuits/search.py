@@ -34,6 +34,9 @@ class Count:
     complex_branch_points: int
     #: Joints, of those watched, that become infinite near the real values; kept out of the count.
     poles: int
+    #: Circles of complex values along which all modes were followed; another where one was lost, or a range
+    #: did not balance.
+    circles: int
     #: Ranges that do not balance; none where circuits are `counted`.
     open: tuple[OpenRange, ...]
 

@@ -69,6 +69,8 @@ pub struct Count {
     pub complex_branch_points: usize,
     /// Joints, of those watched, that become infinite within the first circle; kept out by a path nearer to the real inputs.
     pub poles: usize,
+    /// Circles that were followed, one after the other, while a solution was lost or ranges did not balance.
+    pub circles: usize,
     /// Ranges that do not balance, none where all do.
     pub open: Vec<Open>,
 }
@@ -129,7 +131,7 @@ pub(crate) fn count(
     };
     let mut followed = Some(circle);
     let mut count: Option<Count> = None;
-    for &radius in &RADII {
+    for (before, &radius) in RADII.iter().enumerate() {
         let circle = followed
             .take()
             .unwrap_or_else(|| survey.algebraic.circle(&closure, radius, places, CAREFUL));
@@ -148,6 +150,7 @@ pub(crate) fn count(
         count.dead_centres = account.known.dead_centres.len();
         count.complex_branch_points = account.located.iter().filter(|b| !b.real).count();
         count.poles = count.poles.max(poles as usize);
+        count.circles = before + 1;
         // with what was located the ways down of the next circle are others
         let on_way = |o: &Open| [o.from, o.to].iter().any(|at| is_on_way(&account.located, *at));
         if count.open.iter().all(|o| o.to - o.from < WIDE && !on_way(o)) {
