@@ -66,16 +66,16 @@ def printed(command, folder):
     return [line.rstrip() for line in text.strip("\n").splitlines()]
 
 
-def alike(shown, told):
+def alike(shown, today):
     """Whether two lines say the same: words equal, numbers to two of their last places, errors to their size."""
     version = re.compile(r"(Exudyn|MuJoCo) [\d.]+")
-    shown, told = (version.sub(r"\1", line) for line in (shown, told))
-    if [*re.split(NUMBER, shown.replace(" ", ""))] != [*re.split(NUMBER, told.replace(" ", ""))]:
+    shown, today = (version.sub(r"\1", line) for line in (shown, today))
+    if [*re.split(NUMBER, shown.replace(" ", ""))] != [*re.split(NUMBER, today.replace(" ", ""))]:
         return False
     if "[" in shown and "e-" in shown:
         # where an error of an engine is greatest depends on its rounding
-        shown, told = (re.sub(r"[\d.]+°", "°", line) for line in (shown, told))
-    for one, other in zip(re.findall(NUMBER, shown), re.findall(NUMBER, told), strict=True):
+        shown, today = (re.sub(r"[\d.]+°", "°", line) for line in (shown, today))
+    for one, other in zip(re.findall(NUMBER, shown), re.findall(NUMBER, today), strict=True):
         if "e" in one + other:
             first, second = (max(abs(float(text)), ROUNDING) for text in (one, other))
             if not 1 / 10 < first / second < 10:

@@ -34,8 +34,8 @@ class Count:
     complex_branch_points: int
     #: Joints, of those watched, that become infinite near the real values; kept out of the count.
     poles: int
-    #: Circles of complex values along which all modes were followed; another where one was lost, or a range
-    #: did not balance.
+    #: Circles of complex values tried for it, up to the last along which no mode was lost; another where one
+    #: was, or a range did not balance.
     circles: int
     #: Ranges that do not balance; none where circuits are `counted`.
     open: tuple[OpenRange, ...]

@@ -69,7 +69,8 @@ pub struct Count {
     pub complex_branch_points: usize,
     /// Joints, of those watched, that become infinite within the first circle; kept out by a path nearer to the real inputs.
     pub poles: usize,
-    /// Circles that were followed, one after the other, while a solution was lost or ranges did not balance.
+    /// Circles that were tried, one after the other, up to the last that ranges were balanced on: another where a solution was lost, or
+    /// a range did not balance.
     pub circles: usize,
     /// Ranges that do not balance, none where all do.
     pub open: Vec<Open>,

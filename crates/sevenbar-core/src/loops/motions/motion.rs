@@ -17,8 +17,8 @@ use crate::loops::modes::polish::{Settled, polish};
 /// How far a joint of a given pose [rad, or relative to the size] may be moved to close the loop.
 const PUT_RIGHT: f64 = 0.05;
 
-/// A circuit of less extent [rad, or relative to the size] is an isolated pose but for a hair: its other joints move about as little as
-/// the one whose limits meet.
+/// A circuit of less extent [rad, or relative to the size] is nearly an isolated pose: its other joints move about as little as the one
+/// whose limits meet.
 const NEARLY_A_POSE: f64 = 1e-3;
 
 /// A second derivative of a column by the length of the curve [1/rad, or relative to the size] below which it rests at a limit: where
