@@ -409,6 +409,7 @@ def test_the_least_greatest_error_up_to_a_must_is_that_of_the_law_of_cosines(mus
     assert design.optimality < 1e-11
 
 
+@pytest.mark.slow
 def test_a_design_that_ends_where_its_motion_type_changes_says_so():
     values = {"length_1": 64.0, "length_2": 61.0, "length_3": 87.1}
     start = Draft.of_linkage(sb.load("planar_4r")).with_values(values)

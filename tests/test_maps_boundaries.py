@@ -35,9 +35,9 @@ GENERAL = {"M": 700, "N": 700, "L1": 250, "L2": 1000, "L3": 550, "D": 100}
 
 FAST = {
     "the paper's crank and rocker": Case(PAPER, {"L1": (100, 1400), "L3": (200, 1500)}, follow=("L2",)),
-    "crank and coupler": Case(GENERAL, {"L1": (50, 1800), "L2": (50, 3000)}),
 }
 SLOW = {
+    "crank and coupler": Case(GENERAL, {"L1": (50, 1800), "L2": (50, 3000)}),
     "the paper's axes": Case(PAPER, {"M": (-1000, 1400), "N": (-1000, 1500)}, follow=("L2",)),
     "the paper's axes, rocker driving": Case(
         PAPER, {"M": (-1000, 1400), "D": (-1000, 1500)}, "rocker", ("L2",)
@@ -208,6 +208,7 @@ def test_the_same_rule_bounds_the_wedges_over_both_axes():
     assert off[np.abs(M) > 0.1].max() < 1e-6
 
 
+@pytest.mark.slow
 def test_the_loop_fails_to_close_where_the_coupler_is_the_least_or_the_greatest_distance_of_the_circles():
     of = made("crank and coupler")
     number = of.kinds.index(Kind("cannot-assemble", 0))
@@ -285,6 +286,7 @@ def stationary_distance(d: dict[str, float], start: np.ndarray) -> float | None:
     return float(distance(d, *at)) if np.abs(slope(*at)).max() < 1e-7 * scale else None
 
 
+@pytest.mark.slow
 def test_where_no_critical_distance_is_near_the_coupler_the_type_is_one_all_over_a_square():
     of = made("crank and coupler")
     rng = np.random.default_rng(11)

@@ -185,7 +185,7 @@ TWELVE_DIGITS_BELOW = {"square": 1e4, "drawn": 1e3}
 
 @pytest.fixture(scope="module", params=["few", pytest.param("many", marks=pytest.mark.slow)])
 def amount(request: pytest.FixtureRequest) -> int:
-    return {"few": 20, "many": 70}[request.param]
+    return {"few": 10, "many": 70}[request.param]
 
 
 @pytest.fixture(scope="module", params=["square", "drawn"])

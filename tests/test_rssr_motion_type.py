@@ -71,7 +71,7 @@ class Case:
 
 @pytest.fixture(scope="module", params=["some", pytest.param("many", marks=pytest.mark.slow)])
 def cases(request: pytest.FixtureRequest) -> list[Case]:
-    count = {"some": 100, "many": 750}[request.param]
+    count = {"some": 50, "many": 750}[request.param]
     made = []
     for description in random_linkages(count, count):
         linkage, reference = description.linkage(), description.reference()

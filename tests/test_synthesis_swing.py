@@ -63,6 +63,7 @@ def test_newtons_steps_bring_a_design_back_to_its_swing(branch):
     np.testing.assert_array_equal(polish.exact(z + 5.0), z + 5.0)
 
 
+@pytest.mark.slow
 def test_a_swing_beyond_half_a_turn_is_no_swing_the_other_way_round():
     """The output's difference counts along the way to the high end, not by the short way round."""
     found = swing_generation(math.radians(200), 1.0, limits=Limits(), count=1)
