@@ -8,6 +8,8 @@ PYTHON ?= python3
 VENV ?= .venv
 DIST ?= dist
 BIN := $(VENV)/bin
+# beside it may be those of a release, for other machines
+NEWEST_WHEEL = $$(ls -t "$(DIST)"/sevenbar-*.whl | head -1)
 # a stale Cargo.lock is mended on a desk and refused in CI
 LOCKED := $(if $(CI),--locked)
 # on all cores
@@ -92,7 +94,7 @@ oldest: wheel  ## The fast tests with the oldest versions of all dependencies th
 	rm -rf "$(VENV)-oldest"
 	$(PYTHON) -m venv "$(VENV)-oldest"
 	$(BIN)/python tests/oldest_versions.py >"$(VENV)-oldest/versions.txt"
-	$(VENV)-oldest/bin/pip install -r "$(VENV)-oldest/versions.txt" "$(DIST)"/*.whl \
+	$(VENV)-oldest/bin/pip install -r "$(VENV)-oldest/versions.txt" "$(NEWEST_WHEEL)" \
 	  hypothesis mpmath nbformat playwright pytest pytest-xdist yourdfpy
 	$(VENV)-oldest/bin/pytest -n auto --dist worksteal -m "not slow and not proof" -o filterwarnings= \
 	  $(foreach name,docs_reference docs_site export_solids layers step_axes,--ignore tests/test_$(name).py)
@@ -102,7 +104,7 @@ oldest: wheel  ## The fast tests with the oldest versions of all dependencies th
 .PHONY: bench
 bench: wheel  ## Sevenbar beside its peers, installed one by one: docs/benchmarks.md
 	$(PYTHON) -m venv --clear build/bench
-	build/bench/bin/pip install "$$(ls -t "$(DIST)"/sevenbar-*.whl | head -1)[studio]"
+	build/bench/bin/pip install "$(NEWEST_WHEEL)[studio]"
 	build/bench/bin/python -m evidence.benches --install $(BENCH)
 
 .PHONY: accuracy
