@@ -25,40 +25,31 @@ class Curve(Protocol):
     @property
     def rows(self) -> Floats:
         """Its values (n,) or (n, k) at the rows from which it is made."""
-        ...
 
     def squared(self) -> Curve:
         """The square of a number, the squared length of a vector."""
-        ...
 
     @property
     def tail(self) -> float:
         """What may lie between the rows unseen, as a part of the greatest value; NaN where nobody knows."""
-        ...
 
     def part(self, columns: int | tuple[int, ...]) -> Curve:
         """One column of a vector as a number, or some as a vector."""
-        ...
 
     def extremes(self) -> tuple[Floats, Floats]:
         """Inputs and values (m,) of all local extremes of a number, in order; at jumps of both sides."""
-        ...
 
     def highest(self) -> Peak:
         """The highest value of a number."""
-        ...
 
     def lowest(self) -> Peak:
         """The lowest value of a number."""
-        ...
 
     def mean_of(self, function: Callable[[Floats], Floats]) -> float:
         """The mean over the cycle of a function of the values, which takes and gives (m,)."""
-        ...
 
     def running(self) -> Curve:
         """The integral along the cycle of a number less its mean: it ends where it begins."""
-        ...
 
 
 def mean(curve: Curve) -> float:

@@ -98,6 +98,10 @@ class CycleSeries:
         last = self.spectrum[-max(2, len(self.spectrum) // TAIL_PART) :]
         return float(np.abs(last).max() / self.scale) if self.scale else 0.0
 
+    @property
+    def _is_constant(self) -> bool:
+        return float(np.abs(self.waves[1:]).max(initial=0.0)) <= CONSTANT * self.scale
+
     def part(self, columns: int | tuple[int, ...]) -> CycleSeries:
         """One column of a vector as a number, or some as a vector."""
         return CycleSeries(self.rows[:, columns], self.first, self.period)
@@ -120,7 +124,7 @@ class CycleSeries:
 
     def extremes(self) -> tuple[Floats, Floats]:
         """Inputs and values (m,) of all local extremes, along the cycle; the first row of a constant."""
-        if float(np.abs(self.waves[1:]).max(initial=0.0)) <= CONSTANT * self.scale:
+        if self._is_constant:
             return np.array([self.first]), self.rows[:1]
         steps = FINE * len(self.rows)
         grid: Floats = np.asarray(self.first + self.period / steps * np.arange(steps), dtype=np.float64)
@@ -142,7 +146,7 @@ class CycleSeries:
         # nowhere between the finer rows it is higher by more than this
         more = float(np.abs(self.waves) @ turns**2) * (step / 2) ** 2 / 2
         tops = (grid >= np.roll(grid, 1)) & (grid > np.roll(grid, -1)) & (grid >= grid.max() - more)
-        if float(np.abs(self.waves[1:]).max(initial=0.0)) <= CONSTANT * self.scale or not tops.any():
+        if self._is_constant or not tops.any():
             return Peak(float(self.rows[0]), self.first)
         centres = np.asarray(self.first + step * np.flatnonzero(tops), dtype=np.float64)
         places = zeros_between(
@@ -170,11 +174,9 @@ class CycleSeries:
         def function(x: Floats) -> tuple[Floats, Floats]:
             return self.at(x, order), self.at(x, order + 1)
 
-        return (
-            zeros_between(function, edges[starts], ends[starts], signs[starts])
-            if starts.size
-            else np.empty(0)
-        )
+        if not starts.size:
+            return np.empty(0)
+        return zeros_between(function, edges[starts], ends[starts], signs[starts])
 
     def mean_of(self, function: Callable[[Floats], Floats]) -> float:
         """The mean of a function of the values, from `DENSE` times as many rows."""

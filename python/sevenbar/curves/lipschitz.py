@@ -40,25 +40,21 @@ def lowest(
     That is `small` at most, but where the search ended at `MOST`. Slopes are within `bounds` (m,); nowhere it
     is below `floor`. Of equal values the first place counts.
     """
-    a, b, slope = edges[:-1], edges[1:], bounds
     values = function(edges)
-    low, high = values[:-1], values[1:]
+    stretches = np.stack([edges[:-1], edges[1:], bounds, values[:-1], values[1:]])
     place, best = edges[int(values.argmin())], float(values.min())
     missed = 0.0
     for _ in range(HALVINGS):
+        a, b, slope, low, high = stretches
         reach = np.maximum((low + high - slope * (b - a)) / 2, floor)
         left = reach < best - small
         missed = max(0.0, best - float(reach.min(initial=math.inf)))
         if not left.any() or left.sum() > MOST:
             break
-        a, b, slope, low, high = a[left], b[left], slope[left], low[left], high[left]
-        middle = (a + b) / 2
-        between = function(middle)
+        stretches = _halved(function, stretches[:, left])
+        middle, _, _, between, _ = stretches[:, left.sum() :]
         if between.min() < best:
             place, best = middle[int(between.argmin())], float(between.min())
-        a, b = np.concatenate([a, middle]), np.concatenate([middle, b])
-        low, high = np.concatenate([low, between]), np.concatenate([between, high])
-        slope = np.concatenate([slope, slope])
     return float(place), best, missed
 
 
@@ -70,20 +66,16 @@ def crossings(function: Function, edges: Floats, bounds: Floats, small: float) -
     """
     values = function(edges)
     found: list[Floats] = []
-    a, b, slope, low, high = edges[:-1], edges[1:], bounds, values[:-1], values[1:]
+    stretches = np.stack([edges[:-1], edges[1:], bounds, values[:-1], values[1:]])
     for _ in range(HALVINGS):
+        a, b, slope, low, high = stretches
         passes = (low > 0) != (high > 0)
         found += [np.column_stack([a[passes], b[passes]])]
         near = (np.abs(low) + np.abs(high) - slope * (b - a)) / 2 < -small
         left = near & ~passes
         if not left.any() or left.sum() > MOST:
             break
-        a, b, slope, low, high = a[left], b[left], slope[left], low[left], high[left]
-        middle = (a + b) / 2
-        between = function(middle)
-        a, b = np.concatenate([a, middle]), np.concatenate([middle, b])
-        low, high = np.concatenate([low, between]), np.concatenate([between, high])
-        slope = np.concatenate([slope, slope])
+        stretches = _halved(function, stretches[:, left])
     brackets = np.concatenate(found)
     if not len(brackets):
         return np.empty(0)
@@ -94,3 +86,11 @@ def crossings(function: Function, edges: Floats, bounds: Floats, small: float) -
         same = (function(middle) > 0) == above
         start, end = np.where(same, middle, start), np.where(same, end, middle)
     return np.sort((start + end) / 2)
+
+
+def _halved(function: Function, stretches: Floats) -> Floats:
+    """Both halves of stretches (5, m), all first halves first: two ends, a bound of the slope, two values."""
+    a, b, slope, low, high = stretches
+    middle = (a + b) / 2
+    between = function(middle)
+    return np.concatenate([[a, middle, slope, low, between], [middle, b, slope, between, high]], axis=1)

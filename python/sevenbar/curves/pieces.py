@@ -19,7 +19,7 @@ from numpy.polynomial import Chebyshev, chebyshev, legendre
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Peak, highest_of
-from sevenbar.curves.stationary import AT_END, coefficients, nodes, real_roots
+from sevenbar.curves.stationary import AT_END, nodes, real_roots, series_through
 
 #: Pieces of a cycle before any is halved.
 FIRST_PIECES = 12
@@ -133,7 +133,7 @@ class Pieces:
         values = chebyshev.chebval(nodes(2 * terms), np.moveaxis(self.series, 1, 0))
         sizes = (values**2).reshape(len(self.starts), -1, 2 * terms).sum(axis=1)
         rows = (self.rows**2).reshape(len(self.rows), -1).sum(axis=1)
-        return Pieces(rows, self.starts, self.ends, coefficients(sizes.T).T, self.breaks)
+        return Pieces(rows, self.starts, self.ends, series_through(sizes), self.breaks)
 
 
 def pieces(
@@ -168,7 +168,7 @@ def pieces(
         values = evaluate(origin + period * grid.ravel())
         values = values.reshape(*grid.shape, *values.shape[1:])
         scale = max(scale, float(np.abs(values).max()))
-        series = np.moveaxis(coefficients(np.moveaxis(values, 1, 0)), 0, 1)
+        series = series_through(values)
         rough = np.abs(series[:, -2:]).reshape(len(todo), -1).max(axis=1) > RESOLVED * scale
         if halving == HALVINGS:
             rough[:] = False

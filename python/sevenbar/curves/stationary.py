@@ -46,6 +46,11 @@ def coefficients(values: Floats) -> Floats:
     return np.asarray(np.tensordot(2 / count * waves, values, axes=1))
 
 
+def series_through(values: Floats) -> Floats:
+    """The same (m, count, ...) on m pieces, from values (m, count, ...) at the nodes of each."""
+    return np.moveaxis(coefficients(np.moveaxis(values, 1, 0)), 0, 1)
+
+
 def curve_through(values: Floats) -> Chebyshev:
     """The polynomial on [-1, 1] through values (count,) at `nodes(count)`."""
     return Chebyshev(coefficients(values), domain=[-1, 1])

@@ -16,6 +16,7 @@ from sevenbar.description.written import (
     is_only_ground,
     joints_of,
     names_ground,
+    unknown_link,
 )
 from sevenbar.errors import Problem, shown
 from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, ROW_KINDS
@@ -72,9 +73,8 @@ def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list
     taken = {"A", "B"} if [joint.kind for joint in joints] == ["R", "S", "S", "R"] else set()
     for i, table in enumerate(entries(raw, "point"), 1):
         link, name = table.get("link"), table.get("name")
-        if isinstance(link, int) and not isinstance(link, bool) and link > len(joints) > 0:
-            last = f"give 1 to {len(joints)}, the last is the ground"
-            problems.append(Problem(f"point[{i}].link", f"{shown(link)} is not a link; {last}"))
+        if isinstance(link, int) and not isinstance(link, bool):
+            problems += unknown_link(f"point[{i}].link", link, joints)
         # no name at all is reported elsewhere
         if isinstance(name, str) and name.strip() and name.strip() in taken:
             problems.append(

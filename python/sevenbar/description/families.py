@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import finite_number
-from sevenbar.description.forms import from_description
+from sevenbar.description.forms import from_description, head_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.joint_text import check_own_unit
@@ -54,7 +54,7 @@ def bennett(
 
     Source: G. T. Bennett, "A new mechanism", Engineering 76 (1903), 777.
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     first, twist, other = _length("a", a, others), _angle("alpha", alpha), _angle("beta", beta)
     second = _proportional(first, "alpha", twist, other)
     return _rows([(first, twist), (second, other)] * 2, others)
@@ -83,7 +83,7 @@ def goldberg(
 
     Source: M. Goldberg, "New five-bar and six-bar linkages in three dimensions", Trans. ASME 65 (1943), 649.
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     first, twist = _length("a", a, others), _angle("alpha", alpha)
     other, third = _angle("beta", beta), _angle("gamma", gamma)
     b, c = (_proportional(first, "alpha", twist, angle) for angle in (other, third))
@@ -107,7 +107,7 @@ def myard(
     Source: F. E. Myard, "Contribution à la géométrie des systèmes articulés", Bull. Soc. Math. France 59
     (1931), 183.
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     length, twist = _length("b", b, others), _angle("alpha", alpha)
     a = length * float(sind(twist))
     links = [(a, twist), (length, 90.0), (0.0, 180 + 2 * twist), (length, 90.0), (a, 180 - twist)]
@@ -135,7 +135,7 @@ def bricard_line(
 
     Source: R. Bricard, "Leçons de cinématique", vol. 2 (1927).
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     links = list(zip(_lengths("length", length, others), _angles("twist", twist), strict=True))
     return _rows(links * 2, others, _lengths("offset", offset, others) * 2)
 
@@ -163,7 +163,7 @@ def bricard_plane(
 
     Source: R. Bricard, "Leçons de cinématique", vol. 2 (1927).
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     lengths, twists = _lengths("length", length, others), _angles("twist", twist)
     second, third = _lengths("offset", offset, others, count=2)
     links = list(zip(lengths + lengths[::-1], twists + [-angle for angle in twists[::-1]], strict=True))
@@ -190,7 +190,7 @@ def bricard_trihedral(
 
     Source: R. Bricard, "Leçons de cinématique", vol. 2 (1927).
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     lengths = _lengths("length", length, others, count=5)
     squares = [value * value for value in lengths]
     last = math.fsum([squares[0], squares[2], squares[4], -squares[1], -squares[3]])
@@ -230,7 +230,7 @@ def four_bar(
 
     Source: F. Freudenstein, "Approximate synthesis of four-bar linkages", Trans. ASME 77 (1955), 853.
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     given = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
     lengths = [_length(what, value, others) for what, value in given.items()]
     return _rows([(length, 0.0) for length in lengths], {**others, "layout": "planar"})
@@ -256,7 +256,7 @@ def spherical_four_bar(
 
     Source: C. H. Chiang, "Kinematics of spherical mechanisms" (1988).
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     given = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
     arcs = [_angle(what, value) for what, value in given.items()]
     return _rows([(0.0, arc) for arc in arcs], others)
@@ -285,7 +285,7 @@ def slider_crank(
 
     Source: R. S. Hartenberg and J. Denavit, "Kinematic synthesis of linkages" (1964).
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     arm, length = _length("crank", crank, others), _length("rod", rod, others)
     aside = _number("offset", offset, "length", others)
     if length <= abs(aside):
@@ -325,7 +325,7 @@ def universal_joint(
 
     Source: R. S. Hartenberg and J. Denavit, "Kinematic synthesis of linkages" (1964).
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     bend, far = _angle("angle", angle), _length("reach", reach, others)
     c, s = float(cosd(bend)), float(sind(bend))
     joints = [
@@ -357,7 +357,7 @@ def clemens(
 
     Source: K. H. Hunt, "Constant-velocity shaft couplings: a general theory", J. Eng. Ind. 95 (1973), 455.
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     half = _angle("angle", angle) / 2
     near, high = _length("hinge", hinge, others), _length("ball", ball, others)
     c, s = float(cosd(half)), float(sind(half))
@@ -392,7 +392,7 @@ def sarrus(
     Source: P. F. Sarrus, "Note sur la transformation des mouvements rectilignes alternatifs, en mouvements
     circulaires, et réciproquement", C. R. Acad. Sci. 36 (1853), 1036.
     """
-    others = _head(name, length_unit, speed)
+    others = head_of(name, length_unit, speed)
     legs = []
     for which, leg in (("first", first), ("second", second)):
         if len(leg) != 3 or any(len(place) != 2 for place in leg):
@@ -482,8 +482,3 @@ def _drawn(
     joints: Sequence[Mapping[str, Any]], points: Sequence[Mapping[str, Any]], others: Mapping[str, Any]
 ) -> Linkage:
     return from_description({**others, "joint": list(joints), "point": list(points)})
-
-
-def _head(name: str, length_unit: str, speed: float | str) -> dict[str, Any]:
-    """The keys that all descriptions have in common."""
-    return {"format": 1, "name": name, "length_unit": length_unit, "drive": {"speed": speed}}

@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.proportions import disproportions
-from sevenbar.description.stop_values import stops_of
 from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.linkage import Linkage
@@ -21,6 +20,7 @@ from sevenbar.kinematics.loop.geometry import Drive, Form, Joint, Place, Point
 from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.loop.rigid import unit
+from sevenbar.kinematics.loop.stops import Cone, Stops
 from sevenbar.text.listed import listed
 from sevenbar.text.units import LENGTHS, as_written, measured_unit
 
@@ -62,14 +62,7 @@ def rssr(
     """
     given = {"M": M, "N": N, "L1": L1, "L3": L3, "D": D, "L2": L2}
     dimensions = {key: value for key, value in given.items() if value is not None}
-    raw = {
-        "format": 1,
-        "name": name,
-        "length_unit": length_unit,
-        "drive": {"speed": _plain(speed)},
-        "rssr": _plain(dimensions),
-    }
-    return from_description(raw)
+    return from_description(head_of(name, length_unit, speed) | {"rssr": _plain(dimensions)})
 
 
 @ends_here
@@ -99,15 +92,8 @@ def from_axes(
         >>> linkage.motion().motion_type
         'crank-rocker'
     """
-    raw = {
-        "format": 1,
-        "name": name,
-        "length_unit": length_unit,
-        "drive": {"speed": _plain(speed)},
-        "joint": _plain(joints),
-        "point": _plain(points),
-    }
-    return from_description(raw)
+    tables = {"joint": _plain(joints), "point": _plain(points)}
+    return from_description(head_of(name, length_unit, speed) | tables)
 
 
 @ends_here
@@ -160,18 +146,15 @@ def from_dh(
         return _of_frame(joints, name=name, speed=speed, points=points)
     numbers = {key: _in_unit(key, values, length_unit) for key, values in columns.items()}
     rows = _rows(joints, numbers, _plain(names))
-    raw = {
-        "format": 1,
-        "name": name,
-        "length_unit": length_unit,
-        "angle_unit": "rad",
-        "drive": {"speed": 1.0 if speed is None else _plain(speed)},
-        "link": rows,
-        "point": _plain(points),
-    }
-    linkage = from_description(raw)
+    head = head_of(name, length_unit, 1.0 if speed is None else speed)
+    linkage = from_description(head | {"angle_unit": "rad", "link": rows, "point": _plain(points)})
     warn_of_angles(linkage.description)
     return linkage
+
+
+def head_of(name: str, length_unit: str, speed: float | str) -> dict[str, Any]:
+    """What the descriptions of all calls begin with."""
+    return {"format": 1, "name": name, "length_unit": length_unit, "drive": {"speed": _plain(speed)}}
 
 
 #: What other books call the arguments of `from_dh`.
@@ -190,18 +173,10 @@ def _refuse_others(others: Mapping[str, object]) -> None:
             raise RequestError(
                 f"{word}: is called {_OTHER_NAMES[word]} here ({ours}); give {_OTHER_NAMES[word]}="
             )
-        known = (
-            "length",
-            "twist",
-            "offset",
-            "angle",
-            "pitch",
-            "names",
-            "name",
-            "length_unit",
-            "speed",
-            "points",
-        )
+        # of words that are wrong only
+        from inspect import signature
+
+        known = list(signature(from_dh).parameters)[1:-1]
         raise RequestError(
             f"{bare(word)}: is no argument; {suggestion(word, known)}allowed: {', '.join(known)}"
         )
@@ -315,7 +290,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
         points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
         description=raw,
         loading=_loading(form),
-        stops=stops_of(form.stop, form.rod, form.first_columns),
+        stops=_stops(form),
     )
 
 
@@ -333,6 +308,16 @@ def _loading(form: LinkageForm) -> Loading:
         form.spring,
         length_unit=form.length_unit,
         columns=form.first_columns,
+    )
+
+
+def _stops(form: LinkageForm) -> Stops:
+    """What keeps the linkage of a form from moving on."""
+    columns = form.first_columns
+    return Stops(
+        {columns.get(s.joint, s.joint): s.range for s in form.stop if s.range is not None},
+        {s.joint: cone for s in form.stop if (cone := Cone(s.cone, s.seat, s.stud)) != Cone()},
+        {rod.link: rod.radius for rod in form.rod},
     )
 
 

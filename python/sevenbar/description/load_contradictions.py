@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeVar
-
-from pydantic import ValidationError
+from typing import Any
 
 from sevenbar.description.load_schema import BodyForm, LoadForm, SpringForm
 from sevenbar.description.loads import body_of, load_of, spring_of
-from sevenbar.description.table_form import TableForm
-from sevenbar.description.written import Written, entries, named_column
-from sevenbar.errors import Problem, RequestError
-
-F = TypeVar("F", bound=TableForm)
+from sevenbar.description.values import flaws_of_value, valid_tables
+from sevenbar.description.written import Written, named_column, unknown_link
+from sevenbar.errors import Problem
 
 
 def load_contradictions(
@@ -22,7 +18,7 @@ def load_contradictions(
     """What is wrong with tables whose values are each right; wrong values are reported elsewhere."""
     problems: list[Problem] = []
     units = str(context["mass_unit"]), str(context["length_unit"])
-    for place, body in _forms(raw, "body", BodyForm, context):
+    for place, body in valid_tables(raw, "body", BodyForm, context):
         problems += _on_ground(place, body.link, joints, "a body there moves nothing, leave it out")
         if body.mass is None and body.solid != "drawn":
             problems.append(
@@ -31,49 +27,20 @@ def load_contradictions(
                 )
             )
         else:
-            problems += _of_value(place, lambda body=body: body_of(body, *units))
-    for place, load in _forms(raw, "load", LoadForm, context):
+            problems += flaws_of_value(place, lambda body=body: body_of(body, *units))
+    for place, load in valid_tables(raw, "load", LoadForm, context):
         problems += _on_ground(place, load.link, joints, "a load on it moves nothing, leave it out")
-        problems += _of_value(place, lambda load=load: load_of(load))
-    for place, spring in _forms(raw, "spring", SpringForm, context):
+        problems += flaws_of_value(place, lambda load=load: load_of(load))
+    for place, spring in valid_tables(raw, "spring", SpringForm, context):
         problems += _of_spring(place, spring, joints)
     return problems
-
-
-def _forms(
-    raw: Mapping[str, Any], head: str, form: type[F], context: Mapping[str, Any]
-) -> list[tuple[str, F]]:
-    """The tables of a kind that have no wrong value, each with its place."""
-    found = []
-    for i, table in enumerate(entries(raw, head), 1):
-        try:
-            found.append((f"{head}[{i}]", form.model_validate(table, context=dict(context))))
-        except ValidationError:
-            continue
-    return found
-
-
-def _of_value(place: str, make: Any) -> list[Problem]:
-    """What the value that a table stands for says against it."""
-    try:
-        make()
-    except RequestError as error:
-        key, _, message = str(error).partition(": ")
-        return [Problem(f"{place}.{key}", message)]
-    return []
-
-
-def _unknown_link(place: str, link: int, joints: Sequence[Written]) -> list[Problem]:
-    if link <= len(joints) or not joints:
-        return []
-    return [Problem(place, f"{link} is not a link; give 1 to {len(joints)}, the last is the ground")]
 
 
 def _on_ground(place: str, link: int, joints: Sequence[Written], why: str) -> list[Problem]:
     if link == len(joints):
         message = f"link {link} is the ground; {why}, or give 1 to {link - 1}"
         return [Problem(f"{place}.link", message)]
-    return _unknown_link(f"{place}.link", link, joints)
+    return unknown_link(f"{place}.link", link, joints)
 
 
 def _of_spring(place: str, spring: SpringForm, joints: Sequence[Written]) -> list[Problem]:
@@ -92,5 +59,5 @@ def _of_spring(place: str, spring: SpringForm, joints: Sequence[Written]) -> lis
         _, wrong = named_column(spring.joint, joints)
         problems += [Problem(f"{place}.joint", wrong)] if wrong else []
     for i, link in enumerate(spring.links or (), 1):
-        problems += _unknown_link(f"{place}.links[{i}]", link, joints)
-    return problems or _of_value(place, lambda: spring_of(spring, {}))
+        problems += unknown_link(f"{place}.links[{i}]", link, joints)
+    return problems or flaws_of_value(place, lambda: spring_of(spring, {}))

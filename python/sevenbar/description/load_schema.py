@@ -20,8 +20,7 @@ from sevenbar.description.load_values import (
     Torque,
     TwoLinks,
 )
-from sevenbar.description.table_form import TableForm, key
-from sevenbar.description.values import Number, Text, Vector, one_of
+from sevenbar.description.values import Number, TableForm, Text, Vector, key, one_of
 from sevenbar.forces.bodies import ENTRIES, SOLIDS
 from sevenbar.text.units import MASSES
 

@@ -8,10 +8,19 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
-from sevenbar.description.values import FORMULA, POSITIVE, Component, NumberKind, number_for, refuse, three
+from sevenbar.description.values import (
+    FORMULA,
+    POSITIVE,
+    Component,
+    NumberKind,
+    carried,
+    number_for,
+    parts_of,
+    refuse,
+    three,
+)
 from sevenbar.errors import RequestError, shown
 from sevenbar.forces.bodies import ENTRIES, flaw_of_inertia, tensor_of
-from sevenbar.text.units import ANGLES
 
 
 def spring_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:
@@ -44,42 +53,27 @@ def _mass(value: object, info: ValidationInfo) -> float:
 
 
 def _inertia(value: object, info: ValidationInfo) -> tuple[float, ...]:
-    if not isinstance(value, (list, tuple)) or len(value) != 6:
-        raise refuse(f"{shown(value)} is not an inertia; give six numbers, {ENTRIES} of the tensor")
-    entries = tuple(number_for(v, info, "inertia") for v in value)
+    parts = parts_of(value, 6, f"is not an inertia; give six numbers, {ENTRIES} of the tensor")
+    entries = tuple(number_for(part, info, "inertia") for part in parts)
     if flaw := flaw_of_inertia(tensor_of(entries)):
         raise refuse(flaw)
     return entries
 
 
-def _vector(value: object, info: ValidationInfo, kind: NumberKind) -> tuple[float, float, float]:
-    return three(value, info, kind)
-
-
-def _in_radians(value: object, info: ValidationInfo, kind: NumberKind) -> float:
-    """A number in the file's own unit, an angle in radians."""
-    size = ANGLES[(info.context or {}).get("angle_unit", "rad")] if kind == "angle" else 1.0
-    return number_for(value, info, kind) * size
-
-
 def _of_spring(value: object, info: ValidationInfo, key: str) -> float:
     """A number of a spring, an angle in radians; `joint` is read before it."""
-    context = info.context or {}
     table = {"joint": joint} if (joint := info.data.get("joint")) is not None else {}
-    return _in_radians(value, info, spring_kinds(table, context)[key])
+    return carried(value, info, spring_kinds(table, info.context or {})[key])
 
 
 def _of_input(value: object, info: ValidationInfo) -> float:
     """A value of the input, an angle in radians."""
-    context = info.context or {}
-    return _in_radians(value, info, load_kinds({}, context)["between"])
+    return carried(value, info, load_kinds({}, info.context or {})["between"])
 
 
 def _between(value: object, info: ValidationInfo) -> tuple[float, float]:
-    if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise refuse(f"{shown(value)} is not a range of the input; give two values, as in [30, 120]")
-    first, second = (_of_input(v, info) for v in value)
-    return first, second
+    ends = parts_of(value, 2, "is not a range of the input; give two values, as in [30, 120]")
+    return _of_input(ends[0], info), _of_input(ends[1], info)
 
 
 def _table(value: object, info: ValidationInfo) -> tuple[tuple[float, float], ...]:
@@ -108,24 +102,21 @@ def _link(value: object) -> int:
 
 
 def _two(value: object) -> object:
-    if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise refuse(f"{shown(value)} are not two; give one for each of the two links")
-    return value
+    return parts_of(value, 2, "are not two; give one for each of the two links")
 
 
 _JSON = WithJsonSchema(FORMULA)
 _Vector = tuple[Component, Component, Component]
-_OnLink = Annotated[int, BeforeValidator(_link), WithJsonSchema({"type": "integer", "minimum": 1})]
 
 Mass = Annotated[float, BeforeValidator(_mass), POSITIVE]
 Inertia = Annotated[
     tuple[Component, Component, Component, Component, Component, Component], BeforeValidator(_inertia)
 ]
-Acceleration = Annotated[_Vector, BeforeValidator(partial(_vector, kind="acceleration"))]
-Force = Annotated[_Vector, BeforeValidator(partial(_vector, kind="force"))]
-Torque = Annotated[_Vector, BeforeValidator(partial(_vector, kind="torque"))]
-Link = _OnLink
-TwoLinks = Annotated[tuple[_OnLink, _OnLink], BeforeValidator(_two)]
+Acceleration = Annotated[_Vector, BeforeValidator(partial(three, kind="acceleration"))]
+Force = Annotated[_Vector, BeforeValidator(partial(three, kind="force"))]
+Torque = Annotated[_Vector, BeforeValidator(partial(three, kind="torque"))]
+Link = Annotated[int, BeforeValidator(_link), WithJsonSchema({"type": "integer", "minimum": 1})]
+TwoLinks = Annotated[tuple[Link, Link], BeforeValidator(_two)]
 Between = Annotated[tuple[Component, Component], BeforeValidator(_between)]
 Table = Annotated[
     tuple[tuple[float, float], ...],

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 from pydantic_core import ErrorDetails
 
-from sevenbar.description.table_form import TableForm
-from sevenbar.description.values import EXAMPLE_OF_AXES
+from sevenbar.description.values import EXAMPLE_OF_AXES, TableForm
 from sevenbar.errors import Problem, bare, shown, suggestion
 
 #: What pydantic adds to the keys and numbers of a place.

@@ -23,7 +23,6 @@ from sevenbar.description.load_schema import BodyForm, ForcesForm, LoadForm, Spr
 from sevenbar.description.load_tables import folder_of
 from sevenbar.description.mistakes import FileForms, path_of
 from sevenbar.description.stop_schema import RodForm, StopForm, stop_contradictions
-from sevenbar.description.table_form import TableForm, key
 from sevenbar.description.values import (
     Angle,
     Direction,
@@ -31,9 +30,11 @@ from sevenbar.description.values import (
     Number,
     Pitch,
     Speed,
+    TableForm,
     Text,
     Vector,
     crossing,
+    key,
     one_of,
     one_word,
     refuse,

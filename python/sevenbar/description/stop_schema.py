@@ -5,24 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, ValidationError, ValidationInfo
+from pydantic import BeforeValidator, ValidationInfo
 
 from sevenbar.description.load_values import Link
-from sevenbar.description.table_form import TableForm, key
 from sevenbar.description.values import (
     Angle,
     Component,
     Direction,
     Length,
     NumberKind,
+    TableForm,
     Text,
-    number_for,
+    carried,
+    flaws_of_value,
+    key,
+    parts_of,
     refuse,
+    valid_tables,
 )
-from sevenbar.description.written import Written, entries, named_column
+from sevenbar.description.written import Written, named_column, unknown_link
 from sevenbar.errors import Problem, RequestError, shown
 from sevenbar.kinematics.loop.stops import Cone, check_range
-from sevenbar.text.units import ANGLES
 
 
 def stop_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:
@@ -35,16 +38,13 @@ def stop_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str
 
 def _range(value: object, info: ValidationInfo) -> tuple[float, float]:
     """Low and high, angles in radians; `joint` is read before it."""
-    if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise refuse(f"{shown(value)} is not a range; give low and high, as in [-30, 60]")
-    context = info.context or {}
-    kind = stop_kinds({"joint": info.data.get("joint")}, context)["range"]
-    size = ANGLES[context.get("angle_unit", "rad")] if kind == "angle" else 1.0
-    low, high = (number_for(end, info, kind) * size for end in value)
+    ends = parts_of(value, 2, "is not a range; give low and high, as in [-30, 60]")
+    kind = stop_kinds({"joint": info.data.get("joint")}, info.context or {})["range"]
+    low, high = (carried(end, info, kind) for end in ends)
     try:
         return check_range("range", low, high, turns=kind == "angle")
     except RequestError as error:
-        raise refuse(f"{shown(list(value))}: {str(error).partition(': ')[2]}") from None
+        raise refuse(f"{shown(list(ends))}: {str(error).partition(': ')[2]}") from None
 
 
 class StopForm(TableForm):
@@ -83,22 +83,12 @@ def stop_contradictions(
     """What is wrong with stops whose values are each right, or with joints and links that they name."""
     problems: list[Problem] = []
     ranged, coned, thick = set[str](), set[str](), set[int]()
-    for i, table in enumerate(entries(raw, "stop"), 1):
-        try:
-            stop = StopForm.model_validate(table, context=dict(context))
-        except ValidationError:
-            continue
-        problems += _of_stop(f"stop[{i}]", stop, joints, ranged, coned)
-    for i, table in enumerate(entries(raw, "rod"), 1):
-        try:
-            rod = RodForm.model_validate(table, context=dict(context))
-        except ValidationError:
-            continue
-        if rod.link > len(joints) > 0:
-            last = f"give 1 to {len(joints)}, the last is the ground"
-            problems.append(Problem(f"rod[{i}].link", f"{rod.link} is not a link; {last}"))
+    for place, stop in valid_tables(raw, "stop", StopForm, context):
+        problems += _of_stop(place, stop, joints, ranged, coned)
+    for place, rod in valid_tables(raw, "rod", RodForm, context):
+        problems += unknown_link(f"{place}.link", rod.link, joints)
         if rod.link in thick:
-            problems.append(Problem(f"rod[{i}].link", f"link {rod.link} has a radius already; leave one out"))
+            problems.append(Problem(f"{place}.link", f"link {rod.link} has a radius already; leave one out"))
         thick.add(rod.link)
     return problems
 
@@ -133,9 +123,4 @@ def _of_stop(
     if of_cone and stop.joint in coned:
         problems.append(Problem(f"{place}.{of_cone[0]}", f"joint {shown(stop.joint)} has a cone already"))
     coned.update([stop.joint] if of_cone else [])
-    if not problems and stop.cone is not None:
-        try:
-            Cone(stop.cone)
-        except RequestError as error:
-            problems.append(Problem(f"{place}.cone", str(error).partition(": ")[2]))
-    return problems
+    return problems or flaws_of_value(place, lambda: Cone(stop.cone))

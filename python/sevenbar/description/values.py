@@ -1,16 +1,25 @@
-"""What one value of a description may be: pydantic types, each with the message for a value that is none."""
+"""What tables and values of a description may be: pydantic types, with messages for values that are none."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Annotated, Any, cast
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Annotated, Any, TypeVar, cast
 
-from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    WithJsonSchema,
+)
 from pydantic_core import PydanticCustomError
 
-from sevenbar.description.written import meant_kind
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.description.written import entries, meant_kind
+from sevenbar.errors import Problem, RequestError, shown, suggestion
 from sevenbar.text.amounts import Kind, plain_speed, value_of
 from sevenbar.text.quantities import QUANTITY_KINDS, QuantityKind, quantity_of
 from sevenbar.text.units import ANGLES, sliding_speed, turning_speed, unknown_unit
@@ -26,6 +35,43 @@ PARALLEL = 1e-9
 
 #: What a number of a file may be.
 NumberKind = Kind | QuantityKind
+
+
+class TableForm(BaseModel):
+    """A table whose keys are known."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
+
+
+def key(meaning: str, unit: str = "") -> Any:
+    """What a key means, and the unit of its numbers in words: for the JSON schema and the page."""
+    return Field(description=meaning, json_schema_extra={"unit": unit} if unit else None)
+
+
+F = TypeVar("F", bound=TableForm)
+
+
+def valid_tables(
+    raw: Mapping[str, Any], head: str, form: type[F], context: Mapping[str, Any]
+) -> list[tuple[str, F]]:
+    """The tables of a head that have no wrong value, each with its place; others are reported elsewhere."""
+    found = []
+    for i, table in enumerate(entries(raw, head), 1):
+        try:
+            found.append((f"{head}[{i}]", form.model_validate(table, context=dict(context))))
+        except ValidationError:
+            continue
+    return found
+
+
+def flaws_of_value(place: str, make: Any) -> list[Problem]:
+    """What the value that a table stands for says against it."""
+    try:
+        make()
+    except RequestError as error:
+        key, _, message = str(error).partition(": ")
+        return [Problem(f"{place}.{key}", message)]
+    return []
 
 
 def refuse(message: str) -> PydanticCustomError:
@@ -59,16 +105,14 @@ def number_for(value: object, info: ValidationInfo, kind: NumberKind = "number")
     return float(value)
 
 
-def _signed_length(value: object, info: ValidationInfo) -> float:
-    return number_for(value, info, "length")
-
-
-def _pitch(value: object, info: ValidationInfo) -> float:
-    return number_for(value, info, "pitch")
+def carried(value: object, info: ValidationInfo, kind: NumberKind) -> float:
+    """A number as `number_for` has it, an angle in radians."""
+    size = ANGLES[(info.context or {}).get("angle_unit", "rad")] if kind == "angle" else 1.0
+    return number_for(value, info, kind) * size
 
 
 def _length(value: object, info: ValidationInfo) -> float:
-    number = _signed_length(value, info)
+    number = number_for(value, info, "length")
     if number <= 0:
         raise refuse(f"{shown(value)} is not a length; give a number > 0")
     if number < 1 / LARGEST_DIMENSION:
@@ -76,16 +120,18 @@ def _length(value: object, info: ValidationInfo) -> float:
     return number
 
 
+def parts_of(value: object, count: int, otherwise: str) -> Sequence[Any]:
+    """The parts of a list of so many; what is wrong with another value says `otherwise`."""
+    if not isinstance(value, (list, tuple)) or len(value) != count:
+        raise refuse(f"{shown(value)} {otherwise}")
+    return value
+
+
 def three(value: object, info: ValidationInfo, kind: NumberKind) -> tuple[float, float, float]:
     """Three numbers of a kind."""
-    if not isinstance(value, (list, tuple)) or len(value) != 3:
-        raise refuse(f"{shown(value)} is not a point or direction; give three numbers, as in [0, 0, 1]")
-    x, y, z = (number_for(v, info, kind) for v in value)
+    parts = parts_of(value, 3, "is not a point or direction; give three numbers, as in [0, 0, 1]")
+    x, y, z = (number_for(part, info, kind) for part in parts)
     return x, y, z
-
-
-def _vector(value: object, info: ValidationInfo) -> tuple[float, float, float]:
-    return three(value, info, "length")
 
 
 def _direction(value: object, info: ValidationInfo) -> tuple[float, float, float]:
@@ -93,12 +139,6 @@ def _direction(value: object, info: ValidationInfo) -> tuple[float, float, float
     if math.hypot(*vector) < 1 / LARGEST_DIMENSION:
         raise refuse(f"{shown(value)} has no direction; give three numbers, not all 0")
     return vector
-
-
-def _angle(value: object, info: ValidationInfo) -> float:
-    """An angle [rad], written in the file's unit."""
-    context = info.context or {}
-    return number_for(value, info, "angle") * ANGLES[context.get("angle_unit", "rad")]
 
 
 def crossing(axes: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
@@ -166,12 +206,12 @@ FORMULA = {"type": ["number", "string"], "pattern": "[0-9]|pi|\u03c0"}
 _OR_TEXT = WithJsonSchema(FORMULA)
 POSITIVE = WithJsonSchema({**FORMULA, "exclusiveMinimum": 0})
 
-Number = Annotated[float, BeforeValidator(_signed_length), _OR_TEXT]
-Pitch = Annotated[float, BeforeValidator(_pitch), _OR_TEXT]
-Angle = Annotated[float, BeforeValidator(_angle), _OR_TEXT]
+Number = Annotated[float, BeforeValidator(partial(number_for, kind="length")), _OR_TEXT]
+Pitch = Annotated[float, BeforeValidator(partial(number_for, kind="pitch")), _OR_TEXT]
+Angle = Annotated[float, BeforeValidator(partial(carried, kind="angle")), _OR_TEXT]
 Length = Annotated[float, BeforeValidator(_length), POSITIVE]
 Component = Annotated[float, _OR_TEXT]
-Vector = Annotated[tuple[Component, Component, Component], BeforeValidator(_vector)]
+Vector = Annotated[tuple[Component, Component, Component], BeforeValidator(partial(three, kind="length"))]
 Direction = Annotated[tuple[Component, Component, Component], BeforeValidator(_direction)]
 Text = Annotated[str, BeforeValidator(_text)]
 Speed = Annotated[float, BeforeValidator(_speed), WithJsonSchema({"type": ["number", "string"]})]

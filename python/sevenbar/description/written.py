@@ -133,6 +133,13 @@ def named_column(name: str, joints: Sequence[Written]) -> tuple[str, str]:
     return next(iter(owner.columns)) if name == owner.name else name, ""
 
 
+def unknown_link(place: str, link: int, joints: Sequence[Written]) -> list[Problem]:
+    """What is wrong with the number of a link that a loop of these joints does not have."""
+    if link <= len(joints) or not joints:
+        return []
+    return [Problem(place, f"{shown(link)} is not a link; give 1 to {len(joints)}, the last is the ground")]
+
+
 def entries(raw: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
     """The entries of a list of tables; one that is none counts as empty."""
     rows = raw.get(key)

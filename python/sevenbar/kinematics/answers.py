@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,9 +25,20 @@ if TYPE_CHECKING:
     from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Loading
     from sevenbar.forces.result import Forces
-    from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
-    from sevenbar.kinematics.circuits.sensitivity_values import Sensitivity
     from sevenbar.kinematics.dynamics.forces import ForceSolver
+
+#: What answers most questions, a function of linkage and circuit: its module, imported when it is asked, and
+#: its name.
+ANSWERED_BY = {
+    "transmission_angle": ("transmission", "transmission_angle"),
+    "transmission": ("transmission", "transmission_extremes"),
+    "sensitivity": ("numbers.sensitivity", "sensitivity_of"),
+    "joint_ranges": ("ranges.circuit_extents", "joint_ranges"),
+    "ball_cones": ("ranges.circuit_extents", "ball_cones"),
+    "bends": ("ranges.circuit_extents", "bends"),
+    "clearances": ("ranges.circuit_extents", "clearances"),
+    "allowed": ("ranges.allowed", "allowed"),
+}
 
 #: A mechanical advantage, and the input [rad, or length] at which it is had.
 Place = tuple[float, float]
@@ -59,6 +72,13 @@ class LinkageAnswers:
         """Copied and pickled by the linkage."""
         return LinkageAnswers, (self.linkage,)
 
+    def __getattr__(self, question: str) -> Callable[..., Any]:
+        """What answers a question of `ANSWERED_BY` for a circuit."""
+        if question not in ANSWERED_BY:
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {question!r}")
+        module, name = ANSWERED_BY[question]
+        return partial(getattr(importlib.import_module(f"sevenbar.kinematics.{module}"), name), self.linkage)
+
     def point(self, name: str) -> Point:
         """A named point; `RequestError` where there is none of the name."""
         points = {point.name: point for point in self.linkage.points}
@@ -69,18 +89,6 @@ class LinkageAnswers:
             f"point: no point {shown(name)}; {suggestion(name, list(points))}{known}; "
             "or give a link and a place, as in point(2, at=(10, 0, 0))"
         )
-
-    def transmission_angle(self, circuit: Circuit) -> Floats | None:
-        """The transmission angle [rad] on each row (n,), `None` where it is not defined."""
-        from sevenbar.kinematics.transmission import transmission_angle
-
-        return transmission_angle(self.linkage, circuit)
-
-    def transmission(self, circuit: Circuit) -> Extremes | None:
-        """The lowest and the highest transmission angle [rad], `None` where it is not defined."""
-        from sevenbar.kinematics.transmission import transmission_extremes
-
-        return transmission_extremes(self.linkage, circuit)
 
     def advantage(self, circuit: Circuit) -> Extremes | None:
         """The lowest and highest mechanical advantage; `None` where the output stands still on the way."""
@@ -134,12 +142,6 @@ class LinkageAnswers:
             self._solvers[circuit.input_column] = solver
         return forces_of(self._solvers[circuit.input_column], circuit, at_rest=at_rest)
 
-    def sensitivity(self, circuit: Circuit) -> Sensitivity:
-        """Derivatives of its joints and the named points by every number of the description."""
-        from sevenbar.kinematics.numbers.sensitivity import sensitivity_of
-
-        return sensitivity_of(self.linkage, circuit)
-
     def counterweights(
         self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
     ) -> Balance:
@@ -171,43 +173,13 @@ class LinkageAnswers:
 
         return loading_with(self.linkage, **given)
 
-    def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
-        """The range of every column but a ball's, by its name."""
-        from sevenbar.kinematics.ranges.circuit_extents import joint_ranges
-
-        return joint_ranges(self.linkage, circuit)
-
-    def ball_cones(self, circuit: Circuit) -> Mapping[str, BallCone]:
-        """How far balls and universal joints are bent, by name."""
-        from sevenbar.kinematics.ranges.circuit_extents import ball_cones
-
-        return ball_cones(self.linkage, circuit)
-
-    def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> BallCone:
+    def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> Any:
         """How far one is bent between directions that are given."""
         from sevenbar.kinematics.loop.stops import Cone
         from sevenbar.kinematics.ranges.circuit_extents import cone_of
 
         named = any(value is not None for value in given.values())
         return cone_of(self.linkage, circuit, joint, Cone(**given) if named else None)
-
-    def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
-        """The bend of each ball and universal joint on the rows, by name."""
-        from sevenbar.kinematics.ranges.circuit_extents import bends
-
-        return bends(self.linkage, circuit)
-
-    def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
-        """The least distances of links that share no joint."""
-        from sevenbar.kinematics.ranges.circuit_extents import clearances
-
-        return clearances(self.linkage, circuit)
-
-    def allowed(self, circuit: Circuit) -> Allowed:
-        """What part of a circuit is within the stops."""
-        from sevenbar.kinematics.ranges.allowed import allowed
-
-        return allowed(self.linkage, circuit)
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) of the report frame in the plane of a planar loop (..., 2), `None` for others."""

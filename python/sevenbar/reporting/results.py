@@ -10,11 +10,10 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.circuit_values import Extremes, Trace
+from sevenbar.kinematics.circuits.circuit_values import Extremes, Sensitivity, Trace
 from sevenbar.kinematics.circuits.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.circuits.modes import Modes, Output
 from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.kinematics.circuits.sensitivity_values import Sensitivity
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.screw_axes import ScrewAxes
 from sevenbar.reporting.circuit_quantities import way_round

@@ -1,19 +1,22 @@
 """One circuit: its rows, rates, extremes and dead centres, points and links along it."""
 
+# what a circuit asks its linkage is known by its question alone
+# mypy: disable-error-code="no-any-return"
+
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, Integers, Words, counted, finite_array, whole_number
 from sevenbar.errors import RequestError, ends_here, shown
-from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Tally, Trace
+from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
 from sevenbar.kinematics.circuits.with_extents import WithExtents
 from sevenbar.kinematics.loop.rigid import placed, pose
 from sevenbar.text.printing import Printed
@@ -26,89 +29,12 @@ if TYPE_CHECKING:
     from sevenbar.forces.free_motion.equilibria import Equilibrium
     from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.result import Forces
-    from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
     from sevenbar.kinematics.circuits.instant_centres import InstantCentres
     from sevenbar.kinematics.circuits.link_motion import LinkMotion
-    from sevenbar.kinematics.circuits.sensitivity_values import Sensitivity
-    from sevenbar.kinematics.loop.geometry import Point
     from sevenbar.kinematics.loop.screw_axes import ScrewAxes, Twists
 
 #: An output that moves less than this compared with the input [rad, or relative to the size] rests.
 AT_REST = 1e-12
-
-
-class Answers(Protocol):
-    """What a circuit asks its linkage when it is asked itself."""
-
-    def point(self, name: str) -> Point:
-        """A named point."""
-        ...
-
-    def transmission_angle(self, circuit: Circuit) -> Floats | None:
-        """The transmission angle [rad] on each row (n,)."""
-        ...
-
-    def transmission(self, circuit: Circuit) -> Extremes | None:
-        """The lowest and the highest transmission angle [rad]."""
-        ...
-
-    def advantage(self, circuit: Circuit) -> Extremes | None:
-        """The lowest and the highest mechanical advantage."""
-        ...
-
-    def sensitivity(self, circuit: Circuit) -> Sensitivity:
-        """Derivatives of its joints and the named points by every number of the description."""
-        ...
-
-    def counterweights(
-        self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
-    ) -> Balance:
-        """The counterweights on links for the least shaking, with what acts given, or the linkage's own."""
-        ...
-
-    def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
-        """The range of every column but a ball's."""
-        ...
-
-    def ball_cones(self, circuit: Circuit) -> Mapping[str, BallCone]:
-        """How far balls and universal joints are bent."""
-        ...
-
-    def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> BallCone:
-        """How far one is bent between directions that are given."""
-        ...
-
-    def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
-        """The bend of each on its rows."""
-        ...
-
-    def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
-        """The least distances of links that share no joint."""
-        ...
-
-    def allowed(self, circuit: Circuit) -> Allowed:
-        """What part of it is within the stops."""
-        ...
-
-    def plane_coordinates(self, places: Floats) -> Floats | None:
-        """Places (..., 3) in the plane of a planar loop (..., 2)."""
-        ...
-
-    def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
-        """The forces on its rows, with what is given in place of what the linkage has."""
-        ...
-
-    def free_motion(
-        self, circuit: Circuit, given: Mapping[str, Any], options: Mapping[str, Any]
-    ) -> FreeMotion:
-        """How it moves by itself, with what is given in place of what the linkage has."""
-        ...
-
-    def equilibria(
-        self, circuit: Circuit, given: Mapping[str, Any], torque: float
-    ) -> tuple[Equilibrium, ...]:
-        """Where it can rest, with what is given in place of what the linkage has."""
-        ...
 
 
 def _given(**acting: object) -> dict[str, object]:
@@ -170,7 +96,8 @@ class Circuit(Printed, WithExtents):
     speed: float
     _point: Callable[[int, Floats], Trace] = field(repr=False)
     _frames: Floats = field(repr=False)
-    _answers: Answers = field(repr=False)
+    #: What answers for its linkage, `LinkageAnswers`.
+    _answers: Any = field(repr=False)
     #: The extremes of the transmission angle where the closed form has them.
     _transmission: Extremes | None = field(repr=False)
 

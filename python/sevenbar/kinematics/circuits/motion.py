@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, whole_number, within_turn
 from sevenbar.errors import RequestError, of_extra
-from sevenbar.kinematics.circuits.circuit import Answers, Circuit
-from sevenbar.kinematics.circuits.search import Search
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.search import NearMotion, Search
 from sevenbar.kinematics.circuits.table import circuit_columns
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.printing import Drawable
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
     from sevenbar.kinematics.circuits.extents import JointRange
     from sevenbar.kinematics.circuits.modes import Modes
-    from sevenbar.kinematics.circuits.near_motion import NearMotion
     from sevenbar.kinematics.loop.grashof import FourBar
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
@@ -98,7 +97,7 @@ class Solvable(Loop, ABC):
 
     @cached_property
     @abstractmethod
-    def answers(self) -> Answers:
+    def answers(self) -> Any:
         """What its circuits take from it."""
 
     @property
@@ -237,8 +236,6 @@ class Motion(Drawable):
         agree = min(MOST_AGREE, float(f"1e{math.ceil(math.log10(NEAR_ENOUGH * share))}"))
         if eased(agree).motion_type != widest.motion_type:
             agree = MOST_AGREE
-        from sevenbar.kinematics.circuits.near_motion import NearMotion
-
         return NearMotion(widest.motion_type, miss, share, agree)
 
     @property

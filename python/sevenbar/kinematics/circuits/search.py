@@ -1,4 +1,4 @@
-"""How the circuits of a linkage were found and counted."""
+"""How the circuits of a linkage were found and counted, or by how little it misses a motion."""
 
 from __future__ import annotations
 
@@ -62,3 +62,17 @@ class Search:
     count: Count | None = None
     #: Why they were not: modes were "searched", a solution was "lost", or with the input "still" others move.
     uncounted: Literal["searched", "lost", "still"] | None = None
+
+
+@dataclass(frozen=True)
+class NearMotion:
+    """How a linkage without a circuit moves if its redundant constraints are taken to agree.
+
+    `miss` [length] is the greatest closure error on the way, `share` the same relative to the linkage size
+    (or in rad); with the closure error `agree` the motion is the one of `motion_type`.
+    """
+
+    motion_type: str
+    miss: float
+    share: float
+    agree: float

@@ -17,7 +17,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
-from sevenbar.curves.stationary import coefficients, nodes
+from sevenbar.curves.stationary import nodes, series_through
 from sevenbar.forces.free_motion.course import EnergyCourse
 from sevenbar.kinematics.dynamics.forces import ForceSolver
 from sevenbar.kinematics.paths.circuit_path import TERMS, CircuitPath
@@ -102,7 +102,7 @@ class EnergyBuilder:
             if scale[1] < floor:
                 values[:, 1] = 0.0
             values = values.reshape(len(todo), TERMS, width)
-            series = np.moveaxis(coefficients(np.moveaxis(values, 1, 0)), 0, 1)
+            series = series_through(values)
             size = np.where(scale > 0, scale, 1.0)
             size[1] = max(size[1], 1e3 * floor)
             # a joint that stands still has slopes of rounding
@@ -156,7 +156,7 @@ class EnergyBuilder:
 
     def poses(self, pieces: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats) -> Floats:
         """Poses of the word (j, columns) at places (j,) on given pieces of the path."""
-        return closed_on(self.path, self.numbers, pieces, s, lambda column: self._solver(column).loop)
+        return closed_on(self.path, self.numbers, pieces, s)
 
     def _values(self, pieces: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats) -> tuple[Floats, Floats]:
         """m, U', D, dx/ds, winding and the columns' slopes (j, 5 + k), and the potential (j,), at places."""

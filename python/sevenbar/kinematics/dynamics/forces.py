@@ -54,7 +54,7 @@ class ForceSolver:
     @cached_property
     def loop(self) -> NumberedLoop:
         """The loop that this input drives."""
-        return self.numbers.loop(self.input, only=None if self.by_numbers else ())
+        return self.numbers.loop(self.input) if self.by_numbers else self.numbers.driven(self.input)
 
     @cached_property
     def size(self) -> float:

@@ -15,7 +15,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Words
 from sevenbar.curves.along import Along
-from sevenbar.curves.stationary import coefficients
+from sevenbar.curves.stationary import series_through
 from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.kinematics.dynamics.energy_path import EnergyBuilder
@@ -51,7 +51,7 @@ class CourseRows:
             turns = np.empty((len(order), balls.size))
             turns[order] = np.unwrap(rows[np.ix_(order, balls)], axis=0)
             turns = turns.reshape(*grid.shape, balls.size)
-            series[:, :, balls] = np.moveaxis(coefficients(np.moveaxis(turns, 1, 0)), 0, 1)
+            series[:, :, balls] = series_through(turns)
         return Along(path.poses.edges, series)
 
     @cached_property
@@ -114,7 +114,7 @@ class CourseRows:
         grid, rows = self._places
         frames = frames_of(linkage, rows)[:, link - 1]
         places = (frames[:, :3, :3] @ at + frames[:, :3, 3]).reshape(*grid.shape, 3)
-        along = Along(path.poses.edges, np.moveaxis(coefficients(np.moveaxis(places, 1, 0)), 0, 1))
+        along = Along(path.poses.edges, series_through(places))
         inside = place % path.length if path.closed else place
         known = np.isfinite(inside)
         inside = np.where(known, inside, 0.0)

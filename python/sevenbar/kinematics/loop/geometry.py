@@ -86,16 +86,20 @@ class Joint:
         parts = []
         for step, values in self.steps(q):
             parts += [self.before(step)] if step.tilted else []
-            if step.freedom == "turn":
-                parts.append(pose(about(step.axis, values)))
-            else:
-                parts.append(pose(np.eye(3), values[:, None] * np.eye(3)[step.axis]))
+            parts.append(moved_by(step, values))
         return reduce(np.matmul, parts)
 
     def slid(self, q: Floats) -> Floats:
         """How far it has slid along its axis (n,) [length] for the values of its columns (n, columns)."""
         along = [v for step, v in self.steps(q) if step.freedom == "slide" and step.axis == Z]
         return sum(along, np.zeros(len(q)))
+
+
+def moved_by(step: Step, values: Floats) -> Floats:
+    """The motions (n, 4, 4) of a step by its values (n,)."""
+    if step.freedom == "turn":
+        return pose(about(step.axis, values))
+    return pose(np.eye(3), values[:, None] * np.eye(3)[step.axis])
 
 
 @dataclass(frozen=True)

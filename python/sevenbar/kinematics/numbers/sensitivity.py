@@ -26,8 +26,8 @@ import numpy.typing as npt
 import sevenbar._core as _core
 from sevenbar.arrays import Booleans, Floats, Integers
 from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Sensitivity
 from sevenbar.kinematics.circuits.motion import Solvable
-from sevenbar.kinematics.circuits.sensitivity_values import Sensitivity
 from sevenbar.kinematics.loop.rigid import about, zyx_turns
 from sevenbar.kinematics.numbers.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.numbers.word import Slots, holding_axis, points_of, word_of
@@ -110,6 +110,7 @@ class Numbers:
         #: The word of the loop, with balls as the core holds them, and its points.
         self.word = word_of(form, kinds, slots, axes)
         self.points = points_of(form, self.word, linkage.description, kinds)
+        self._driven: dict[int, NumberedLoop] = {}
         #: What the core knows of it for any numbers.
         self.core = _core.LoopWord(
             "".join(step.letter for step in self.word.steps),
@@ -139,6 +140,12 @@ class Numbers:
         more points come last that lie on its axis, the size apart; then those `extra`.
         """
         return NumberedLoop(self, input, self.nominal if p is None else p, only, marks, extra)
+
+    def driven(self, column: int) -> NumberedLoop:
+        """The loop driven by a column at the description's own numbers, without derivatives; made once."""
+        if column not in self._driven:
+            self._driven[column] = self.loop(column, only=())
+        return self._driven[column]
 
     def poses(self, q: Floats, p: Floats | None = None) -> Floats:
         """Rows of an analysis (n, columns) as poses of the word.

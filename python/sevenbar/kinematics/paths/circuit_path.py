@@ -21,10 +21,10 @@ from numpy.polynomial import chebyshev
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.along import Along
-from sevenbar.curves.stationary import coefficients, nodes
+from sevenbar.curves.stationary import coefficients, nodes, series_through
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
+from sevenbar.kinematics.numbers.sensitivity import Numbers
 
 #: Nodes on a piece: even, so that none lies in its middle.
 TERMS = 24
@@ -116,7 +116,6 @@ class PathBuilder:
 
     def __init__(self, numbers: Numbers, circuit: Circuit) -> None:
         self.numbers, self.circuit = numbers, circuit
-        self.loops: dict[int, NumberedLoop] = {}
         self.smooth = np.flatnonzero(~numbers.is_ball)
         self.drivers = [int(c) for c in self.smooth if c not in numbers.held]
         rows = numbers.poses(circuit.q)
@@ -152,11 +151,6 @@ class PathBuilder:
         scaled = rows[:, self.smooth] / self.numbers.scales[self.smooth]
         return np.asarray(np.linalg.norm(np.diff(scaled, axis=0), axis=1))
 
-    def _loop(self, column: int) -> NumberedLoop:
-        if column not in self.loops:
-            self.loops[column] = self.numbers.loop(column, only=())
-        return self.loops[column]
-
     def _change_points(self) -> Floats:
         """Chords of the first lap at which the volume of the passive joints' screws is least and small."""
         inner = (self.directions[:-1] + self.directions[1:]) / 2
@@ -167,7 +161,7 @@ class PathBuilder:
             if mine.size and int(column) in self.drivers:
                 at = self.rows[mine + 1]
                 # by how far one joint moves, the volume without it is the same for all
-                sides = self._loop(int(column)).followed(at[:, column], at)[1][0]
+                sides = self.numbers.driven(int(column)).followed(at[:, column], at)[1][0]
                 volumes[mine] = np.abs(sides) / np.abs(inner[mine, k])
         chords = self.chords[1:-1]
         volumes = np.where(np.isfinite(volumes), volumes, 0.0)
@@ -282,7 +276,7 @@ class PathBuilder:
         for column in {column for column, _ in wanted}:
             mine = [i for i, (own, _) in enumerate(wanted) if own == column]
             start = np.concatenate([wanted[i][1] for i in mine])
-            found = self._loop(column).closed(start[:, column], start)
+            found = self.numbers.driven(column).closed(start[:, column], start)
             counts = np.cumsum([len(wanted[i][1]) for i in mine])[:-1]
             for i, part in zip(mine, np.split(found, counts), strict=True):
                 out[i] = part
@@ -333,7 +327,7 @@ class PathBuilder:
 
         `ends` (m, 2, columns) are the poses at both ends.
         """
-        series = np.moveaxis(coefficients(np.moveaxis(poses, 1, 0)), 0, 1)
+        series = series_through(poses)
         fine = nodes(2 * TERMS)
         slopes = chebyshev.chebvander(fine, TERMS - 2) @ chebyshev.chebder(series, axis=1)
         rates = slopes[:, :, self.smooth] / self.numbers.scales[self.smooth]
@@ -355,7 +349,7 @@ class PathBuilder:
         for own, at, column, (start, end) in zip(poses, x, drivers, ends, strict=True):
             # the driver's own values are a line
             own[:, column] = (start[column] + end[column]) / 2 + (end[column] - start[column]) / 2 * at
-        by_length = np.moveaxis(coefficients(np.moveaxis(poses, 1, 0)), 0, 1)
+        by_length = series_through(poses)
         # a piece that is too rough by its driver's values is so by its length
         rough = np.array([self._tail(own) > RESOLVED for own in series])
         by_length[rough] = series[rough]

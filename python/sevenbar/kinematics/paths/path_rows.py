@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.stationary import nodes
 from sevenbar.kinematics.loop.rigid import turns_about
-from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
+from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import TERMS, CircuitPath
 
 
@@ -20,14 +18,8 @@ def grid_of(path: CircuitPath) -> tuple[Floats, Integers]:
     return middle[:, None] + half[:, None] * nodes(TERMS), np.repeat(np.arange(len(middle)), TERMS)
 
 
-def closed_on(
-    path: CircuitPath,
-    numbers: Numbers,
-    pieces: Integers,
-    s: Floats,
-    loop_of: Callable[[int], NumberedLoop],
-) -> Floats:
-    """Poses of the word (j, columns) at places (j,) on given pieces of a path; `loop_of` a driver."""
+def closed_on(path: CircuitPath, numbers: Numbers, pieces: Integers, s: Floats) -> Floats:
+    """Poses of the word (j, columns) at places (j,) on given pieces of a path."""
     poses = path.poses.on(pieces, s)
     spun = {c for joint in numbers.spun for step in numbers.word.freedoms[joint] for c in step.columns}
     # the turns of balls that turn freely may be no polynomials
@@ -36,7 +28,7 @@ def closed_on(
     for driver in np.unique(path.drivers[pieces]):
         mine = np.flatnonzero(path.drivers[pieces] == driver)
         own = poses[mine]
-        closed = loop_of(int(driver)).closed(own[:, driver], own)
+        closed = numbers.driven(int(driver)).closed(own[:, driver], own)
         whole = np.isfinite(closed).all(axis=1)
         poses[mine[whole]] = closed[whole]
     return poses

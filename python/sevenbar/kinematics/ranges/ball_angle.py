@@ -18,6 +18,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.curves.least_cone import angles
 from sevenbar.errors import RequestError, no_joint, shown
+from sevenbar.kinematics.dynamics.link_bodies import joint_places
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import about, inverse, unit
 
@@ -130,20 +131,9 @@ def sides(linkage: Loop, place: int) -> tuple[Floats, Floats]:
     return before, after
 
 
-def rod_ends(linkage: Loop, link: int) -> tuple[Floats, Floats]:
-    """The places (3,) of the joints before and after a link, as its points are written; the ground is last.
-
-    Of a joint that slides it is that of its frame.
-    """
-    back = inverse(linkage.point_frames[link - 1])
-    if link == len(linkage.joints):
-        return (back @ linkage.ground)[:3, 3], (back @ linkage.base)[:3, 3]
-    return back[:3, 3], (back @ linkage.links[link - 1])[:3, 3]
-
-
 def has_length(linkage: Loop, link: int) -> bool:
     """Whether the joints before and after a link are at two places."""
-    start, end = rod_ends(linkage, link)
+    start, end = joint_places(linkage, link)
     size = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
     return bool(np.linalg.norm(end - start) > NO_LENGTH * size)
 
@@ -153,7 +143,7 @@ def rod(linkage: Loop, link: int, joint: int) -> Floats:
 
     Where both are at one place: along the axis of the other joint. `RequestError` where that turns any way.
     """
-    start, end = rod_ends(linkage, link)
+    start, end = joint_places(linkage, link)
     count = len(linkage.joints)
     ahead = joint == link - 1
     if has_length(linkage, link):

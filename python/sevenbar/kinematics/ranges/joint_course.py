@@ -12,12 +12,12 @@ from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
 from sevenbar.curves.curve import Peak
 from sevenbar.curves.least_cone import angles, dotted
-from sevenbar.curves.stationary import coefficients
+from sevenbar.curves.stationary import series_through
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.circuits.poses import frames_of, joint_frames
 from sevenbar.kinematics.loop.rods import RodPair
-from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
+from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import CircuitPath, NotFollowedError
 from sevenbar.kinematics.paths.covered_path import covered_path
 from sevenbar.kinematics.paths.path_rows import closed_on, grid_of, rows_of
@@ -49,26 +49,16 @@ class JointCourse:
     forwards: bool
 
     @cached_property
-    def _loops(self) -> dict[int, NumberedLoop]:
-        return {}
-
-    def loop(self, column: int) -> NumberedLoop:
-        """The loop driven by a column, without derivatives."""
-        if column not in self._loops:
-            self._loops[column] = self.numbers.loop(column, only=())
-        return self._loops[column]
-
-    @cached_property
     def rows(self) -> Floats:
         """Rows of an analysis at the nodes of the path's pieces (m * terms, columns)."""
         grid, pieces = grid_of(self.path)
-        return rows_of(self.numbers, closed_on(self.path, self.numbers, pieces, grid.ravel(), self.loop))
+        return rows_of(self.numbers, closed_on(self.path, self.numbers, pieces, grid.ravel()))
 
     def curve(self, values: Floats) -> Along:
         """Quantities along the path by their values (m * terms, k) at the nodes."""
         grid, _ = grid_of(self.path)
         found = values.reshape(*grid.shape, -1)
-        return Along(self.path.poses.edges, np.moveaxis(coefficients(np.moveaxis(found, 1, 0)), 0, 1))
+        return Along(self.path.poses.edges, series_through(found))
 
     @cached_property
     def _places(self) -> Floats:
@@ -105,7 +95,7 @@ class JointCourse:
         edges = self.path.poses.edges
         pieces = np.clip(np.searchsorted(edges, [s], "right") - 1, 0, len(self.path.drivers) - 1)
         place = np.array([s])
-        return closed_on(self.path, self.numbers, pieces, place, self.loop), int(self.path.drivers[pieces[0]])
+        return closed_on(self.path, self.numbers, pieces, place), int(self.path.drivers[pieces[0]])
 
     def input_at(self, s: float) -> float:
         """The input [rad, or length] at a place, on the lap that the circuit's rows begin."""

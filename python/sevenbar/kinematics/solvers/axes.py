@@ -9,8 +9,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.poses import frames_along, joint_frames
-from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.rigid import about, pose
+from sevenbar.kinematics.loop.geometry import Loop, moved_by
 from sevenbar.kinematics.solvers.general import Expanded, expanded
 
 
@@ -46,8 +45,5 @@ def axes_along(loop: Loop, circuit: Circuit) -> Axes:
             now = now @ joint.before(step)
             directions.append(now[:, :3, step.axis])
             places.append(now[:, :3, 3])
-            if step.freedom == "turn":
-                now = now @ pose(about(step.axis, values))
-            else:
-                now = now @ pose(np.eye(3), values[:, None] * np.eye(3)[step.axis])
+            now = now @ moved_by(step, values)
     return Axes(expanded(loop), np.stack(directions), np.stack(places))

@@ -14,7 +14,7 @@ from sevenbar.description.contradictions import FORMS
 from sevenbar.description.draft import Draft
 from sevenbar.description.files import near_files, toml_tables, toml_text
 from sevenbar.description.gallery import names as gallery_names
-from sevenbar.description.table_form import TableForm
+from sevenbar.description.values import TableForm
 from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
 from sevenbar.design.task.file.musts import must_of

@@ -11,8 +11,17 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, StrictBool, ValidationError, WithJsonSchema
 
 from sevenbar.description.mistakes import FileForms
-from sevenbar.description.table_form import TableForm, key
-from sevenbar.description.values import Angle, Direction, Length, Text, Vector, one_of, refuse
+from sevenbar.description.values import (
+    Angle,
+    Direction,
+    Length,
+    TableForm,
+    Text,
+    Vector,
+    key,
+    one_of,
+    refuse,
+)
 from sevenbar.design.limits import MOTION_TYPES
 from sevenbar.design.task.file.values import (
     Goal,
