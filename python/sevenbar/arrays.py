@@ -39,6 +39,16 @@ def finite_array(name: str, values: npt.ArrayLike) -> Floats:
     return array
 
 
+def spread_array(name: str, values: npt.ArrayLike, count: int, whose: str) -> Floats:
+    """Finite numbers (count,), from as many as `whose` or from one for all, or `RequestError`."""
+    array = finite_array(name, values)
+    if array.size not in (1, count):
+        raise RequestError(
+            f"{name}: {array.size} values where {whose} has {count}; give {count}, or one number"
+        )
+    return np.broadcast_to(array, (count,))
+
+
 def triple(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
     """Three finite numbers, or `RequestError`."""
     array = finite_array(name, values)

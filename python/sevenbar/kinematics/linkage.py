@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, is_number, whole_number
+from sevenbar.arrays import Floats, is_number, spread_array, whole_number
 from sevenbar.errors import NotCoveredError, RequestError, check_word, ends_here, shown
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -179,7 +179,8 @@ class Linkage(Solvable):
             first = self._speed(speed, column) if plain else speed
             rates = {"speed": first, "acceleration": acceleration, "jerk": jerk}
             law = tuple(
-                _rate(name, 0.0 if value is None else value, array.size) for name, value in rates.items()
+                spread_array(name, 0.0 if value is None else value, array.size, "the input")
+                for name, value in rates.items()
             )
         return solver.outputs(array, order, column, constant, law)
 
@@ -427,12 +428,3 @@ def closure_tolerance(name: str, value: object) -> float:
 def sample_count(name: str, value: object) -> int:
     """A number of inputs in a turn, or `RequestError` naming what it was given for."""
     return whole_number(name, value, 4, MOST_SAMPLES, "a count")
-
-
-def _rate(name: str, value: npt.ArrayLike, count: int) -> Floats:
-    array = finite_array(name, value)
-    if array.size not in (1, count):
-        raise RequestError(
-            f"{name}: {array.size} values where the input has {count}; give {count}, or one number"
-        )
-    return np.broadcast_to(array, (count,))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown, suggestion
@@ -55,8 +56,7 @@ class Measure:
 
     def __reduce__(self) -> tuple[Callable[..., Measure], tuple[Any, ...]]:
         """Pickled by its name, since the functions of `MEASURES` have none; a caller's with its function."""
-        own = (MEASURES | FORCE_MEASURES | EXTENT_MEASURES).get(self.name) is self
-        if own or self.name.partition(":")[0] in OF_JOINTS:
+        if _NAMED.get(self.name) is self or self.name.partition(":")[0] in OF_JOINTS:
             return _measure, (self.name,)
         return Measure, (self.name, self.per, self.quantity, self.value, self.title)
 
@@ -93,35 +93,34 @@ class Measure:
         return f"{self.name}_{unit}" if unit else self.name
 
 
-def _output(circuit: Circuit, value: float | None) -> float | None:
-    """A value of the output [rad, or length] as people read it."""
-    return math.degrees(value) if value is not None and circuit.output_turns else value
+def _by_name(*measures: Measure) -> dict[str, Measure]:
+    return {measure.name: measure for measure in measures}
 
 
-def _degrees(value: float | None) -> float | None:
-    return None if value is None else math.degrees(value)
+def _swing(circuit: Circuit) -> float | None:
+    return (
+        math.degrees(circuit.swing) if circuit.swing is not None and circuit.output_turns else circuit.swing
+    )
 
 
-def _end(pick: Callable[[Circuit], Extremes | None], end: str) -> Callable[[Circuit], float | None]:
-    def value(circuit: Circuit) -> float | None:
-        extremes = pick(circuit)
-        return None if extremes is None else getattr(extremes, end)
+def _ends(name: str, quantity: Quantity, lowest: str, highest: str) -> list[Measure]:
+    """The lowest and the highest of what a circuit has under a name, with their titles."""
 
-    return value
+    def value(end: str, circuit: Circuit) -> float | None:
+        extremes: Extremes | None = getattr(circuit, name)
+        found = None if extremes is None else getattr(extremes, end)
+        return math.degrees(found) if found is not None and quantity == "angle" else found
 
-
-def _ends(rate: Literal["velocity", "acceleration", "jerk"]) -> list[Measure]:
-    """Lowest and highest value of a rate of the output, which a circuit has under the same name."""
+    titles = {"lowest": lowest, "highest": highest}
     return [
-        Measure(
-            f"{rate}_{end}",
-            "circuit",
-            rate,
-            _end(lambda circuit: getattr(circuit, rate), end),
-            f"{end} {rate} of the output; none where there is no bound",
-        )
-        for end in ("lowest", "highest")
+        Measure(f"{name}_{end}", "circuit", quantity, partial(value, end), title)
+        for end, title in titles.items()
     ]
+
+
+def _of_rate(rate: Literal["velocity", "acceleration", "jerk"]) -> list[Measure]:
+    titles = (f"{end} {rate} of the output; none where there is no bound" for end in ("lowest", "highest"))
+    return _ends(rate, rate, *titles)
 
 
 def _of_sizing(name: str, quantity: Quantity, pick: Callable[[Sizing], float], title: str) -> Measure:
@@ -135,90 +134,89 @@ def _of_sizing(name: str, quantity: Quantity, pick: Callable[[Sizing], float], t
 
 
 #: Every measure of the motion that has a name: the core's batches have them, too.
-MEASURES: dict[str, Measure] = {
-    measure.name: measure
-    for measure in (
-        Measure("motion_type", "linkage", "word", lambda m: m.motion_type, "motion type"),
-        Measure("circuits", "linkage", "count", lambda m: len(m.circuits), "number of circuits"),
-        Measure("limits", "linkage", "count", lambda m: len(m.limits), "number of limits of the input"),
-        Measure("circuit_type", "circuit", "word", lambda c: c.motion_type, "the circuit's own motion type"),
-        Measure(
-            "turns", "circuit", "count", lambda c: c.turns, "turns of the input until the circuit closes"
-        ),
-        Measure("swing", "circuit", "output", lambda c: _output(c, c.swing), "range of a rocking output"),
-        Measure("time_ratio", "circuit", "ratio", lambda c: c.time_ratio, "slower stroke over the quicker"),
-        Measure(
-            "transmission_lowest",
-            "circuit",
-            "angle",
-            lambda c: _degrees(_end(lambda c: c.transmission, "lowest")(c)),
-            "least transmission angle",
-        ),
-        Measure(
-            "transmission_highest",
-            "circuit",
-            "angle",
-            lambda c: _degrees(_end(lambda c: c.transmission, "highest")(c)),
-            "greatest transmission angle",
-        ),
-        *_ends("velocity"),
-        *_ends("acceleration"),
-        *_ends("jerk"),
-    )
-}
+MEASURES: dict[str, Measure] = _by_name(
+    Measure("motion_type", "linkage", "word", lambda m: m.motion_type, "motion type"),
+    Measure("circuits", "linkage", "count", lambda m: len(m.circuits), "number of circuits"),
+    Measure("limits", "linkage", "count", lambda m: len(m.limits), "number of limits of the input"),
+    Measure("circuit_type", "circuit", "word", lambda c: c.motion_type, "the circuit's own motion type"),
+    Measure("turns", "circuit", "count", lambda c: c.turns, "turns of the input until the circuit closes"),
+    Measure("swing", "circuit", "output", _swing, "range of a rocking output"),
+    Measure("time_ratio", "circuit", "ratio", lambda c: c.time_ratio, "slower stroke over the quicker"),
+    *_ends("transmission", "angle", "least transmission angle", "greatest transmission angle"),
+    *_of_rate("velocity"),
+    *_of_rate("acceleration"),
+    *_of_rate("jerk"),
+)
 
 #: Measures of what acts on the linkage; they come from the forces of each circuit.
-FORCE_MEASURES: dict[str, Measure] = {
-    measure.name: measure
-    for measure in (
-        _of_sizing(
-            "peak_torque", "torque", lambda s: abs(s.peak_torque.value), "greatest torque of the input"
-        ),
-        _of_sizing("rms_torque", "torque", lambda s: s.rms_torque, "root mean square of the input's torque"),
-        _of_sizing("peak_power", "power", lambda s: s.peak_power.value, "greatest power of the input"),
-        _of_sizing(
-            "energy_fluctuation", "energy", lambda s: s.fluctuation, "fluctuation of energy, for a flywheel"
-        ),
-        Measure("peak_shaking", "circuit", "force", peak_shaking, "greatest shaking force"),
-    )
-}
+FORCE_MEASURES: dict[str, Measure] = _by_name(
+    _of_sizing("peak_torque", "torque", lambda s: abs(s.peak_torque.value), "greatest torque of the input"),
+    _of_sizing("rms_torque", "torque", lambda s: s.rms_torque, "root mean square of the input's torque"),
+    _of_sizing("peak_power", "power", lambda s: s.peak_power.value, "greatest power of the input"),
+    _of_sizing(
+        "energy_fluctuation", "energy", lambda s: s.fluctuation, "fluctuation of energy, for a flywheel"
+    ),
+    Measure("peak_shaking", "circuit", "force", peak_shaking, "greatest shaking force"),
+)
 
 #: Measures of how far a circuit takes its joints and links, and of its stops.
-EXTENT_MEASURES: dict[str, Measure] = {
-    measure.name: measure
-    for measure in (
-        Measure("clearance", "circuit", "length", least_gap, "least distance of links, less their radii"),
-        Measure("usable", "circuit", "ratio", usable_share, "part of the circuit within all stops"),
-    )
-}
+EXTENT_MEASURES: dict[str, Measure] = _by_name(
+    Measure("clearance", "circuit", "length", least_gap, "least distance of links, less their radii"),
+    Measure("usable", "circuit", "ratio", usable_share, "part of the circuit within all stops"),
+)
 
-#: The same of a joint, as in range:rocker.
-JOINT_EXTENTS: dict[str, tuple[Quantity, Callable[[Circuit, str], float | None], str]] = {
+#: All of these.
+_NAMED = MEASURES | FORCE_MEASURES | EXTENT_MEASURES
+
+#: A measure of a joint, as in range:rocker: quantity, value, title.
+OfJoint = tuple[Quantity, Callable[[Circuit, str], float | None], str]
+
+
+def _of_bearing(pick: Callable[[Bearing], float]) -> Callable[[Circuit, str], float | None]:
+    """A number of what a joint bears; none where it has no bound."""
+
+    def value(circuit: Circuit, joint: str) -> float | None:
+        found = sized(circuit, (joint,))
+        number = math.nan if found is None else pick(found.bearings[joint])
+        return number if math.isfinite(number) else None
+
+    return value
+
+
+#: Measures of how far a joint goes.
+JOINT_EXTENTS: dict[str, OfJoint] = {
     "range": ("joint", joint_extent, "range of joint {}; none where it is endless"),
     "ball_angle": ("angle", greatest_bend, "greatest angle of joint {} from its seat"),
 }
 
-#: Measures of a joint, as in peak_force:crank: quantity, what of its bearing, title.
-JOINT_MEASURES: dict[str, tuple[Quantity, Callable[[Bearing], float], str]] = {
-    "peak_force": ("force", lambda b: b.force.peak.value, "greatest force in joint {}"),
-    "mean_cube_force": ("force", lambda b: b.force.mean_cube, "cubic mean of the force in joint {}"),
+#: Measures of what a joint bears.
+JOINT_MEASURES: dict[str, OfJoint] = {
+    "peak_force": ("force", _of_bearing(lambda b: b.force.peak.value), "greatest force in joint {}"),
+    "mean_cube_force": (
+        "force",
+        _of_bearing(lambda b: b.force.mean_cube),
+        "cubic mean of the force in joint {}",
+    ),
     # of planar loops, whose forces along the axes are open
     "peak_force_in_plane": (
         "force",
-        lambda b: b.in_plane.peak.value,
+        _of_bearing(lambda b: b.in_plane.peak.value),
         "greatest force in joint {} in the plane of motion",
     ),
     "mean_cube_force_in_plane": (
         "force",
-        lambda b: b.in_plane.mean_cube,
+        _of_bearing(lambda b: b.in_plane.mean_cube),
         "cubic mean of the force in joint {} in the plane of motion",
     ),
-    "peak_tilting": ("moment", lambda b: b.tilting.peak.value, "greatest tilting moment in joint {}"),
+    "peak_tilting": (
+        "moment",
+        _of_bearing(lambda b: b.tilting.peak.value),
+        "greatest tilting moment in joint {}",
+    ),
 }
 
-
 #: All that are of a joint, by its name.
-OF_JOINTS = (*JOINT_MEASURES, *JOINT_EXTENTS)
+OF_JOINTS = JOINT_MEASURES | JOINT_EXTENTS
 
 
 def is_of_forces(name: str) -> bool:
@@ -233,22 +231,11 @@ def is_extent(name: str) -> bool:
 
 def _of_joint(name: str) -> Measure | None:
     """The measure of a joint by its name; `None` where the name is of none."""
-    kind, colon, joint = name.partition(":")
-    if not colon or kind not in OF_JOINTS or not joint:
+    kind, _, joint = name.partition(":")
+    if kind not in OF_JOINTS or not joint:
         return None
-    if kind in JOINT_EXTENTS:
-        quantity, of_joint, title = JOINT_EXTENTS[kind]
-        return Measure(
-            name, "circuit", quantity, lambda circuit: of_joint(circuit, joint), title.format(joint)
-        )
-    quantity, pick, title = JOINT_MEASURES[kind]
-
-    def value(circuit: Circuit) -> float | None:
-        found = sized(circuit, (joint,))
-        number = math.nan if found is None else pick(found.bearings[joint])
-        return number if math.isfinite(number) else None
-
-    return Measure(name, "circuit", quantity, value, title.format(joint))
+    quantity, value, title = OF_JOINTS[kind]
+    return Measure(name, "circuit", quantity, lambda circuit: value(circuit, joint), title.format(joint))
 
 
 def measures_named(given: Iterable[str | Measure | Callable[[Motion], float]]) -> tuple[Measure, ...]:
@@ -269,8 +256,8 @@ def measures_named(given: Iterable[str | Measure | Callable[[Motion], float]]) -
 def _measure(given: object) -> Measure:
     if isinstance(given, Measure):
         return given
-    if isinstance(given, str) and given in (every := MEASURES | FORCE_MEASURES | EXTENT_MEASURES):
-        return every[given]
+    if isinstance(given, str) and given in _NAMED:
+        return _NAMED[given]
     of_joint = _of_joint(given) if isinstance(given, str) else None
     if of_joint is not None:
         return of_joint
@@ -278,11 +265,10 @@ def _measure(given: object) -> Measure:
         name = getattr(given, "__name__", "measure").strip("<>")
         about = (getattr(given, "__doc__", None) or name).splitlines()[0]
         return Measure(name, "linkage", "ratio", given, about)
-    known = [*MEASURES, *FORCE_MEASURES, *EXTENT_MEASURES, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
+    known = [*_NAMED, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
     raise RequestError(
         f"measure: {shown(given)} is not a measure; {suggestion(str(given), known)}"
-        f"give some of {', '.join(known)}, "
-        "or a function of the Motion"
+        f"give some of {', '.join(known)}, or a function of the Motion"
     )
 
 

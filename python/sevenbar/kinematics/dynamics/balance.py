@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, triple
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError
 from sevenbar.forces.counterweights import Balance, counterweights
@@ -61,20 +61,18 @@ def mount_of(linkage: Solvable, circuit: Circuit, link: int) -> Mount:
     From the joint before it, if it has none.
     """
     refuse_no_link("links", link, linkage)
-    ends = joint_places(linkage, link)
+    before, after = joint_places(linkage, link)
     last = len(linkage.links)
-    grounded = link in (1, last)
-    pivot = ends[1] if link == last and link != 1 else ends[0]
-    axis = None
-    name = ""
-    if grounded:
-        name = linkage.joints[last if link == last and link != 1 else 0].name
+    behind = link == last and link != 1
+    axis, name = None, ""
+    if link in (1, last):
+        name = linkage.joints[last if behind else 0].name
         directions = circuit.screw_axes(link).moving_direction
         found = directions[np.isfinite(directions).all(axis=1)]
         if len(found) and np.ptp(found * np.sign(found @ found[0])[:, None], axis=0).max() < 1e-9:
-            axis = (float(found[0, 0]), float(found[0, 1]), float(found[0, 2]))
-    x, y, z = (float(v) for v in pivot)
-    return Mount(int(link), unit_shaking(linkage, circuit, link), (x, y, z), axis, name)
+            axis = triple("axis", found[0])
+    pivot = triple("pivot", after if behind else before)
+    return Mount(int(link), unit_shaking(linkage, circuit, link), pivot, axis, name)
 
 
 def unit_shaking(linkage: Solvable, circuit: Circuit, link: int) -> Floats:

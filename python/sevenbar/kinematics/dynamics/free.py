@@ -28,7 +28,7 @@ from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.dynamics.energy_path import EnergyBuilder
 from sevenbar.kinematics.dynamics.forces import STILL, ForceSolver
 from sevenbar.kinematics.dynamics.free_rows import CourseRows
-from sevenbar.kinematics.loop.columns import joint_column
+from sevenbar.kinematics.loop.columns import joint_columns
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_speed
 from sevenbar.kinematics.loop.law import Law
 from sevenbar.kinematics.paths.circuit_path import CircuitPath
@@ -90,11 +90,15 @@ class FreeCourse:
         """Whether the input is an angle."""
         return self.linkage.column_kinds[self.path.input] == "turn"
 
+    @property
+    def first_row(self) -> int:
+        """The circuit's first row that has a pose."""
+        return int(np.flatnonzero(np.isfinite(self.circuit.q).all(axis=1))[0])
+
     def start(self, value: float | str | None, branch: int | None) -> float:
         """The place of a start: an input [rad, or length], on a pass between dead centres of the input."""
         if value is None and branch is None:
-            row = int(np.flatnonzero(np.isfinite(self.circuit.q).all(axis=1))[0])
-            return self._on_lap(self._first, float(self.circuit.q[row, self.path.input]))
+            return self._on_lap(self._first, float(self.circuit.q[self.first_row, self.path.input]))
         if value is None:
             raise RequestError("start: is missing; give the input at which the pass `branch` is entered")
         number = joint_number("start", value, self.linkage, self.path.input)
@@ -128,9 +132,8 @@ class FreeCourse:
 
     @cached_property
     def _first(self) -> float:
-        """The place of the circuit's first row that has a pose."""
-        circuit, path = self.circuit, self.path
-        row = int(np.flatnonzero(np.isfinite(circuit.q).all(axis=1))[0])
+        """The place of that row."""
+        circuit, path, row = self.circuit, self.path, self.first_row
         value = float(circuit.q[row, path.input])
         places = path.places(value, turns=self.turns)
         if not places.size:
@@ -197,8 +200,8 @@ def equilibria_of(
     energy = course.energy.driven_by(finite_number("torque", torque))
     found = []
     begin = course.start(None, None) if energy.winds else 0.0
-    row = int(np.flatnonzero(np.isfinite(circuit.q).all(axis=1))[0])
-    gain, first = course.path.gain[course.path.input], float(circuit.q[row, course.path.input])
+    gain = course.path.gain[course.path.input]
+    first = float(circuit.q[course.first_row, course.path.input])
     for inside, kind, frequency, rate in resting_places(energy, begin):
         place = inside
         if gain and not energy.winds:
@@ -286,7 +289,7 @@ def free_motion_of(
         _states=states,
         _law=_as_law,
         _motion=partial(_as_motion, course, state, motor, own),
-        _table=_as_table,
+        _table=partial(_as_table, linkage),
     )
 
 
@@ -377,18 +380,13 @@ def _as_law(found: FreeMotion) -> Law:
     return Law.of(found.time[rows], value, rate, second, third if np.isfinite(third).all() else 0.0)
 
 
-def _as_table(found: FreeMotion, si: bool) -> dict[str, npt.NDArray[Any]]:
+def _as_table(linkage: Solvable, found: FreeMotion, si: bool) -> dict[str, npt.NDArray[Any]]:
     """Columns by names that end in their units."""
     length, angle = ("m", "rad") if si else (found.length_unit, "deg")
     scale = LENGTHS[found.length_unit] if si else 1.0
-    table: dict[str, npt.NDArray[Any]] = {"time_s": found.time}
-    for order, values in enumerate((found.q, found.dq, found.ddq)):
-        for k, (name, kind) in enumerate(zip(found.columns, found.column_kinds, strict=True)):
-            slides = kind == "slide"
-            head = joint_column(name, slides=slides, order=order, length=length, angle=angle)
-            column = values[:, k] * scale if slides else values[:, k]
-            table[head] = np.degrees(column) if head.endswith("_deg") else column
-    return table | {"kinetic_J": found.kinetic, "potential_J": found.potential}
+    rates = (found.q, found.dq, found.ddq)
+    joints = joint_columns(linkage, rates, length=length, angle=angle, scale=scale)
+    return {"time_s": found.time, **joints, "kinetic_J": found.kinetic, "potential_J": found.potential}
 
 
 def _as_motion(
@@ -404,8 +402,8 @@ def _as_motion(
     def point(link: int, at: Floats) -> object:
         return course.rows.trace(place, rates, status, link, at)
 
-    rows = Circuit(
-        **{name: getattr(circuit, name) for name in Circuit.__dataclass_fields__ if name not in _OWN},
+    rows = replace(
+        circuit,
         q=found.q,
         dq=found.dq,
         ddq=found.ddq,
@@ -426,12 +424,3 @@ def _as_motion(
     return replace(
         whole, circuits=(rows,), law=_as_law(found), speed=math.nan, samples=count, speed_written=""
     )
-
-
-#: The fields of a circuit that a free motion has of its own.
-_OWN = frozenset(
-    (
-        *("q", "dq", "ddq", "dddq", "time", "status", "branch", "mode", "residual", "condition"),
-        *("speed", "velocity", "acceleration", "jerk", "_point"),
-    )
-)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Floats, finite_array, spread_array
 from sevenbar.errors import RequestError
 from sevenbar.text.printing import Printed
 
@@ -56,19 +56,14 @@ class Law(Printed):
         >>> sb.load("rssr").motion(law=law).circuits[0].time.size
         50
         """
-        arrays = {"t": t, "q": q, "dq": dq, "ddq": ddq, "dddq": dddq}
-        checked = {name: finite_array(name, values) for name, values in arrays.items()}
-        count = checked["t"].size
-        if count == 0:
+        times = finite_array("t", t)
+        if times.size == 0:
             raise RequestError("t: a law needs at least one sample")
-        for name, values in checked.items():
-            if values.size not in (1, count):
-                raise RequestError(
-                    f"{name}: {values.size} values where t has {count}; give {count}, or one number"
-                )
-        if np.any(np.diff(checked["t"]) <= 0):
+        rates = {"q": q, "dq": dq, "ddq": ddq, "dddq": dddq}
+        checked = {name: spread_array(name, values, times.size, "t") for name, values in rates.items()}
+        if np.any(np.diff(times) <= 0):
             raise RequestError("t: times must rise from sample to sample")
-        return Law(**{name: np.broadcast_to(values, (count,)) for name, values in checked.items()})
+        return Law(times, **checked)
 
     @property
     def table(self) -> Floats:
