@@ -200,8 +200,11 @@ def _of_frame(
 def _in_unit(key: str, values: Any, length_unit: str) -> Any:
     """A column as a list; one of a data frame is in the unit that its name has."""
     plain = _plain(values)
-    name = getattr(values, "name", None)
-    written = _unit_in(name) if isinstance(name, str) else ""
+    name, written = getattr(values, "name", None), ""
+    if isinstance(name, str):
+        from sevenbar.text.table import name_and_unit
+
+        _, written = name_and_unit(name)
     if isinstance(plain, list) and key in ("twist", "angle"):
         for i, value in enumerate(plain):
             if isinstance(value, str):
@@ -215,13 +218,6 @@ def _in_unit(key: str, values: Any, length_unit: str) -> Any:
         raise RequestError(f"{key}: the unit of column {shown(name)} is not one of {what}; rename the column")
     size = unit.size_in(length_unit) if length_unit in LENGTHS else 1.0
     return [value * size if isinstance(value, int | float) and size != 1.0 else value for value in plain]
-
-
-def _unit_in(name: str) -> str:
-    """The unit in the name of a column."""
-    from sevenbar.text.table import name_and_unit
-
-    return name_and_unit(name)[1]
 
 
 def _rows(joints: object, columns: Mapping[str, Any], names: Any) -> list[dict[str, Any]]:
@@ -366,8 +362,10 @@ def _from_dimensions(form: LinkageForm, rssr: RssrForm) -> Linkage:
         # the rocker turns against the ground about x, as the last joint of a drawing does
         tuple(Joint(kind, name, backwards=name == "rocker") for name, kind in form.joints),
         points=(Point("A", 1, (rssr.L1, 0.0, 0.0)), Point("B", 3, (0.0, 0.0, 0.0))),
-        dimensions={**{key: getattr(rssr, key) for key in ("M", "N", "L1")}, "L2": rssr.coupler}
-        | {key: getattr(rssr, key) for key in ("L3", "D")},
+        dimensions={
+            key: rssr.coupler if key == "L2" else getattr(rssr, key)
+            for key in ("M", "N", "L1", "L2", "L3", "D")
+        },
     )
 
 
@@ -376,11 +374,10 @@ def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...], source: str) -> Li
     dimensions: dict[str, float] = {}
     for i, row in enumerate(rows, 1):
         dimensions |= {f"length_{i}": row.length, f"twist_{i}_deg": as_written(math.degrees(row.twist))}
-        dimensions |= (
-            {f"angle_{i}_deg": as_written(math.degrees(row.angle))}
-            if row.joint == "P"
-            else {f"offset_{i}": row.offset}
-        )
+        if row.joint == "P":
+            dimensions[f"angle_{i}_deg"] = as_written(math.degrees(row.angle))
+        else:
+            dimensions[f"offset_{i}"] = row.offset
         dimensions |= {f"pitch_{i}": row.pitch} if row.joint == "H" else {}
     joints = tuple(
         Joint(kind, name, pitch=row.pitch) for (name, kind), row in zip(form.joints, rows, strict=True)

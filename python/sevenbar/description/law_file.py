@@ -75,11 +75,10 @@ def _places(table: TextTable, linkage: Linkage, column: int) -> dict[str, int]:
     name, kind = linkage.columns[column], linkage.column_kinds[column]
     owners = [joint.name for joint in linkage.joints for _ in joint.columns]
     heads = [table.name_and_unit(place) for place in range(len(table.names))]
-    units = [table.unit(place) for place in range(len(heads))]
     sorts = {"time": ("time", 0), **{quantity: (kind, order) for order, quantity in enumerate(QUANTITIES)}}
     found = {}
     for quantity, sort in sorts.items():
-        fitting = [i for i, unit in enumerate(units) if unit is not None and (unit.kind, unit.order) == sort]
+        fitting = table.columns_of(sort)
         if quantity == "time" and not fitting:
             fitting = [
                 i for i, (head, unit) in enumerate(heads) if not unit and head.lower() in ("t", "time")

@@ -78,8 +78,7 @@ def _columns(table: TextTable, context: Mapping[str, Any]) -> tuple[int, float, 
     """The column of the input, the size of its unit in the file's, and the column of the factor."""
     slides = context.get("slides")
     kind, what = ("slide", "a length") if slides else ("turn", "an angle")
-    units = [table.unit(place) for place in range(len(table.names))]
-    inputs = [i for i, unit in enumerate(units) if unit is not None and (unit.kind, unit.order) == (kind, 0)]
+    inputs = table.columns_of((kind, 0))
     names = [table.name_and_unit(place) for place in range(len(table.names))]
     factors = [i for i, (_, unit) in enumerate(names) if not unit]
     if len(factors) > 1:
@@ -90,7 +89,7 @@ def _columns(table: TextTable, context: Mapping[str, Any]) -> tuple[int, float, 
             f"needs one column of the input, {what} with its unit, and one of the factor without; "
             f"{table.header}; name them as in '{example}'"
         )
-    unit = units[inputs[0]]
+    unit = table.unit(inputs[0])
     size = unit.size_in(context["length_unit"]) if unit is not None else 1.0
     own = 1.0 if slides else ANGLES[context.get("angle_unit", "deg")]
     return inputs[0], 1.0 if size == own else size / own, factors[0]

@@ -58,9 +58,12 @@ class TableCells:
     def _own(self) -> list[int]:
         """The columns that make a row one of the table."""
         marks = ("joint", "order", "input", "output", "speed", "layout")
-        return [column for key, column in self.columns.items() if key not in marks] or list(
-            self.columns.values()
-        )
+        own = [column for key, column in self.columns.items() if key not in marks]
+        return own or list(self.columns.values())
+
+    def note_place(self, path: str, row: int, key: str) -> None:
+        """Notes that a value of the description at a path comes from the cell of a row in a column."""
+        self.places[path] = self.grid.place(row, self.columns[key])
 
     def wrong(self, message: str, row: int | None = None, column: int | None = None) -> None:
         """Notes a mistake, at a cell, a row or a column."""

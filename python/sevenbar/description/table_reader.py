@@ -75,8 +75,8 @@ class TableDescription:
         if place in ("link", "joint", "point"):
             return ""
         parts = place.split(".")
-        above = next((".".join(parts[:n]) for n in range(len(parts), 0, -1)
-                      if ".".join(parts[:n]) in self.places), "")  # fmt: skip
+        whole = (".".join(parts[:n]) for n in range(len(parts), 0, -1))
+        above = next((path for path in whole if path in self.places), "")
         if not above:
             return place
         rest = place[len(above) :].lstrip(".[").rstrip("]")
@@ -157,7 +157,8 @@ class _Reader(TableCells):
             self.wrong(f"{len(self.filled)} rows; an RSSR has one row of dimensions")
         row = self.filled[0]
         numbers = {key: self.amount(row, key, "length") for key in DIMENSIONS if key in self.columns}
-        self.places |= {f"rssr.{key}": self.grid.place(row, self.columns[key]) for key in numbers}
+        for key in numbers:
+            self.note_place(f"rssr.{key}", row, key)
         self.places["rssr"] = self.grid.place(row)
         raw: dict[str, Any] = {}
         # the joints of an RSSR have no rows of their own: the input is named
@@ -177,14 +178,10 @@ class _Reader(TableCells):
         points = [row for row in rows if self.text(row, "kind").lower() in POINT_WORDS]
         joints = self._ordered([row for row in rows if row not in points])
         names = self._names(joints)
-        tables = []
-        for i, row in enumerate(joints):
-            table = self._row(row, i, names[row]) if form == "link" else self._drawn(row, i, names[row])
-            tables.append(table)
-        labels = {row: names[row] or f"theta_{i}" for i, row in enumerate(joints, 1)}
-        raw: dict[str, Any] = {"drive": self._drive(labels)}
-        if not raw["drive"]:
-            del raw["drive"]
+        read = self._row if form == "link" else self._drawn
+        tables = [read(row, i, names[row]) for i, row in enumerate(joints)]
+        drive = self._drive({row: names[row] or f"theta_{i}" for i, row in enumerate(joints, 1)})
+        raw: dict[str, Any] = {"drive": drive} if drive else {}
         raw[form] = tables
         if points:
             raw["point"] = [self.point(row, k) for k, row in enumerate(points)]
@@ -242,12 +239,11 @@ class _Reader(TableCells):
 
     def _kind_of(self, row: int) -> tuple[str, str]:
         """The kind of a row's joint as written, as a letter where it is known, and the column's key."""
-        for key in ("kind", "joint"):
-            word = self.text(row, key)
-            if key == "kind" and key in self.columns and word:
-                return _kind(word) or word, key
-            if key == "joint" and self._holds_kinds and word and number(word) is None:
-                return _kind(word) or word, key
+        if word := self.text(row, "kind"):
+            return _kind(word) or word, "kind"
+        word = self.text(row, "joint")
+        if self._holds_kinds and word and number(word) is None:
+            return _kind(word) or word, "joint"
         return "", "kind"
 
     def _row(self, row: int, i: int, name: str) -> dict[str, Any]:
@@ -255,19 +251,18 @@ class _Reader(TableCells):
         kind, key = self._kind_of(row)
         place = f"link[{i + 1}]"
         table: dict[str, Any] = self._head(row, place, name, "joint", kind, key)
-        moving = (
-            KINDS[kind or "R"].moving_key if (kind or "R") in KINDS and KINDS[kind or "R"].row_keys else ""
-        )
+        known = KINDS.get(kind or "R")
+        moving = known.moving_key if known and known.row_keys else ""
         for column in (*_LENGTHS_OF_ROWS, *_ANGLES_OF_ROWS):
             if column not in self.columns:
                 continue
-            self.places[f"{place}.{column}"] = self.grid.place(row, self.columns[column])
+            self.note_place(f"{place}.{column}", row, column)
             what: Kind = "angle" if column in _ANGLES_OF_ROWS else "pitch" if column == "pitch" else "length"
             # the variable of a row has a word, such as theta_1
             if column == moving and number(self.text(row, column)) is None:
                 continue
             value = self.amount(row, column, what)
-            idle = column not in KINDS[kind or "R"].row_keys if (kind or "R") in KINDS else False
+            idle = known is not None and column not in known.row_keys
             if value is not None and not (idle and value == 0):
                 table[column] = value
         return table
@@ -277,9 +272,7 @@ class _Reader(TableCells):
         kind, key = self._kind_of(row)
         place = f"joint[{i + 1}]"
         if not kind:
-            column = self.columns.get("kind")
-            letters = ", ".join(KINDS)
-            self.wrong(f"no kind of joint; give one of {letters}", row, column)
+            self.wrong(f"no kind of joint; give one of {', '.join(KINDS)}", row, self.columns.get("kind"))
         table: dict[str, Any] = self._head(row, place, name, "kind", kind, key)
         table["at"] = self.vector(row, "", "length")
         for key, wanted in (("axis", "axis "), ("axis 2", "axis 2 ")):
@@ -291,7 +284,7 @@ class _Reader(TableCells):
             self.places[f"{place}.axes"] = self.span(row, "axis ")
         if "pitch" in self.columns and (pitch := self.amount(row, "pitch", "pitch")) is not None:
             table["pitch"] = pitch
-            self.places[f"{place}.pitch"] = self.grid.place(row, self.columns["pitch"])
+            self.note_place(f"{place}.pitch", row, "pitch")
         if kind in KINDS and "axis" in KINDS[kind].drawn_keys and "axis" not in table:
             self.wrong(f"no axis; a joint of kind {kind} needs one, in columns axis x, axis y, axis z", row)
         # a ball has no axis, whatever a list of axes holds
@@ -303,13 +296,11 @@ class _Reader(TableCells):
     def _head(self, row: int, place: str, name: str, kind_key: str, kind: str, key: str) -> dict[str, Any]:
         self.places[place] = self.grid.place(row)
         table: dict[str, Any] = {"name": name} if name else {}
-        if "name" in self.columns or "joint" in self.columns:
-            self.places[f"{place}.name"] = self.grid.place(
-                row, self.columns.get("name", self.columns.get("joint"))
-            )
+        if named := next((head for head in ("name", "joint") if head in self.columns), ""):
+            self.note_place(f"{place}.name", row, named)
         if kind:
             table[kind_key] = kind
-            self.places[f"{place}.{kind_key}"] = self.grid.place(row, self.columns[key])
+            self.note_place(f"{place}.{kind_key}", row, key)
         return table
 
     def point(self, row: int, k: int) -> dict[str, Any]:
@@ -319,7 +310,7 @@ class _Reader(TableCells):
         self.places[place] = self.grid.place(row)
         for key in ("name", "link"):
             if key in self.columns:
-                self.places[f"{place}.{key}"] = self.grid.place(row, self.columns[key])
+                self.note_place(f"{place}.{key}", row, key)
         link = number(self.text(row, "link"))
         whole = link is not None and math.isfinite(link) and link.is_integer()
         if not whole:
@@ -349,7 +340,7 @@ class _Reader(TableCells):
                 drive["output"] = names[marked[0]]
                 continue
             drive[target] = word if owned else names[marked[0]]
-            self.places[f"drive.{target}"] = self.grid.place(marked[0], self.columns[key])
+            self.note_place(f"drive.{target}", marked[0], key)
             if word.lower() in MARKS or owned:
                 continue
             if key == "input" and re.match(r"[-+]?[\d.]", word):
@@ -360,9 +351,9 @@ class _Reader(TableCells):
                             self.columns[key])  # fmt: skip
         spoken = [row for row in names if self.text(row, "speed")]
         for row in spoken[:1]:
-            column = self.columns["speed"]
-            drive["speed"] = f"{self.text(row, 'speed')} {self.unit_of_column(column)}".strip()
-            self.places["drive.speed"] = self.grid.place(row, column)
+            unit = self.unit_of_column(self.columns["speed"])
+            drive["speed"] = f"{self.text(row, 'speed')} {unit}".strip()
+            self.note_place("drive.speed", row, "speed")
         for row in spoken[1:]:
             self.wrong("is a second speed; give one, in the row of the input", row, self.columns["speed"])
         return drive

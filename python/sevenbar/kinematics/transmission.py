@@ -299,24 +299,23 @@ class _Stretch:
     of the input, an angle from 0 to pi.
     """
 
-    low: float
-    high: float
+    middle: float
+    half: float
     round: bool
 
     @staticmethod
     def of(inputs: Floats, *, turns_back: bool) -> _Stretch:
-        return _Stretch(float(inputs.min()), float(inputs.max()), not turns_back)
+        low, high = float(inputs.min()), float(inputs.max())
+        return _Stretch((low + high) / 2, (high - low) / 2, not turns_back)
 
     def place(self, inputs: Floats) -> Floats:
         """The places (n,) of inputs (n,)."""
         if self.round:
             return inputs
-        middle, half = (self.low + self.high) / 2, (self.high - self.low) / 2
-        return np.asarray(np.arccos(np.clip((inputs - middle) / half, -1, 1)))
+        return np.asarray(np.arccos(np.clip((inputs - self.middle) / self.half, -1, 1)))
 
     def input(self, places: Floats | float) -> Floats:
         """The inputs (n,) of places (n,)."""
         if self.round:
             return np.asarray(places)
-        middle, half = (self.low + self.high) / 2, (self.high - self.low) / 2
-        return np.asarray(middle + half * np.cos(places))
+        return np.asarray(self.middle + self.half * np.cos(places))

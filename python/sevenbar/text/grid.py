@@ -80,12 +80,11 @@ def grid_of_sheet(sheet: WorkbookSheet, is_header: IsHeader) -> CellTable | None
 
 def grid_of_frame(frame: Any) -> CellTable:
     """The table of a data frame, or of a mapping of names to columns of equal length."""
-    names = [str(name) for name in (frame.columns if hasattr(frame, "columns") else frame)]
     keys = list(frame.columns if hasattr(frame, "columns") else frame)
     columns = [[_of_python(value) for value in listed(frame[key])] for key in keys]
     rows = list(zip(*columns, strict=True))
-    none = ("",) * len(names)
-    return CellTable(tuple(names), none, tuple(range(1, len(rows) + 1)), tuple(rows), word="data row")
+    names, none = tuple(map(str, keys)), ("",) * len(keys)
+    return CellTable(names, none, tuple(range(1, len(rows) + 1)), tuple(rows), word="data row")
 
 
 def _of_python(value: object) -> str:

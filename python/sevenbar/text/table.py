@@ -99,6 +99,11 @@ class TextTable:
         """The unit of a column; `None` where it has none, or an unknown one."""
         return measured_unit(self.name_and_unit(column)[1])
 
+    def columns_of(self, sort: tuple[str, int]) -> list[int]:
+        """The columns whose unit is of a kind and an order of time derivative."""
+        units = [self.unit(column) for column in range(len(self.names))]
+        return [i for i, unit in enumerate(units) if unit is not None and (unit.kind, unit.order) == sort]
+
     def size(
         self,
         column: int,

@@ -15,12 +15,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.along import Along
 from sevenbar.curves.stationary import nodes, series_through
 from sevenbar.forces.free_motion.course import EnergyCourse
 from sevenbar.kinematics.dynamics.forces import ForceSolver
-from sevenbar.kinematics.paths.circuit_path import TERMS, CircuitPath
+from sevenbar.kinematics.paths.circuit_path import TERMS, CircuitPath, divided
 from sevenbar.kinematics.paths.path_rows import closed_on
 from sevenbar.text.units import LENGTHS
 
@@ -113,7 +113,8 @@ class EnergyBuilder:
                 rough[:] = False
             tail = max(tail, float(worst[~rough].max(initial=0.0)))
             done += [(a, b, own) for (a, b), own in zip(todo[~rough], series[~rough], strict=True)]
-            todo = np.array([part for a, b in todo[rough] for part in self._divided(a, b)]).reshape(-1, 2)
+            parts = [part for a, b in todo[rough] for part in divided(a, b, path.centres, SAME)]
+            todo = np.array(parts).reshape(-1, 2)
             if not len(todo):
                 break
         done.sort(key=lambda piece: piece[0])
@@ -122,15 +123,6 @@ class EnergyBuilder:
         self.tangents = found.part(*range(5, width))
         course = EnergyCourse(quantities, path.closed, breaks, 0.0, max(tail, path.tail))
         return replace(course, start=self._start(course, potentials))
-
-    def _divided(self, a: float, b: float) -> list[tuple[float, float]]:
-        centres = self.path.centres
-        inside = centres[(centres > a + SAME) & (centres < b - SAME)]
-        if inside.size:
-            c = float(inside[0])
-            h = min(c - a, b - c) / 2
-            return [(a, c - h), (c - h, c + h), (c + h, b)]
-        return [(a, (a + b) / 2), ((a + b) / 2, b)]
 
     def _start(self, course: EnergyCourse, potentials: list[tuple[Floats, Floats]]) -> float:
         """The potential energy of weights and springs at the path's beginning."""
@@ -154,13 +146,9 @@ class EnergyBuilder:
             total += spring.stiffness * (way * size if spring.links is not None else 1.0)
         return total
 
-    def poses(self, pieces: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats) -> Floats:
-        """Poses of the word (j, columns) at places (j,) on given pieces of the path."""
-        return closed_on(self.path, self.numbers, pieces, s)
-
-    def _values(self, pieces: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats) -> tuple[Floats, Floats]:
+    def _values(self, pieces: Integers, s: Floats) -> tuple[Floats, Floats]:
         """m, U', D, dx/ds, winding and the columns' slopes (j, 5 + k), and the potential (j,), at places."""
-        poses = self.poses(pieces, s)
+        poses = closed_on(self.path, self.numbers, pieces, s)
         out, potential = np.empty((len(s), 5 + len(self.smooth))), np.empty(len(s))
         inputs = poses[:, self.path.input]
         joule = self.solver.size**2

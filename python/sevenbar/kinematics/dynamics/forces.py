@@ -31,6 +31,12 @@ from sevenbar.kinematics.loop.rigid import half_turn, inverse, placed
 from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
 from sevenbar.text.units import LENGTHS
 
+#: How numbers move a place: which steps, and the twists.
+Ways = list[tuple[int, list[float]]]
+
+#: A place as the core takes it: the steps before it, where it is among them, and how numbers move it.
+Placed = tuple[int, Floats, Ways]
+
 #: Bodies that move by less than this part of the size for a radian stand still.
 STILL = 1e-9
 
@@ -71,32 +77,25 @@ class ForceSolver:
         """That of all bodies at a distance of the size [kg m^2]."""
         return sum(body.mass for body in self.bodies.values()) * self.size**2
 
-    def _carrier(self, link: int) -> tuple[int, _core.Product]:
-        """The steps before a link, and the frame there in which its points are written."""
-        return self.numbers.word.carrier(int(link))
-
     def _frame(self, link: int) -> Floats:
         """The frame (4, 4) in which points of a link are written, against the steps before it."""
         if link not in self._frames:
-            self._frames[link] = self._carrier(link)[1].pose(self.numbers.values(self.loop.p))
+            _, product = self.numbers.word.carrier(int(link))
+            self._frames[link] = product.pose(self.numbers.values(self.loop.p))
         return self._frames[link]
 
-    def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, list[float]]]]:
-        steps, product = self._carrier(link)
+    def _place(self, link: int, at: Three) -> Placed:
+        steps, product = self.numbers.word.carrier(int(link))
         place = placed(self._frame(link), at) / self.numbers.size
         return steps, place, self.loop.core.twists(product) if self.by_numbers else []
 
-    def _body(
-        self, link: int, body: Body
-    ) -> tuple[int, float, Floats, Floats, list[tuple[int, list[float]]]]:
+    def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, Ways]:
         assert body.centre is not None
         steps, centre, ways = self._place(link, body.centre)
         axes = self._frame(link)[:3, :3]
         return steps, body.mass, centre, axes @ body.tensor @ axes.T / self.size**2, ways
 
-    def _load(
-        self, load: Load
-    ) -> tuple[tuple[int, Floats, list[tuple[int, list[float]]]], Floats, Floats, bool]:
+    def _load(self, load: Load) -> tuple[Placed, Floats, Floats, bool]:
         assert load.at is not None
         force, torque = np.array(load.force) / self.size, np.array(load.torque) / self.size**2
         turns = load.axes == "link"

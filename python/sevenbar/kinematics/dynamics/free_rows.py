@@ -19,7 +19,7 @@ from sevenbar.curves.stationary import series_through
 from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.kinematics.dynamics.energy_path import EnergyBuilder
-from sevenbar.kinematics.paths.path_rows import grid_of, rows_of
+from sevenbar.kinematics.paths.path_rows import curve_on, rows_on
 
 #: A ball whose turns' series end above this [rad] is near a singular pose, where they have no rates.
 UNDEFINED = 1e-8
@@ -34,9 +34,7 @@ class CourseRows:
     @cached_property
     def _places(self) -> tuple[Floats, Floats]:
         """Nodes on the path's pieces (m, terms), and the rows there (m * terms, columns)."""
-        grid, pieces = grid_of(self.builder.path)
-        poses = self.builder.poses(pieces, grid.ravel())
-        return grid, rows_of(self.builder.numbers, poses)
+        return rows_on(self.builder.path, self.builder.numbers)
 
     @cached_property
     def columns(self) -> Along:
@@ -111,10 +109,8 @@ class CourseRows:
             position = np.broadcast_to(at, (len(place), 3)).copy()
             rest = np.zeros_like(position)
             return Trace(position, rest, rest.copy(), rest.copy(), status)
-        grid, rows = self._places
-        frames = frames_of(linkage, rows)[:, link - 1]
-        places = (frames[:, :3, :3] @ at + frames[:, :3, 3]).reshape(*grid.shape, 3)
-        along = Along(path.poses.edges, series_through(places))
+        frames = frames_of(linkage, self._places[1])[:, link - 1]
+        along = curve_on(path, frames[:, :3, :3] @ at + frames[:, :3, 3])
         inside = place % path.length if path.closed else place
         known = np.isfinite(inside)
         inside = np.where(known, inside, 0.0)

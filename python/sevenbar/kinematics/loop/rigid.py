@@ -69,9 +69,10 @@ def about(axis: int, angle: npt.ArrayLike) -> Floats:
 
 
 def cross_matrix(vector: npt.ArrayLike) -> Floats:
-    """The matrix (3, 3) that takes a vector to its product with one on its left: `W v = w x v`."""
-    x, y, z = np.asarray(vector, dtype=np.float64).tolist()
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    """The matrices (..., 3, 3) that take a vector to its product with those (..., 3) on its left: `w x v`."""
+    x, y, z = np.moveaxis(np.asarray(vector, dtype=np.float64), -1, 0)
+    zero = np.zeros_like(x)
+    return np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
 
 
 def turns_about(axis: Floats, angles: Floats) -> Floats:
@@ -145,10 +146,7 @@ def quaternion(rotation: Floats) -> Floats:
 
 def rotation_of(quaternion: Floats) -> Floats:
     """The rotations (..., 3, 3) of unit quaternions (w, x, y, z), (..., 4)."""
-    w, vector = quaternion[..., 0, None, None], quaternion[..., 1:]
-    x, y, z = np.moveaxis(vector, -1, 0)
-    zero = np.zeros_like(x)
-    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
+    w, cross = quaternion[..., 0, None, None], cross_matrix(quaternion[..., 1:])
     return np.asarray(np.eye(3) + 2 * (w * cross + cross @ cross))
 
 

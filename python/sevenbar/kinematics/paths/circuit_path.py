@@ -214,7 +214,7 @@ class PathBuilder:
                         "with more samples"
                     )
                 if piece is None or (self._tail(piece[1]) > RESOLVED and not last):
-                    rough += self._divided(a, b, centres)
+                    rough += divided(a, b, centres)
                 else:
                     done.append((a, column, *piece))
             todo = rough
@@ -234,15 +234,6 @@ class PathBuilder:
             centres=np.interp(centres, chords, path),
             input=self.circuit.input_column,
         )
-
-    @staticmethod
-    def _divided(a: float, b: float, centres: Floats) -> list[tuple[float, float]]:
-        inside = centres[(centres > a) & (centres < b)] if centres.size else centres
-        if inside.size:
-            # what is round a change point stays round it
-            c, h = float(inside[0]), min(inside[0] - a, b - inside[0]) / 2
-            return [(a, c - h), (c - h, c + h), (c + h, b)]
-        return [(a, (a + b) / 2), ((a + b) / 2, b)]
 
     def _tail(self, series: Floats) -> float:
         last = np.abs(series[-2:, self.smooth] / self.numbers.scales[self.smooth])
@@ -362,6 +353,17 @@ class PathBuilder:
         sizes = np.abs(series) / (NOISE * np.maximum(self.numbers.scales, np.abs(series).max(axis=0)))
         last = len(series) - np.argmax(sizes[::-1] > 1, axis=0)
         return np.where(np.arange(len(series))[:, None] < last, series, 0.0)
+
+
+def divided(a: float, b: float, centres: Floats, apart: float = 0.0) -> list[tuple[float, float]]:
+    """The parts of a piece: halves; three where a change point lies in it, `apart` from its ends."""
+    inside = centres[(centres > a + apart) & (centres < b - apart)]
+    if inside.size:
+        # what is round a change point stays round it
+        c = float(inside[0])
+        h = min(c - a, b - c) / 2
+        return [(a, c - h), (c - h, c + h), (c + h, b)]
+    return [(a, (a + b) / 2), ((a + b) / 2, b)]
 
 
 def path_of(numbers: Numbers, circuit: Circuit) -> CircuitPath:

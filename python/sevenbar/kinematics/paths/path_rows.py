@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.curves.stationary import nodes
+from sevenbar.curves.along import Along
+from sevenbar.curves.stationary import nodes, series_through
 from sevenbar.kinematics.loop.rigid import turns_about
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import TERMS, CircuitPath
@@ -48,3 +49,14 @@ def rows_of(numbers: Numbers, poses: Floats) -> Floats:
             [first, middle, np.arctan2(turn[:, 2, 1], turn[:, 2, 2])], axis=1
         )
     return rows
+
+
+def rows_on(path: CircuitPath, numbers: Numbers) -> tuple[Floats, Floats]:
+    """The nodes of `grid_of` (m, terms), and the rows of an analysis there (m * terms, columns)."""
+    grid, pieces = grid_of(path)
+    return grid, rows_of(numbers, closed_on(path, numbers, pieces, grid.ravel()))
+
+
+def curve_on(path: CircuitPath, values: Floats) -> Along:
+    """Quantities along a path by their values (m * terms, k) at these nodes."""
+    return Along(path.poses.edges, series_through(values.reshape(len(path.drivers), TERMS, -1)))

@@ -121,46 +121,38 @@ def _between(places: Floats, begin: float, way: float, path: CircuitPath) -> int
 def _ranges(linkage: Solvable, course: JointCourse) -> Iterator[_Stop]:
     for name, (low, high) in linkage.stops.ranges.items():
         column = linkage.columns.index(name)
-        turns = linkage.column_kinds[column] == "turn"
+        turns = linkage.turns(column)
         slack = TOUCH * (1.0 if turns else course.size)
         if not (turns and high - low >= math.tau - slack):
-            yield _range(course, column, _Between(low, high, turns, slack))
+            yield _range(course, column, low, high, slack)
 
 
-def _range(course: JointCourse, column: int, between: _Between) -> _Stop:
-    """The stop of a column that a turn does not pass by."""
+def _range(course: JointCourse, column: int, low: float, high: float, slack: float) -> _Stop:
+    """The stop of a column that a turn does not pass by; beyond an end by a `slack` it touches."""
+    turns, width = course.linkage.turns(column), high - low
     one = course.path.poses.part(column)
     marks = np.union1d(one.stationary(0), one.edges)
     heights = one.at(marks)[:, 0]
     laps = [0]
-    if between.turns:
-        first, last = (heights.min() - between.high) / math.tau, (heights.max() - between.low) / math.tau
+    if turns:
+        first, last = (heights.min() - high) / math.tau, (heights.max() - low) / math.tau
         laps = list(range(math.floor(first), math.ceil(last) + 1))
-    values = [end + math.tau * k for k in laps for end in (between.low, between.high)]
+    values = [end + math.tau * k for k in laps for end in (low, high)]
+
+    def between(values: Floats) -> Flags:
+        """Whether values are between the ends, a turn by whole turns."""
+        beyond = values - low
+        if turns:
+            spare = (math.tau - width) / 2
+            beyond = (beyond + spare) % math.tau - spare
+        return np.asarray((beyond >= -slack) & (beyond <= width + slack))
+
     return _Stop(
         f"range of {course.linkage.columns[column]}",
         np.concatenate([one.crossings(0, value, marks) for value in values]),
         lambda s: between(one.at(s)[:, 0]),
         lambda q: between(q[:, column]),
     )
-
-
-@dataclass(frozen=True)
-class _Between:
-    """Whether values of a column are between two, a turn by whole turns; beyond by a `slack` they touch."""
-
-    low: float
-    high: float
-    turns: bool
-    slack: float
-
-    def __call__(self, values: Floats) -> Flags:
-        width = self.high - self.low
-        beyond = values - self.low
-        if self.turns:
-            spare = (math.tau - width) / 2
-            beyond = (beyond + spare) % math.tau - spare
-        return np.asarray((beyond >= -self.slack) & (beyond <= width + self.slack))
 
 
 def _cones(linkage: Solvable, course: JointCourse) -> Iterator[_Stop]:

@@ -12,7 +12,6 @@ from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
 from sevenbar.curves.curve import Peak
 from sevenbar.curves.least_cone import angles, dotted
-from sevenbar.curves.stationary import series_through
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.circuits.poses import frames_of, joint_frames
@@ -20,7 +19,7 @@ from sevenbar.kinematics.loop.rods import RodPair
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import CircuitPath, NotFollowedError
 from sevenbar.kinematics.paths.covered_path import covered_path
-from sevenbar.kinematics.paths.path_rows import closed_on, grid_of, rows_of
+from sevenbar.kinematics.paths.path_rows import closed_on, curve_on, rows_on
 from sevenbar.kinematics.ranges.ball_angle import BallAngle
 
 #: Poses that miss the ground by more [relative to the size] are lost ones.
@@ -51,14 +50,11 @@ class JointCourse:
     @cached_property
     def rows(self) -> Floats:
         """Rows of an analysis at the nodes of the path's pieces (m * terms, columns)."""
-        grid, pieces = grid_of(self.path)
-        return rows_of(self.numbers, closed_on(self.path, self.numbers, pieces, grid.ravel()))
+        return rows_on(self.path, self.numbers)[1]
 
     def curve(self, values: Floats) -> Along:
         """Quantities along the path by their values (m * terms, k) at the nodes."""
-        grid, _ = grid_of(self.path)
-        found = values.reshape(*grid.shape, -1)
-        return Along(self.path.poses.edges, series_through(found))
+        return curve_on(self.path, values)
 
     @cached_property
     def _places(self) -> Floats:
