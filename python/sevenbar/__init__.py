@@ -126,43 +126,26 @@ _ON_DEMAND = {
     "sweep": "sevenbar.sweep",
 }
 
-#: Names that many programs do without, and the modules that have them.
-_NAMES_ON_DEMAND = {
-    "Body": "sevenbar.forces.bodies",
-    "Cone": "sevenbar.kinematics.loop.stops",
-    "Equilibrium": "sevenbar.forces.free_motion.equilibria",
-    "FourBar": "sevenbar.kinematics.loop.grashof",
-    "FreeMotion": "sevenbar.forces.free_motion.result",
-    "InstantCentre": "sevenbar.kinematics.circuits.instant_centres",
-    "InstantCentres": "sevenbar.kinematics.circuits.instant_centres",
-    "Law": "sevenbar.kinematics.loop.law",
-    "Load": "sevenbar.forces.acting",
-    "Loading": "sevenbar.forces.loading",
-    "MotionPlane": "sevenbar.kinematics.solvers.plane_and_sphere",
-    "MotionSphere": "sevenbar.kinematics.solvers.plane_and_sphere",
-    "PartAxis": "sevenbar.description.step_axes",
-    "ScrewAxes": "sevenbar.kinematics.loop.screw_axes",
-    "Spring": "sevenbar.forces.acting",
-    "axes_of_step": "sevenbar.description.step_axes",
-    "from_table": "sevenbar.description.tables",
-    "load_law": "sevenbar.description.law_file",
-} | dict.fromkeys(
-    (
-        "bennett",
-        "bricard_line",
-        "bricard_plane",
-        "bricard_trihedral",
-        "clemens",
-        "four_bar",
-        "goldberg",
-        "myard",
-        "sarrus",
-        "slider_crank",
-        "spherical_four_bar",
-        "universal_joint",
-    ),
-    "sevenbar.description.families",
-)
+#: Names that many programs do without, by the modules that have them.
+_NAMES_OF_MODULES = {
+    "description.families": "bennett bricard_line bricard_plane bricard_trihedral clemens four_bar goldberg "
+    "myard sarrus slider_crank spherical_four_bar universal_joint",
+    "description.law_file": "load_law",
+    "description.step_axes": "PartAxis axes_of_step",
+    "description.tables": "from_table",
+    "forces.acting": "Load Spring",
+    "forces.bodies": "Body",
+    "forces.free_motion.equilibria": "Equilibrium",
+    "forces.free_motion.result": "FreeMotion",
+    "forces.loading": "Loading",
+    "kinematics.circuits.instant_centres": "InstantCentre InstantCentres",
+    "kinematics.loop.grashof": "FourBar",
+    "kinematics.loop.law": "Law",
+    "kinematics.loop.screw_axes": "ScrewAxes",
+    "kinematics.loop.stops": "Cone",
+    "kinematics.solvers.plane_and_sphere": "MotionPlane MotionSphere",
+}
+_NAMES_ON_DEMAND = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names.split()}
 
 # what results print is written where the reports' words are, which a program that prints none does without
 SAID_IN["sevenbar.kinematics"] = "sevenbar.reporting.results"
@@ -189,7 +172,8 @@ def _offered(module: ModuleType) -> list[str]:
 
 def __getattr__(name: str) -> Any:
     if name in _NAMES_ON_DEMAND:
-        found = globals()[name] = getattr(importlib.import_module(_NAMES_ON_DEMAND[name]), name)
+        module = importlib.import_module(f"sevenbar.{_NAMES_ON_DEMAND[name]}")
+        found = globals()[name] = getattr(module, name)
         return found
     if name in _ON_DEMAND:
         module = importlib.import_module(_ON_DEMAND[name])

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import date, time
 from functools import wraps
+from pathlib import Path
 from typing import ParamSpec, TypeVar
 
 P = ParamSpec("P")
@@ -97,6 +98,30 @@ class DescriptionError(SevenbarError):
     def of_all(cls, source: str, message: str) -> DescriptionError:
         """The error of a source as a whole, not of a place in it."""
         return cls([Problem("", message)], source)
+
+
+def read_start(
+    path: Path,
+    most: int,
+    what: str,
+    refuse: Callable[[str], Exception],
+    missing: Callable[[], str] | None = None,
+) -> bytes:
+    """The bytes of a file that should be `what`, at most so many; `refuse` makes the error of another.
+
+    `missing` says what to do where there is no such file, in place of giving the path of one.
+    """
+    give = f"give the path of {what}"
+    try:
+        with path.open("rb") as file:
+            return file.read(most)
+    except FileNotFoundError:
+        raise refuse(f"no such file; {missing() if missing else give}") from None
+    except IsADirectoryError:
+        raise refuse(f"is a folder; {give} in it") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise refuse(f"cannot be read: {reason.lower()}; {give}") from None
 
 
 @contextmanager

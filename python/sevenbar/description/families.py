@@ -452,8 +452,8 @@ def _lengths(name: str, values: Sequence[Given], others: Mapping[str, Any], coun
     return [_number(f"{name}[{i}]", value, "length", others) for i, value in enumerate(given)]
 
 
-def _angles(name: str, values: Sequence[Given], count: int = 3) -> list[float]:
-    return [_angle(f"{name}[{i}]", value) for i, value in enumerate(_several(name, values, count))]
+def _angles(name: str, values: Sequence[Given]) -> list[float]:
+    return [_angle(f"{name}[{i}]", value) for i, value in enumerate(_several(name, values, 3))]
 
 
 def _proportional(a: float, name: str, alpha: float, beta: float) -> float:

@@ -6,13 +6,14 @@ import os
 import re
 import tomllib
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
-from sevenbar.errors import DescriptionError, SevenbarError, ends_here, shown
+from sevenbar.errors import DescriptionError, SevenbarError, ends_here, read_start, shown
 from sevenbar.kinematics.linkage import Linkage
 
 if TYPE_CHECKING:
@@ -44,8 +45,8 @@ def load(source: str | os.PathLike[str], *, agree: float | None = None) -> Linka
         'RSSR'
     """
     path = Path(source)
-    if isinstance(source, str) and source in names() and not path.exists():
-        return loads(text(source), source).agreeing(agree)
+    if _in_gallery(source):
+        return loads(text(str(source)), str(source)).agreeing(agree)
     content = _read(path)
     if _is_table(content, path) and len(content) <= LARGEST_TABLE:
         return _table(content, str(source)).linkage(from_description, str(source)).agreeing(agree)
@@ -57,16 +58,17 @@ def toml_text(source: str | os.PathLike[str]) -> str:
 
     Of a table it is the description that the table has become.
     """
+    if _in_gallery(source):
+        return text(str(source))
     path = Path(source)
-    if isinstance(source, str) and source in names() and not path.exists():
-        return text(source)
     return decoded(_read(path), str(path))
 
 
 def note_of(source: str | os.PathLike[str]) -> str:
     """How a table was read, in a sentence; empty for other files, and for one that is wrong."""
     path = Path(source)
-    if not path.is_file() or (isinstance(source, str) and source in names() and not path.exists()):
+    # of the gallery or not, what is no file is no table
+    if not path.is_file():
         return ""
     content = _read(path)
     if not _is_table(content, path):
@@ -162,24 +164,17 @@ def _syntax_problem(error: ValueError, lines: list[str]) -> str:
     return f"line {match[2]}: {shown(line.strip())} is not valid TOML: {reason}; {remedy}"
 
 
+def _in_gallery(source: str | os.PathLike[str]) -> bool:
+    """Whether a source is the name of a linkage of the gallery, and no file."""
+    return isinstance(source, str) and source in names() and not Path(source).exists()
+
+
 def _read(path: Path) -> bytes:
-    place = str(path)
-    try:
-        with path.open("rb") as file:
-            return file.read(LARGEST_TABLE + 1)
-    except FileNotFoundError:
-        raise DescriptionError.of_all(
-            place,
-            f"no such file; {near_files(path)}"
-            "give the path of a TOML file, or a name that 'sevenbar gallery' lists",
-        ) from None
-    except IsADirectoryError:
-        raise DescriptionError.of_all(place, "is a folder; give the path of a TOML file in it") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise DescriptionError.of_all(
-            place, f"cannot be read: {reason.lower()}; give the path of a TOML file"
-        ) from None
+    def missing() -> str:
+        return f"{near_files(path)}give the path of a TOML file, or a name that 'sevenbar gallery' lists"
+
+    refuse = partial(DescriptionError.of_all, str(path))
+    return read_start(path, LARGEST_TABLE + 1, "a TOML file", refuse, missing)
 
 
 def _is_table(content: bytes, path: Path) -> bool:

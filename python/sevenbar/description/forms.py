@@ -297,14 +297,7 @@ def _loading(form: LinkageForm) -> Loading:
     # most files have none
     from sevenbar.description.loads import loading_of
 
-    return loading_of(
-        form.forces,
-        form.body,
-        form.load,
-        form.spring,
-        length_unit=form.length_unit,
-        columns=form.first_columns,
-    )
+    return loading_of(form)
 
 
 def _stops(form: LinkageForm) -> Stops:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
+from sevenbar.description.load_schema import load_kinds, spring_kinds
 from sevenbar.description.load_tables import with_rows
-from sevenbar.description.load_values import load_kinds, spring_kinds
 from sevenbar.description.stop_schema import stop_kinds
 from sevenbar.description.values import NumberKind, value_in_file
 from sevenbar.errors import RequestError

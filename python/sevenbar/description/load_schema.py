@@ -1,31 +1,141 @@
-"""What acts on a linkage, as a file has it: the models of [forces], [[body]], [[load]] and [[spring]]."""
+"""What acts on a linkage, as a file has it: [forces], [[body]], [[load]] and [[spring]], and their values."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from functools import partial
+from typing import Annotated, Any
 
-from pydantic import WithJsonSchema
+from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
-from sevenbar.description.load_values import (
-    Acceleration,
-    Between,
-    Damping,
-    Force,
-    Free,
-    Inertia,
-    Link,
-    Mass,
-    Stiffness,
-    Table,
-    Torque,
-    TwoLinks,
+from sevenbar.description.values import (
+    FORMULA,
+    POSITIVE,
+    Component,
+    Number,
+    NumberKind,
+    TableForm,
+    Text,
+    Vector,
+    carried,
+    key,
+    number_for,
+    one_of,
+    parts_of,
+    refuse,
+    three,
 )
-from sevenbar.description.values import Number, TableForm, Text, Vector, key, one_of
-from sevenbar.forces.bodies import ENTRIES, SOLIDS
+from sevenbar.errors import RequestError, shown
+from sevenbar.forces.bodies import ENTRIES, SOLIDS, flaw_of_inertia, tensor_of
 from sevenbar.text.units import MASSES
 
 #: Along which axes a load may be given.
 LOAD_AXES = ("ground", "link")
+
+
+def spring_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:
+    """What the numbers of a spring are: between two points, in a joint that slides, or in one that turns."""
+    turns = "joint" in table and context.get("freedoms", {}).get(_word(table["joint"])) != "slide"
+    return {
+        "at": "length",
+        "length": "length",
+        "free": "angle" if turns else "length",
+        "stiffness": "turning stiffness" if turns else "stiffness",
+        "damping": "turning damping" if turns else "damping",
+    }
+
+
+def load_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:  # noqa: ARG001
+    """What the numbers of a load are: those of the input by how it moves."""
+    moves: NumberKind = "length" if context.get("slides") else "angle"
+    return {"at": "length", "force": "force", "torque": "torque", "between": moves}
+
+
+def _word(value: object) -> str:
+    return value.strip() if isinstance(value, str) else ""
+
+
+def _mass(value: object, info: ValidationInfo) -> float:
+    number = number_for(value, info, "mass")
+    if number <= 0:
+        raise refuse(f"{shown(value)} is not a mass; give a number > 0")
+    return number
+
+
+def _inertia(value: object, info: ValidationInfo) -> tuple[float, ...]:
+    parts = parts_of(value, 6, f"is not an inertia; give six numbers, {ENTRIES} of the tensor")
+    entries = tuple(number_for(part, info, "inertia") for part in parts)
+    if flaw := flaw_of_inertia(tensor_of(entries)):
+        raise refuse(flaw)
+    return entries
+
+
+def _of_spring(value: object, info: ValidationInfo, key: str) -> float:
+    """A number of a spring, an angle in radians; `joint` is read before it."""
+    table = {"joint": joint} if (joint := info.data.get("joint")) is not None else {}
+    return carried(value, info, spring_kinds(table, info.context or {})[key])
+
+
+def _of_input(value: object, info: ValidationInfo) -> float:
+    """A value of the input, an angle in radians."""
+    return carried(value, info, load_kinds({}, info.context or {})["between"])
+
+
+def _between(value: object, info: ValidationInfo) -> tuple[float, float]:
+    ends = parts_of(value, 2, "is not a range of the input; give two values, as in [30, 120]")
+    return _of_input(ends[0], info), _of_input(ends[1], info)
+
+
+def _table(value: object, info: ValidationInfo) -> tuple[tuple[float, float], ...]:
+    """The rows of a table: values of the input, an angle in radians, and factors."""
+    if isinstance(value, str):
+        # what can be read has been replaced by its rows
+        from sevenbar.description.load_tables import rows_of
+
+        try:
+            value = rows_of(value, info.context or {})
+        except RequestError as error:
+            raise refuse(str(error)) from None
+    rows: Any = value if isinstance(value, (list, tuple)) else [value]
+    if not all(isinstance(row, (list, tuple)) and len(row) == 2 for row in rows):
+        raise refuse(
+            f"{shown(value)} is not a table; give the name of a CSV file, or rows of input and factor, "
+            "as in [[0, 0], [30, 1], [60, 0]]"
+        )
+    return tuple((_of_input(at, info), number_for(factor, info, "number")) for at, factor in rows)
+
+
+def _link(value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise refuse(f"{shown(value)} is not a link; give its number, counted from 1")
+    return value
+
+
+def _two(value: object) -> object:
+    return parts_of(value, 2, "are not two; give one for each of the two links")
+
+
+_JSON = WithJsonSchema(FORMULA)
+_Vector = tuple[Component, Component, Component]
+
+Mass = Annotated[float, BeforeValidator(_mass), POSITIVE]
+Inertia = Annotated[
+    tuple[Component, Component, Component, Component, Component, Component], BeforeValidator(_inertia)
+]
+Acceleration = Annotated[_Vector, BeforeValidator(partial(three, kind="acceleration"))]
+Force = Annotated[_Vector, BeforeValidator(partial(three, kind="force"))]
+Torque = Annotated[_Vector, BeforeValidator(partial(three, kind="torque"))]
+Link = Annotated[int, BeforeValidator(_link), WithJsonSchema({"type": "integer", "minimum": 1})]
+TwoLinks = Annotated[tuple[Link, Link], BeforeValidator(_two)]
+Between = Annotated[tuple[Component, Component], BeforeValidator(_between)]
+Table = Annotated[
+    tuple[tuple[float, float], ...],
+    BeforeValidator(_table),
+    WithJsonSchema({"type": ["string", "array"], "items": {"type": "array"}}),
+]
+Stiffness = Annotated[float, BeforeValidator(partial(_of_spring, key="stiffness")), _JSON]
+Damping = Annotated[float, BeforeValidator(partial(_of_spring, key="damping")), _JSON]
+Free = Annotated[float, BeforeValidator(partial(_of_spring, key="free")), _JSON]
 
 
 class ForcesForm(TableForm):

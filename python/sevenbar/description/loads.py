@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 from sevenbar.forces.acting import Load, Spring
@@ -11,29 +11,18 @@ from sevenbar.forces.loading import Loading
 from sevenbar.text.units import LENGTHS, MASSES
 
 if TYPE_CHECKING:
-    from sevenbar.description.load_schema import BodyForm, ForcesForm, LoadForm, SpringForm
+    from sevenbar.description.load_schema import BodyForm, LoadForm, SpringForm
+    from sevenbar.description.schema import LinkageForm
 
 
-def loading_of(
-    forces: ForcesForm,
-    bodies: Sequence[BodyForm],
-    loads: Sequence[LoadForm],
-    springs: Sequence[SpringForm],
-    *,
-    length_unit: str,
-    columns: Mapping[str, str],
-) -> Loading:
-    """What acts on a linkage; `columns` are those that the names of joints mean."""
-    found: dict[int, tuple[Body, ...]] = {}
-    for body in bodies:
-        own = body_of(body, forces.mass_unit, length_unit)
-        found[body.link] = (*found.get(body.link, ()), own)
-    return Loading(
-        forces.gravity,
-        found,
-        tuple(map(load_of, loads)),
-        tuple(spring_of(spring, columns) for spring in springs),
-    )
+def loading_of(form: LinkageForm) -> Loading:
+    """What acts on the linkage of a form."""
+    bodies: dict[int, tuple[Body, ...]] = {}
+    for body in form.body:
+        own = body_of(body, form.forces.mass_unit, form.length_unit)
+        bodies[body.link] = (*bodies.get(body.link, ()), own)
+    springs = tuple(spring_of(spring, form.first_columns) for spring in form.spring)
+    return Loading(form.forces.gravity, bodies, tuple(map(load_of, form.load)), springs)
 
 
 def body_of(body: BodyForm, mass_unit: str, length_unit: str) -> Body:

@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import TableError, of_extra
+from sevenbar.errors import TableError, of_extra, read_start
 
 #: Cylinders are on one axis where their directions agree to this [rad] and their lines to this [mm]: the
 #: digits that CAD programs write.
@@ -219,13 +219,6 @@ def _sequence() -> Any:
 
 
 def _refuse_other_files(path: Path) -> None:
-    try:
-        with path.open("rb") as file:
-            head = file.read(1000)
-    except FileNotFoundError:
-        raise TableError(f"{path}: no such file; give the path of a STEP file") from None
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise TableError(f"{path}: cannot be read: {reason}; give the path of a STEP file") from None
+    head = read_start(path, 1000, "a STEP file", lambda message: TableError(f"{path}: {message}"))
     if b"ISO-10303-21" not in head:
         raise TableError(f"{path}: is no STEP file; export the model as STEP (.step, .stp)")

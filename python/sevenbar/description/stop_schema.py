@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo
 
-from sevenbar.description.load_values import Link
+from sevenbar.description.load_schema import Link
 from sevenbar.description.values import (
     Angle,
     Component,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.errors import RequestError, no_joint, shown, suggestion
 from sevenbar.forces.sizing import Bearing, Sizing
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
@@ -17,7 +17,7 @@ from sevenbar.kinematics.dynamics.force_measures import force_slopes, mass_slope
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.numbers.gradients import MeasureSlopes, measure_slopes
 from sevenbar.kinematics.numbers.sensitivity import Numbers
-from sevenbar.kinematics.ranges.extent_measures import greatest_bend, joint_extent, least_gap, usable_share
+from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 from sevenbar.kinematics.ranges.extent_slopes import extent_slopes, stopped_measures
 
 #: What a measure is a number of: of angles and lengths by the output.
@@ -133,6 +133,51 @@ def _of_sizing(name: str, quantity: Quantity, pick: Callable[[Sizing], float], t
     return Measure(name, "circuit", quantity, value, title)
 
 
+def _joint_extent(circuit: Circuit, joint: str) -> float | None:
+    """High less low of a joint [deg, or length]; `None` where it is endless."""
+    try:
+        ranges = circuit.joint_ranges
+    except NotFollowedError:
+        return None
+    found = ranges.get(joint) or ranges.get(f"{joint}.1")
+    if found is None:
+        if joint in {name.rpartition(".")[0] or name for name in circuit.columns}:
+            raise RequestError(
+                f"measure: joint {shown(joint)} is a ball, which has no range; give ball_angle:{joint}"
+            )
+        raise RequestError(f"measure: {no_joint(joint, list(ranges))}")
+    extent = found.extent
+    return math.degrees(extent) if extent is not None and found.turns else extent
+
+
+def _greatest_bend(circuit: Circuit, joint: str) -> float | None:
+    """The greatest angle of a ball or universal joint from its seat [deg]."""
+    try:
+        return math.degrees(circuit.ball_cone(joint).greatest.value)
+    except NotFollowedError:
+        return None
+    except RequestError as error:
+        raise RequestError(f"measure: {str(error).partition(': ')[2]}") from None
+
+
+def _least_gap(circuit: Circuit) -> float | None:
+    """The least distance of links less their radii [length], of those with a radius where there are any."""
+    try:
+        found = circuit.clearances
+    except NotFollowedError:
+        return None
+    thick = [one for one in found if one.radii] or found
+    return min((one.gap for one in thick), default=None)
+
+
+def _usable_share(circuit: Circuit) -> float | None:
+    """What part of the circuit is within the stops, by length."""
+    try:
+        return circuit.allowed.share
+    except NotFollowedError:
+        return None
+
+
 #: Every measure of the motion that has a name: the core's batches have them, too.
 MEASURES: dict[str, Measure] = _by_name(
     Measure("motion_type", "linkage", "word", lambda m: m.motion_type, "motion type"),
@@ -161,8 +206,8 @@ FORCE_MEASURES: dict[str, Measure] = _by_name(
 
 #: Measures of how far a circuit takes its joints and links, and of its stops.
 EXTENT_MEASURES: dict[str, Measure] = _by_name(
-    Measure("clearance", "circuit", "length", least_gap, "least distance of links, less their radii"),
-    Measure("usable", "circuit", "ratio", usable_share, "part of the circuit within all stops"),
+    Measure("clearance", "circuit", "length", _least_gap, "least distance of links, less their radii"),
+    Measure("usable", "circuit", "ratio", _usable_share, "part of the circuit within all stops"),
 )
 
 #: All of these.
@@ -185,8 +230,8 @@ def _of_bearing(pick: Callable[[Bearing], float]) -> Callable[[Circuit, str], fl
 
 #: Measures of how far a joint goes.
 JOINT_EXTENTS: dict[str, OfJoint] = {
-    "range": ("joint", joint_extent, "range of joint {}; none where it is endless"),
-    "ball_angle": ("angle", greatest_bend, "greatest angle of joint {} from its seat"),
+    "range": ("joint", _joint_extent, "range of joint {}; none where it is endless"),
+    "ball_angle": ("angle", _greatest_bend, "greatest angle of joint {} from its seat"),
 }
 
 #: Measures of what a joint bears.

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.errors import TableError, shown
+from sevenbar.errors import TableError, read_start, shown
 from sevenbar.text.units import MeasuredUnit, is_unit, measured_unit
 from sevenbar.text.workbook import ZIP, first_sheet_text, refuse_old
 
@@ -248,16 +248,13 @@ def read_text(path: Path, of: str) -> str:
 
 def read_bytes(path: Path, of: str) -> bytes:
     """The content of a file, as bytes; `TableError` if it is missing, empty or too large for a table."""
-    try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except FileNotFoundError:
-        raise TableError(f"{path}: no such file; give the path of a table of {of}") from None
-    except IsADirectoryError:
-        raise TableError(f"{path}: is a folder; give the path of a table in it") from None
-    except (OSError, ValueError) as error:
-        reason = (getattr(error, "strerror", None) or str(error)).lower()
-        raise TableError(f"{path}: cannot be read: {reason}; give the path of a table") from None
+    content = read_start(
+        path,
+        LARGEST_FILE + 1,
+        "a table",
+        lambda message: TableError(f"{path}: {message}"),
+        lambda: f"give the path of a table of {of}",
+    )
     if len(content) > LARGEST_FILE:
         raise TableError(
             f"{path}: larger than {LARGEST_FILE} bytes; give a table of fewer rows, a thousand are plenty"

@@ -113,7 +113,7 @@ class Circuit(Printed, WithExtents):
 
         Source: docs/theory_measures.md, (4) to (7).
         """
-        return self._answers.transmission(self) if self._transmission is None else self._transmission
+        return self._transmission or self._answers.transmission(self.fleeting())
 
     @cached_property
     def transmission_angle(self) -> Floats | None:
@@ -155,7 +155,7 @@ class Circuit(Printed, WithExtents):
         >>> sorted(abs(round(x, 12)) for x in (joint.advantage.lowest, joint.advantage.highest))
         [0.8, 1.25]
         """
-        return self._answers.advantage(self)
+        return self._answers.advantage(self.fleeting())
 
     @cached_property
     def tally(self) -> Tally:

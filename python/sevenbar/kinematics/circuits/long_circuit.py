@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields
-from functools import cached_property
 from typing import Any
 
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.circuit_values import Extremes, Tally
+from sevenbar.kinematics.circuits.circuit_values import Tally
 
 #: Samples a turn from which circuits are long: eight circuits of fewer rows take some 100 MB.
 LONG = 20_000
@@ -47,18 +46,6 @@ class LongCircuit(Circuit):
     def __reduce__(self) -> tuple[type[Circuit], tuple[Any, ...]]:
         # pickled as its numbers
         return Circuit, tuple(getattr(self, f.name) for f in fields(Circuit))
-
-    @cached_property
-    def transmission(self) -> Extremes | None:
-        """As of any circuit; the rows that it takes are not kept."""
-        rows = self.fleeting()
-        return super().transmission if rows is self else rows.transmission
-
-    @cached_property
-    def advantage(self) -> Extremes | None:
-        """As of any circuit; the rows that it takes are not kept."""
-        rows = self.fleeting()
-        return super().advantage if rows is self else rows.advantage
 
     def fleeting(self) -> Circuit:
         """The circuit with its rows; this one does not keep them, unless it has them already."""

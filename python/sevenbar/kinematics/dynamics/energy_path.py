@@ -21,7 +21,7 @@ from sevenbar.curves.stationary import nodes, series_through
 from sevenbar.forces.free_motion.course import EnergyCourse
 from sevenbar.kinematics.dynamics.forces import ForceSolver
 from sevenbar.kinematics.paths.circuit_path import TERMS, CircuitPath, divided
-from sevenbar.kinematics.paths.path_rows import closed_on
+from sevenbar.kinematics.paths.covered_path import closed_on
 from sevenbar.text.units import LENGTHS
 
 #: A piece is fine enough where the last terms are below this part of a quantity's greatest value.

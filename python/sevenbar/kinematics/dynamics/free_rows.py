@@ -19,7 +19,7 @@ from sevenbar.curves.stationary import series_through
 from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.kinematics.dynamics.energy_path import EnergyBuilder
-from sevenbar.kinematics.paths.path_rows import curve_on, rows_on
+from sevenbar.kinematics.paths.covered_path import curve_on, rows_on
 
 #: A ball whose turns' series end above this [rad] is near a singular pose, where they have no rates.
 UNDEFINED = 1e-8

@@ -6,10 +6,20 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from sevenbar.arrays import finite_number
+import numpy.typing as npt
+
+from sevenbar.arrays import finite_array, finite_number, triple
 from sevenbar.errors import RequestError, shown
 
 Three = tuple[float, float, float]
+
+
+def direction(key: str, value: npt.ArrayLike) -> Three:
+    """Three finite numbers, not all 0, or `RequestError`."""
+    array = finite_array(key, value)
+    if array.size != 3 or not array.any():
+        raise RequestError(f"{key}: {shown(value)} is not a direction; give three numbers, not all 0")
+    return triple(key, array)
 
 
 @dataclass(frozen=True)
@@ -27,14 +37,8 @@ class Cone:
 
     def __post_init__(self) -> None:
         for key in ("seat", "stud"):
-            value = getattr(self, key)
-            if value is not None:
-                three = tuple(finite_number(key, each) for each in value)
-                if len(three) != 3 or not any(three):
-                    raise RequestError(
-                        f"{key}: {shown(value)} is not a direction; give three numbers, not all 0"
-                    )
-                object.__setattr__(self, key, three)
+            if (value := getattr(self, key)) is not None:
+                object.__setattr__(self, key, direction(key, value))
         if self.angle is not None and not 0 < finite_number("cone", self.angle) <= math.pi:
             raise RequestError(
                 f"cone: {math.degrees(self.angle):.6g} deg is no cone; give an angle above 0, up to 180 deg"

@@ -15,12 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Floats
 from sevenbar.curves.least_cone import angles
 from sevenbar.errors import RequestError, no_joint, shown
 from sevenbar.kinematics.dynamics.link_bodies import joint_places
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import about, inverse, unit
+from sevenbar.kinematics.loop.stops import direction
 
 #: Sine of the angle of two lines below which it has a kink: its slopes are known to half the digits there.
 KINK = 1e-9
@@ -84,8 +85,8 @@ def ball_angle(
     place = joint_at(linkage, joint)
     own = linkage.joints[place]
     count = len(linkage.joints)
-    u = rod(linkage, place or count, place) if seat is None else _direction("seat", seat)
-    v = rod(linkage, place + 1, place) if stud is None else _direction("stud", stud)
+    u = rod(linkage, place or count, place) if seat is None else np.array(direction("seat", seat))
+    v = rod(linkage, place + 1, place) if stud is None else np.array(direction("stud", stud))
     turns = tuple((own.before(step)[:3, :3], step.axis) for step in own.row.steps)
     before, after = sides(linkage, place)
     return BallAngle(own.name, linkage.places[place], unit(before @ u), unit(after @ v), turns)
@@ -161,10 +162,3 @@ def rod(linkage: Loop, link: int, joint: int) -> Floats:
     elif link == count:
         frame = frame @ linkage.ground[:3, :3]
     return np.asarray(frame[:, 2])
-
-
-def _direction(key: str, value: npt.ArrayLike) -> Floats:
-    direction = finite_array(key, value)
-    if direction.size != 3 or not direction.any():
-        raise RequestError(f"{key}: {shown(value)} is not a direction; give three numbers, not all 0")
-    return direction

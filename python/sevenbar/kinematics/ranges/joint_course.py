@@ -18,8 +18,7 @@ from sevenbar.kinematics.circuits.poses import frames_of, joint_frames
 from sevenbar.kinematics.loop.rods import RodPair
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import CircuitPath, NotFollowedError
-from sevenbar.kinematics.paths.covered_path import covered_path
-from sevenbar.kinematics.paths.path_rows import closed_on, curve_on, rows_on
+from sevenbar.kinematics.paths.covered_path import closed_on, covered_path, curve_on, rows_on
 from sevenbar.kinematics.ranges.ball_angle import BallAngle
 
 #: Poses that miss the ground by more [relative to the size] are lost ones.
