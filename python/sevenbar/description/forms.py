@@ -26,6 +26,7 @@ from sevenbar.text.units import LENGTHS, as_written, measured_unit
 
 if TYPE_CHECKING:
     from sevenbar.description.schema import JointForm, LinkageForm, LinkForm, RssrForm
+    from sevenbar.forces.bodies import Body
 
 #: One number for each joint: a list, an array, a column of a data frame; a text has a unit of its own.
 Numbers = Sequence[float | str | None] | npt.NDArray[np.float64] | Any
@@ -295,9 +296,14 @@ def _loading(form: LinkageForm) -> Loading:
     if not (form.body or form.load or form.spring):
         return Loading(form.forces.gravity)
     # most files have none
-    from sevenbar.description.loads import loading_of
+    from sevenbar.description.loads import body_of, load_of, spring_of
 
-    return loading_of(form)
+    bodies: dict[int, tuple[Body, ...]] = {}
+    for body in form.body:
+        own = body_of(body, form.forces.mass_unit, form.length_unit)
+        bodies[body.link] = (*bodies.get(body.link, ()), own)
+    springs = tuple(spring_of(spring, form.first_columns) for spring in form.spring)
+    return Loading(form.forces.gravity, bodies, tuple(map(load_of, form.load)), springs)
 
 
 def _stops(form: LinkageForm) -> Stops:

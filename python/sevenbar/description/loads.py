@@ -7,22 +7,10 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body, Solid, tensor_of
-from sevenbar.forces.loading import Loading
 from sevenbar.text.units import LENGTHS, MASSES
 
 if TYPE_CHECKING:
     from sevenbar.description.load_schema import BodyForm, LoadForm, SpringForm
-    from sevenbar.description.schema import LinkageForm
-
-
-def loading_of(form: LinkageForm) -> Loading:
-    """What acts on the linkage of a form."""
-    bodies: dict[int, tuple[Body, ...]] = {}
-    for body in form.body:
-        own = body_of(body, form.forces.mass_unit, form.length_unit)
-        bodies[body.link] = (*bodies.get(body.link, ()), own)
-    springs = tuple(spring_of(spring, form.first_columns) for spring in form.spring)
-    return Loading(form.forces.gravity, bodies, tuple(map(load_of, form.load)), springs)
 
 
 def body_of(body: BodyForm, mass_unit: str, length_unit: str) -> Body:
