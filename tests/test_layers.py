@@ -29,7 +29,6 @@ CORE_IMPORTERS = {
             "solvers/batches",
             "solvers/closed_form",
             "solvers/general",
-            "solvers/surveys",
         )
     ),
 }

@@ -18,7 +18,7 @@ from sevenbar.design.survey.skew_closure import L2, poses, reach
 from sevenbar.design.survey.task import drawn_numbers
 from sevenbar.design.wish import wish_of_function, wish_of_pairs
 from sevenbar.errors import OutputError, RequestError
-from sevenbar.kinematics.solvers.surveys import VERDICTS, survey_figures
+from sevenbar.kinematics.solvers.batches import VERDICTS, survey_figures
 
 #: A flap drive: a quarter turn of the motor, 23.75 deg of the flap, rod ends that take 15 deg.
 FLAP = Travel(math.radians(90), math.radians(23.75))

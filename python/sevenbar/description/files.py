@@ -207,15 +207,13 @@ def decoded(content: bytes, place: str) -> str:
         found.linkage(from_description, place)  # its mistakes, with their places in the table
         return found.toml(Path(place).name)
     # the mark of UTF-16, as Notepad's "Unicode" writes it
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        try:
-            return content.decode("utf-16").replace("\r\n", "\n")
-        except UnicodeDecodeError:
-            raise DescriptionError.of_all(place, "damaged UTF-16 text; save the file as UTF-8") from None
+    wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
     try:
-        return content.decode("utf-8-sig").replace("\r\n", "\n")
+        return content.decode("utf-16" if wide else "utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
-        raise DescriptionError.of_all(place, _not_utf8(content, error.start)) from None
+        damaged = "damaged UTF-16 text; save the file as UTF-8"
+        flaw = damaged if wide else _not_utf8(content, error.start)
+        raise DescriptionError.of_all(place, flaw) from None
 
 
 def _not_utf8(content: bytes, start: int) -> str:

@@ -19,34 +19,20 @@ def moved_loads(
     `put` moves places (.., 3), `rotation` (3, 3) directions. Forces along the axes of the ground stay, as
     gravity does; those along the axes of their link turn with it.
     """
-    change: dict[str, Callable[[Mapping[str, Any]], dict[str, Any]]] = {
-        "body": lambda body: _body(body, put, rotation),
-        "load": lambda load: _load(load, put, rotation),
-        "spring": lambda spring: _placed(spring, "at", put),
-    }
     return {
-        head: [own(table) for table in description[head]]
-        for head, own in change.items()
+        head: [_moved(table, put, rotation) for table in description[head]]
+        for head in ("body", "load", "spring")
         if head in description
     }
 
 
-def _placed(table: Mapping[str, Any], key: str, put: Callable[[Floats], Floats]) -> dict[str, Any]:
-    if key not in table:
-        return dict(table)
-    return {**table, key: put(np.array(table[key], dtype=np.float64)).tolist()}
-
-
-def _body(body: Mapping[str, Any], put: Callable[[Floats], Floats], rotation: Floats) -> dict[str, Any]:
-    found = _placed(body, "centre", put)
-    if "inertia" in body:
-        found["inertia"] = entries_of(rotation @ tensor_of(body["inertia"]) @ rotation.T)
-    return found
-
-
-def _load(load: Mapping[str, Any], put: Callable[[Floats], Floats], rotation: Floats) -> dict[str, Any]:
-    found = _placed(load, "at", put)
-    for key in ("force", "torque") if load.get("axes") == "link" else ():
-        if key in load:
-            found[key] = (rotation @ np.array(load[key], dtype=np.float64)).tolist()
+def _moved(table: Mapping[str, Any], put: Callable[[Floats], Floats], rotation: Floats) -> dict[str, Any]:
+    """A table with its places, its tensor and what lies along the axes of its link."""
+    found = dict(table)
+    for key in table.keys() & {"centre", "at"}:
+        found[key] = put(np.array(table[key], dtype=np.float64)).tolist()
+    if "inertia" in table:
+        found["inertia"] = entries_of(rotation @ tensor_of(table["inertia"]) @ rotation.T)
+    for key in table.keys() & {"force", "torque"} if table.get("axes") == "link" else ():
+        found[key] = (rotation @ np.array(table[key], dtype=np.float64)).tolist()
     return found

@@ -30,7 +30,7 @@ def linkage_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
         rows = [[dimensions[key] for key in keys]]
         return [*head, "input", "speed"], [[*rows[0], linkage.drive.joint, _speed(linkage)]]
     drive = ["input", "output", "speed"]
-    marks = [_marks(linkage, i) for i in range(len(linkage.joints))]
+    marks = [_marks(linkage, joint.columns) for joint in linkage.joints]
     names = [joint.name for joint in linkage.joints]
     if linkage.in_rows:
         units = {"length": length, "twist": angle, "offset": length, "angle": angle, "pitch": length}
@@ -70,19 +70,11 @@ def _of_row(row: Mapping[str, Any], key: str) -> Cell:
     return 0 if value is None and key in ("length", "twist") else value
 
 
-def _marks(linkage: Loop, index: int) -> Sequence[Cell]:
-    """Marks of input and output, and the speed at the input."""
-    columns = linkage.joints[index].columns
-    is_input = linkage.drive.joint in columns
-    marked = [_mark(columns, linkage.drive.joint), _mark(columns, linkage.drive.output)]
-    return [*marked, _speed(linkage) if is_input else None]
-
-
-def _mark(columns: Sequence[str], chosen: str) -> Cell:
-    """`x`, or the place of the freedom of a joint that has several."""
-    if chosen not in columns:
-        return None
-    return "x" if len(columns) == 1 else chosen
+def _marks(linkage: Loop, columns: Sequence[str]) -> Sequence[Cell]:
+    """Marks of input and output, `x` or the freedom of a joint that has several; the speed at the input."""
+    ends = (linkage.drive.joint, linkage.drive.output)
+    marked = [(end if len(columns) > 1 else "x") if end in columns else None for end in ends]
+    return [*marked, _speed(linkage) if linkage.drive.joint in columns else None]
 
 
 def _speed(linkage: Loop) -> str:

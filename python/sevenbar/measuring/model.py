@@ -3,7 +3,7 @@
 Parameters z are the numbers of the description that move joints, in units of length and radians, and two
 offsets. The rows are followed from pose to pose as z changes, each on its own pass; a row that goes over a
 dead centre of the input on the way does not close. A coupler that follows the other lengths of an RSSR takes
-its derivatives from theirs (`kinematics.numbers.following`).
+its derivatives from theirs (`kinematics.numbers.dimensions`).
 
 Source: docs/theory_design.md, (1) and (2).
 """
@@ -18,7 +18,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import NotCoveredError
-from sevenbar.kinematics.numbers.following import Following
+from sevenbar.kinematics.numbers.dimensions import Following
 from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers, Slopes
 from sevenbar.measuring.compare import Comparison
 from sevenbar.measuring.measured import OUTPUTS

@@ -132,15 +132,16 @@ def _quotient(size: float, other: float) -> float:
 
 
 def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str) -> float:
+    hint = f"give a number and a unit, as in {example}"
     if isinstance(value, str):
-        speed = _written_speed(value, sizes, motion, example)
+        speed = _written_speed(value, sizes, motion, hint)
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
         try:
             speed = float(value)
         except OverflowError:
             speed = math.inf
     else:
-        raise RequestError(f"{shown(value)} is not a speed; {_with_unit(example)}")
+        raise RequestError(f"{shown(value)} is not a speed; {hint}")
     if SLOWEST <= abs(speed) <= FASTEST:
         return speed
     first = example.split(" or ")[0]
@@ -151,29 +152,21 @@ def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str)
     )
 
 
-def _written_speed(value: str, sizes: Mapping[str, float], motion: str, example: str) -> float:
-    match = _QUANTITY.fullmatch(value.replace("\u00b0", "deg"))
-    if match is None:
-        raise RequestError(f"{shown(value)} is not a speed; {_with_unit(example)}")
-    number, unit = match.groups()
+def _written_speed(value: str, sizes: Mapping[str, float], motion: str, hint: str) -> float:
+    parts = split_quantity(value)
+    if parts is None:
+        raise RequestError(f"{shown(value)} is not a speed; {hint}")
+    number, unit = parts
     # zero is zero in any unit
-    if unit not in sizes and (unit or float(number) != 0):
-        raise RequestError(_no_such_speed(value, unit, sizes, motion, _with_unit(example)))
-    return float(number) * sizes.get(unit, 1.0)
-
-
-def _with_unit(example: str) -> str:
-    return f"give a number and a unit, as in {example}"
-
-
-def _no_such_speed(value: str, unit: str, sizes: Mapping[str, float], motion: str, hint: str) -> str:
+    if unit in sizes or (not unit and float(number) == 0):
+        return float(number) * sizes.get(unit, 1.0)
     if not unit:
-        return f"{shown(value)} has no unit; {hint}"
+        raise RequestError(f"{shown(value)} has no unit; {hint}")
     if motion == "turning" and unit in [f"{length}/s" for length in LENGTHS]:
-        return f"{shown(value)} is a sliding speed, and the input turns; {hint}"
+        raise RequestError(f"{shown(value)} is a sliding speed, and the input turns; {hint}")
     if motion == "sliding" and unit in TURNING_SPEEDS:
-        return f"{shown(value)} is a turning speed, and the input slides; {hint}"
-    return unknown_unit(unit, sizes)
+        raise RequestError(f"{shown(value)} is a turning speed, and the input slides; {hint}")
+    raise RequestError(unknown_unit(unit, sizes))
 
 
 #: Other spellings of the units in text tables.

@@ -24,7 +24,7 @@ from sevenbar.design.survey.skew_closure import ANGLE, COUNT, START, Poses, leas
 from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.survey.task import SurveyTask, SwingWish, Travel, drawn_numbers, scale_of
 from sevenbar.design.task.programs import MinimaxValues, lowered
-from sevenbar.kinematics.solvers.surveys import NUMBERS
+from sevenbar.kinematics.solvers.batches import NUMBERS
 from sevenbar.text.progress import Progress
 
 #: Inputs at which a polished design is measured, over its range or over a turn.

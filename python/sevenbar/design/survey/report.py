@@ -16,7 +16,7 @@ from sevenbar.design.survey.task import SurveyTask
 from sevenbar.design.tables import columns_table, plain_designs
 from sevenbar.design.task.report import TaskDesigns
 from sevenbar.design.wish import Wish
-from sevenbar.kinematics.solvers.surveys import NUMBERS
+from sevenbar.kinematics.solvers.batches import NUMBERS
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, page
 from sevenbar.text.words import retold, retold_parts, say

@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.kinematics.solvers.batches import CODES
-from sevenbar.kinematics.solvers.surveys import VERDICTS, RawTally
+from sevenbar.kinematics.solvers.batches import CODES, VERDICTS, RawTally
 
 #: How many of the best are kept.
 BEST = 100

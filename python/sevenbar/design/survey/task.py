@@ -15,8 +15,7 @@ from sevenbar.design.survey.drawn import FORMAT, Drawn
 from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.wish import Wish
 from sevenbar.errors import RequestError, check_word, shown, suggestion
-from sevenbar.kinematics.solvers.batches import CODES
-from sevenbar.kinematics.solvers.surveys import NUMBERS, VERDICTS, CoreSurvey, core_survey
+from sevenbar.kinematics.solvers.batches import CODES, NUMBERS, VERDICTS, CoreSurvey, core_survey
 
 #: Readings at which linkages are compared: about so far apart [rad], and how many.
 READING_STEP, FEWEST_READINGS, MOST_READINGS = math.radians(7.5), 7, 16

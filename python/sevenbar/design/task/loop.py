@@ -11,7 +11,7 @@ from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.kinematics.numbers.following import Following
+from sevenbar.kinematics.numbers.dimensions import Following
 from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
 from sevenbar.kinematics.numbers.word import Carried
 

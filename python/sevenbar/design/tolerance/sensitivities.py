@@ -15,8 +15,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable, chosen_circuit
 from sevenbar.kinematics.dynamics.force_measures import force_slopes
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.numbers.dimensions import Dimension
-from sevenbar.kinematics.numbers.following import Following
+from sevenbar.kinematics.numbers.dimensions import Dimension, Following
 from sevenbar.kinematics.numbers.gradients import QUANTITIES, MeasureSlopes, measure_slopes
 from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
 from sevenbar.kinematics.ranges.extent_slopes import extent_slopes

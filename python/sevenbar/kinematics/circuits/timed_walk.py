@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,6 +19,15 @@ from sevenbar.kinematics.loop.geometry import Loop
 SAME_INPUT = 1e-9
 #: Rows nearer to a sample are the sample.
 SAME_ROW = 1e-9
+
+
+#: By whether a stretch stands still first and last: the phase at a share of its input, the share at a phase.
+PHASES: Mapping[tuple[bool, bool], tuple[Callable[[float], float], Callable[[float], float]]] = {
+    (True, True): (lambda x: 2 * math.atan2(math.sqrt(x), math.sqrt(1 - x)), lambda p: math.sin(p / 2) ** 2),
+    (True, False): (math.sqrt, lambda p: p**2),
+    (False, True): (lambda x: 1 - math.sqrt(1 - x), lambda p: 1 - (1 - p) ** 2),
+    (False, False): (lambda x: x, lambda p: p),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,19 +67,11 @@ class Stretch:
     def _phase(self, value: float) -> float:
         first, last = float(self.input[0]), float(self.input[-1])
         share = min(max((value - first) / (last - first), 0.0), 1.0) if last != first else 0.0
-        if self.stands_first and self.stands_last:
-            return 2 * math.atan2(math.sqrt(share), math.sqrt(1 - share))
-        if self.stands_first:
-            return math.sqrt(share)
-        return 1 - math.sqrt(1 - share) if self.stands_last else share
+        return PHASES[self.stands_first, self.stands_last][0](share)
 
     def _share(self, phase: float) -> float:
         """How much of its input a pass has gone at a phase."""
-        if self.stands_first and self.stands_last:
-            return math.sin(phase / 2) ** 2
-        if self.stands_first:
-            return phase**2
-        return 1 - (1 - phase) ** 2 if self.stands_last else phase
+        return PHASES[self.stands_first, self.stands_last][1](phase)
 
 
 @dataclass(frozen=True, eq=False)

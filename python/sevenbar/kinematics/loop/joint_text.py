@@ -70,9 +70,7 @@ def joint_number(key: str, value: npt.ArrayLike, linkage: Loop, column: int) -> 
 
 def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -> Floats:
     """Values of a joint (n,) [rad, or length] that a caller gives: numbers, or texts; finite or not."""
-    if not isinstance(values, (str, list, tuple)):
-        return real_array(key, values)
-    return real_array(key, _read(key, values, [linkage.unit_of(column)] * len_of(values)))
+    return real_array(key, _read(key, values, [linkage.unit_of(column)]))
 
 
 def joint_speed(speed: object, linkage: Loop, column: int) -> float:
@@ -97,14 +95,9 @@ def pose_numbers(key: str, values: npt.ArrayLike, linkage: Loop) -> Floats:
     return finite_array(key, _read(key, values, units))
 
 
-def len_of(values: npt.ArrayLike) -> int:
-    """How many values there are."""
-    return len(values) if isinstance(values, (list, tuple)) else 1
-
-
 def _read(key: str, values: npt.ArrayLike, units: list[str]) -> npt.ArrayLike:
-    """Values with texts read, each in its unit."""
-    if isinstance(values, str) and units:
+    """Values with texts read, each in its unit; the last one is that of all others."""
+    if isinstance(values, str):
         return given_number(key, values, units[0])  # type: ignore[return-value]
     if not isinstance(values, (list, tuple)) or not any(isinstance(value, str) for value in values):
         return values
