@@ -1,4 +1,4 @@
-"""A quantity along a cycle: what each kind of curve says of it; the kind of which only rows in time are known."""
+"""A quantity along a cycle: what each kind of curve says of it; the kind of which rows in time are all."""
 
 from __future__ import annotations
 

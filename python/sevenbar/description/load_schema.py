@@ -148,8 +148,7 @@ class ForcesForm(TableForm):
     )
     mass_unit: Annotated[
         str,
-        one_of("unit", MASSES),
-        WithJsonSchema({"enum": list(MASSES)}),
+        *one_of("unit", MASSES),
         key("of the masses and inertias in this file"),
     ] = "kg"
 
@@ -169,8 +168,7 @@ class BodyForm(TableForm):
     ] = None
     solid: Annotated[
         str | None,
-        one_of("solid", SOLIDS),
-        WithJsonSchema({"enum": list(SOLIDS)}),
+        *one_of("solid", SOLIDS),
         key("rod: uniform, between the link's two joints; point: in its centre; drawn: as exports draw it"),
     ] = None
     name: Annotated[Text | None, key("for people; optional")] = None
@@ -187,8 +185,7 @@ class LoadForm(TableForm):
     torque: Annotated[Torque, key("on the link", "N m")] = (0.0, 0.0, 0.0)
     axes: Annotated[
         str,
-        one_of("choice of axes", LOAD_AXES),
-        WithJsonSchema({"enum": list(LOAD_AXES)}),
+        *one_of("choice of axes", LOAD_AXES),
         key("of force and torque: those of the report frame, or those of the link's points"),
     ] = "ground"
     between: Annotated[

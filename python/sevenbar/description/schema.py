@@ -13,7 +13,6 @@ from pydantic import (
     BeforeValidator,
     Field,
     ValidationError,
-    WithJsonSchema,
 )
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
@@ -87,8 +86,7 @@ class JointForm(TableForm):
 
     kind: Annotated[
         str,
-        one_of("joint kind", JOINT_KINDS),
-        WithJsonSchema({"enum": list(JOINT_KINDS)}),
+        *one_of("joint kind", JOINT_KINDS),
         key("what the joint lets move"),
     ]
     at: Annotated[Vector, key("any point of the axis; of U and S the centre", "length")]
@@ -122,9 +120,8 @@ class LinkForm(TableForm):
 
     joint: Annotated[
         str,
-        one_of("joint kind", ROW_KINDS),
+        *one_of("joint kind", ROW_KINDS),
         BeforeValidator(_row_kind),
-        WithJsonSchema({"enum": list(ROW_KINDS)}),
         key("the joint before this link"),
     ] = "R"
     name: Annotated[Text | None, key("of the joint; left out, theta_1, theta_2 ..")] = None
@@ -175,14 +172,12 @@ class LinkageForm(TableForm):
     name: Annotated[Text, key("of the linkage, for reports and figures")] = "linkage"
     length_unit: Annotated[
         str,
-        one_of("unit", LENGTHS),
-        WithJsonSchema({"enum": list(LENGTHS)}),
+        *one_of("unit", LENGTHS),
         key("of all lengths; carried into every header, never converted"),
     ] = "mm"
     angle_unit: Annotated[
         str,
-        one_of("unit", ANGLES),
-        WithJsonSchema({"enum": list(ANGLES)}),
+        *one_of("unit", ANGLES),
         key("of the angles written in this file"),
     ] = "deg"
     drive: Annotated[DriveForm, key("the input, the output, the speed")] = DriveForm.model_construct()

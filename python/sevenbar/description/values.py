@@ -152,8 +152,8 @@ def crossing(axes: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
     return axes
 
 
-def one_of(what: str, known: Mapping[str, object] | tuple[str, ...]) -> BeforeValidator:
-    """A word that is known, or a message with the nearest one; `what` it is."""
+def one_of(what: str, known: Mapping[str, object] | tuple[str, ...]) -> tuple[Any, ...]:
+    """Marks of a word that is known, or of a message with the nearest one; `what` it is."""
 
     def choose(value: object) -> str:
         if isinstance(value, str) and value in known:
@@ -164,7 +164,7 @@ def one_of(what: str, known: Mapping[str, object] | tuple[str, ...]) -> BeforeVa
         near = f"did you mean '{meant}'? " if meant in known else suggestion(str(value), known)
         raise refuse(f"{shown(value)} is not a {what}; {near}allowed: {', '.join(known)}")
 
-    return BeforeValidator(choose)
+    return BeforeValidator(choose), WithJsonSchema({"enum": list(known)})
 
 
 def _text(value: object) -> str:

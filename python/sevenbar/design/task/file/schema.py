@@ -252,8 +252,7 @@ class LimitsForm(TableForm):
 
     motion_type: Annotated[
         str | None,
-        one_of("motion type", MOTION_TYPES),
-        WithJsonSchema({"enum": list(MOTION_TYPES)}),
+        *one_of("motion type", MOTION_TYPES),
         key("seen from its input; left out, any"),
     ] = None
     size: Annotated[Span | None, key("shortest link and longest dimension", "length")] = None
@@ -303,14 +302,12 @@ class TaskForm(TableForm):
     limits: Annotated[LimitsForm, key("motion type, size, transmission")] = LimitsForm()
     goal: Annotated[
         str,
-        one_of("goal", GOALS),
-        WithJsonSchema({"enum": list(GOALS)}),
+        *one_of("goal", GOALS),
         key("what is made small: the squares of all residuals, or the greatest of them"),
     ] = "least squares"
     placement: Annotated[
         str,
-        one_of("placement", PLACEMENTS),
-        WithJsonSchema({"enum": list(PLACEMENTS)}),
+        *one_of("placement", PLACEMENTS),
         key("whether the linkage may stand anywhere, perhaps in any size; paths and poses see it"),
     ] = "fixed"
     follow: Annotated[
