@@ -46,18 +46,14 @@ def from_table(
         'double-crank'
     """
     if isinstance(source, str | os.PathLike):
-        found, place = read_table_description(Path(source)), str(source)
+        path, place = Path(source), str(source)
+        found = description_of_bytes(read_bytes(path, "a linkage"), str(path))
     else:
         found, place = described_frame(source), "table"
     found.raw["name"] = name or found.raw["name"]
     if speed is not None:
         found.raw["drive"] = {**found.raw.get("drive", {}), "speed": speed}
     return found.linkage(from_description, place)
-
-
-def read_table_description(path: Path) -> TableDescription:
-    """What a table describes; raises `DescriptionError`, `TableError` for a file that is none."""
-    return description_of_bytes(read_bytes(path, "a linkage"), str(path))
 
 
 def description_of_bytes(content: bytes, source: str) -> TableDescription:

@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from sevenbar.errors import TableError, read_start, shown
 from sevenbar.text.units import MeasuredUnit, is_unit, measured_unit
-from sevenbar.text.workbook import ZIP, first_sheet_text, refuse_old
+from sevenbar.text.workbook import ZIP, refuse_old, sheets_of
 
 #: Largest file [bytes]: a table of a million rows has some 50 MB, so a larger one is the wrong file.
 LARGEST_FILE = 200_000_000
@@ -268,7 +268,7 @@ def text_of_bytes(content: bytes, path: str) -> str:
     """The text of a file's bytes, as `read_text` gives it."""
     refuse_old(content, path)
     if content.startswith(ZIP):
-        return first_sheet_text(content, path)
+        return sheets_of(content, path)[0].text()
     wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
     for encoding in ("utf-16",) if wide else ("utf-8-sig", "cp1252"):
         try:

@@ -66,11 +66,6 @@ def sheets_of(content: bytes, source: str) -> list[WorkbookSheet]:
     return sheets
 
 
-def first_sheet_text(content: bytes, source: str) -> str:
-    """The text of the first sheet that is not empty; raises as `sheets_of` does."""
-    return sheets_of(content, source)[0].text()
-
-
 def _open(content: bytes, source: str, *, data_only: bool) -> Any:
     needs = f"{source}: an Excel workbook needs openpyxl"
     with of_extra("excel", needs, ", or export the table as CSV"):

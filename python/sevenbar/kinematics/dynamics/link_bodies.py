@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -37,13 +38,8 @@ def resolved(loading: Loading, linkage: Loop, *, circuit: int = 0) -> dict[int, 
         ((125.0, 0.0, 0.0), [0.0, 0.00625, 0.00625])
     """
     metre = LENGTHS[linkage.length_unit]
-    drawn: list[Mapping[int, Body]] = []
-
-    def solids() -> Mapping[int, Body]:
-        if not drawn:
-            drawn.append(_drawn(linkage, circuit))
-        return drawn[0]
-
+    # drawn at the first body that is
+    solids = cache(partial(_drawn, linkage, circuit))
     found = {}
     for link, bodies in loading.bodies.items():
         refuse_no_link("bodies", link, linkage)

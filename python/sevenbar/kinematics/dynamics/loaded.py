@@ -97,7 +97,7 @@ def _body(link: int, body: Body, mass_unit: str, linkage: Loop) -> dict[str, Any
 
 
 def _load(load: Load, linkage: Loop) -> dict[str, Any]:
-    size = _size_of_input(linkage)
+    size = _size(linkage, linkage.drive.joint)
     table: dict[str, Any] = {"link": int(load.link)}
     if any(load.force):
         table |= {"at": list(load.at or ()), "force": list(load.force)}
@@ -115,9 +115,7 @@ def _load(load: Load, linkage: Loop) -> dict[str, Any]:
 def _spring(spring: Spring, linkage: Loop) -> dict[str, Any]:
     table: dict[str, Any] = {}
     if spring.joint is not None:
-        column = linkage.columns.index(spring.joint)
-        size = _angle(linkage) if linkage.turns(column) else 1.0
-        table |= {"joint": spring.joint, "free": spring.length / size}
+        table |= {"joint": spring.joint, "free": spring.length / _size(linkage, spring.joint)}
     elif spring.links is not None and spring.at is not None:
         ends = [list(end) for end in spring.at]
         table |= {"links": [int(link) for link in spring.links], "at": ends, "length": spring.length}
@@ -125,11 +123,6 @@ def _spring(spring: Spring, linkage: Loop) -> dict[str, Any]:
     return table | ({"name": spring.name} if spring.name else {})
 
 
-def _angle(linkage: Loop) -> float:
-    """The size [rad] of the unit of angles in the description."""
-    return ANGLES[str(linkage.description.get("angle_unit", "deg"))]
-
-
-def _size_of_input(linkage: Loop) -> float:
-    column = linkage.columns.index(linkage.drive.joint)
-    return _angle(linkage) if linkage.turns(column) else 1.0
+def _size(linkage: Loop, column: str) -> float:
+    """The size [rad, or length] of the unit in which the description has values of a column."""
+    return ANGLES[str(linkage.description.get("angle_unit", "deg"))] if linkage.turns(column) else 1.0

@@ -31,6 +31,19 @@ from sevenbar.text.printing import Printed
 EQUAL_SUMS = 1e-13
 
 
+#: The classes of Grashof's rule; the last two are those of slider-cranks.
+Grashof = Literal[
+    "crank-rocker",
+    "double-crank",
+    "double-rocker",
+    "change point",
+    "triple rocker",
+    "cannot close",
+    "Grashof",
+    "non-Grashof",
+]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class FourBar(Printed):
     """The links of a four-bar or a slider-crank, and their sum by Grashof's rule.
@@ -47,16 +60,7 @@ class FourBar(Printed):
     shortest: str
     longest: str
     excess: float
-    grashof: Literal[
-        "crank-rocker",
-        "double-crank",
-        "double-rocker",
-        "change point",
-        "triple rocker",
-        "cannot close",
-        "Grashof",
-        "non-Grashof",
-    ]
+    grashof: Grashof
     turning: tuple[str, ...]
 
 
@@ -69,18 +73,16 @@ def four_bar_of_links(
     s, p, q, l = (lengths[k] for k in places)  # noqa: E741
     excess = math.fsum((s, l, -p, -q))
     turning: tuple[str, ...] = ()
-    grashof: Literal[
-        "crank-rocker", "double-crank", "double-rocker", "change point", "triple rocker", "cannot close"
-    ]
+    grashof: Grashof
     if abs(excess) <= EQUAL_SUMS * sum(lengths):
         grashof, excess = "change point", 0.0
     elif excess > 0:
         too_long = math.fsum((l, -s, -p, -q)) > EQUAL_SUMS * sum(lengths)
         grashof = "cannot close" if too_long else "triple rocker"
     else:
-        role = roles[shortest]
         opposite = "link 2" if "link 2" in roles else "coupler"
-        grashof = {"ground": "double-crank", opposite: "double-rocker"}.get(role, "crank-rocker")  # type: ignore[assignment]
+        by_role: dict[str, Grashof] = {"ground": "double-crank", opposite: "double-rocker"}
+        grashof = by_role.get(roles[shortest], "crank-rocker")
         turning = tuple(names[k] for k in sorted((shortest, (shortest + 1) % 4)))
     links = _ordered({roles[k]: lengths[k] for k in range(4)})
     return FourBar(kind, links, None, roles[shortest], roles[longest], excess, grashof, turning)
@@ -98,7 +100,7 @@ def slider_crank_of_links(
         offset = 0.0
     shortest, longest = roles if first <= second else reversed(roles)
     excess = math.fsum((s, offset, -l))
-    grashof: Literal["change point", "cannot close", "non-Grashof", "Grashof"]
+    grashof: Grashof
     turning: tuple[str, ...] = ()
     if abs(excess) <= EQUAL_SUMS * (s + l + offset):
         grashof, excess = "change point", 0.0

@@ -13,6 +13,7 @@ O. Bottema, B. Roth, "Theoretical kinematics" (1979).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -59,17 +60,10 @@ class ScrewAxes(Printed):
     def columns(self, length: str) -> dict[str, npt.NDArray[np.generic]]:
         """The rows column by column, each name ending in its unit; `length` is the length unit."""
         columns: dict[str, npt.NDArray[np.generic]] = {"status": self.status}
-        for name in (
-            "point",
-            "direction",
-            "fixed_point",
-            "fixed_direction",
-            "moving_point",
-            "moving_direction",
-        ):
-            unit = f"_{length}" if name.endswith("point") else ""
+        for name, unit in product(("", "fixed_", "moving_"), (f"_{length}", "")):
+            vector = f"{name}point" if unit else f"{name}direction"
             for k, axis in enumerate("xyz"):
-                columns[f"{name}_{axis}{unit}"] = getattr(self, name)[:, k]
+                columns[f"{vector}_{axis}{unit}"] = getattr(self, vector)[:, k]
         columns[f"pitch_{length}_rad"] = self.pitch
         columns["rate_rad_s"] = self.rate
         columns[f"slide_rate_{length}_s"] = self.slide_rate

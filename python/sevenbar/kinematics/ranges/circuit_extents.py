@@ -10,9 +10,8 @@ from itertools import combinations
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, triple
 from sevenbar.curves.curve import Peak
 from sevenbar.curves.least_cone import least_cone
 from sevenbar.errors import RequestError, shown
@@ -20,7 +19,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.extents import BallCone, Clearance, JointRange
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.stops import Cone, Three
+from sevenbar.kinematics.loop.stops import Cone
 from sevenbar.kinematics.ranges.ball_angle import BallAngle, ball_angle, joint_at, rod, sides
 from sevenbar.kinematics.ranges.joint_course import JointCourse, joint_course
 
@@ -77,12 +76,12 @@ def cone_of(linkage: Solvable, circuit: Circuit, joint: str, given: Cone | None 
     best = least_cone(curve)
     place = joint_at(linkage, joint)
     turn = sides(linkage, place)[0 if free == "seat" else 1]
-    middle = _three(turn.T @ best.axis)
+    middle = triple("middle", turn.T @ best.axis + 0.0)
     axis = (bend.seat if free == "seat" else bend.stud) if known else best.axis
     (_, least), (_, greatest) = course.bends(curve, axis)
     written = {
-        "seat": _three(sides(linkage, place)[0].T @ bend.seat),
-        "stud": _three(sides(linkage, place)[1].T @ bend.stud),
+        "seat": triple("seat", sides(linkage, place)[0].T @ bend.seat + 0.0),
+        "stud": triple("stud", sides(linkage, place)[1].T @ bend.stud + 0.0),
     }
     if not known:
         written[free] = middle
@@ -143,8 +142,3 @@ def clearance_of(linkage: Solvable, circuit: Circuit, first: int, second: int) -
         radii.get(first, 0.0) + radii.get(second, 0.0),
         missed,
     )
-
-
-def _three(direction: npt.ArrayLike) -> Three:
-    x, y, z = (float(value) + 0.0 for value in np.asarray(direction))
-    return x, y, z
