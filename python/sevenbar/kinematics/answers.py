@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -20,9 +20,6 @@ from sevenbar.kinematics.loop.geometry import Point
 
 # the engines are for those who ask
 if TYPE_CHECKING:
-    from sevenbar.forces.counterweights import Balance
-    from sevenbar.forces.free_motion.equilibria import Equilibrium
-    from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Loading
     from sevenbar.forces.result import Forces
     from sevenbar.kinematics.dynamics.forces import ForceSolver
@@ -37,7 +34,11 @@ ANSWERED_BY = {
     "ball_cones": ("ranges.circuit_extents", "ball_cones"),
     "bends": ("ranges.circuit_extents", "bends"),
     "clearances": ("ranges.circuit_extents", "clearances"),
+    "ball_cone": ("ranges.circuit_extents", "cone_of"),
     "allowed": ("ranges.allowed", "allowed"),
+    "counterweights": ("dynamics.balance", "balance_of"),
+    "free_motion": ("dynamics.free", "free_motion_of"),
+    "equilibria": ("dynamics.free", "equilibria_of"),
 }
 
 #: A mechanical advantage, and the input [rad, or length] at which it is had.
@@ -135,51 +136,20 @@ class LinkageAnswers:
         from sevenbar.kinematics.dynamics.forces import ForceSolver, forces_of
 
         if given:
-            solver = ForceSolver(self.linkage, self._loading(given), circuit.input_column)
+            solver = ForceSolver(self.linkage, self.loading(given), circuit.input_column)
             return forces_of(solver, circuit, at_rest=at_rest)
         if circuit.input_column not in self._solvers:
             solver = ForceSolver(self.linkage, self.linkage.loading, circuit.input_column)
             self._solvers[circuit.input_column] = solver
         return forces_of(self._solvers[circuit.input_column], circuit, at_rest=at_rest)
 
-    def counterweights(
-        self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
-    ) -> Balance:
-        """Counterweights on links for the least shaking, with what is given in place of what is written."""
-        from sevenbar.kinematics.dynamics.balance import balance_of
-
-        return balance_of(self.linkage, circuit, self.forces(circuit, given), links, how)
-
-    def free_motion(
-        self, circuit: Circuit, given: Mapping[str, Any], options: Mapping[str, Any]
-    ) -> FreeMotion:
-        """How a circuit moves by itself, with what is given in place of what the linkage has."""
-        from sevenbar.kinematics.dynamics.free import free_motion_of
-
-        return free_motion_of(self.linkage, circuit, self._loading(given), **options)
-
-    def equilibria(
-        self, circuit: Circuit, given: Mapping[str, Any], torque: float
-    ) -> tuple[Equilibrium, ...]:
-        """Where a circuit can rest, with what is given in place of what the linkage has."""
-        from sevenbar.kinematics.dynamics.free import equilibria_of
-
-        return equilibria_of(self.linkage, circuit, self._loading(given), torque)
-
-    def _loading(self, given: Mapping[str, Any]) -> Loading:
+    def loading(self, given: Mapping[str, Any]) -> Loading:
+        """What acts on the linkage, with what is given in place of what it has."""
         if not given:
             return self.linkage.loading
         from sevenbar.kinematics.dynamics.loaded import loading_with
 
         return loading_with(self.linkage, **given)
-
-    def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> Any:
-        """How far one is bent between directions that are given."""
-        from sevenbar.kinematics.loop.stops import Cone
-        from sevenbar.kinematics.ranges.circuit_extents import cone_of
-
-        named = any(value is not None for value in given.values())
-        return cone_of(self.linkage, circuit, joint, Cone(**given) if named else None)
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) of the report frame in the plane of a planar loop (..., 2), `None` for others."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Integers, Words, counted, finite_array, whole_number
+from sevenbar.arrays import Floats, Integers, Words, counted, triple, whole_number
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
 from sevenbar.kinematics.circuits.with_extents import WithExtents
@@ -228,10 +228,7 @@ class Circuit(Printed, WithExtents):
         frame = self._frame(link)
         if at is None:
             raise RequestError("at: a link needs a place on it; give three numbers, or a point by its name")
-        place = finite_array("at", at)
-        if place.size != 3:
-            raise RequestError(f"at: {place.size} numbers; give three")
-        return self._point(int(link), placed(frame, place))
+        return self._point(int(link), placed(frame, triple("at", at)))
 
     @ends_here
     def sensitivity(self) -> Sensitivity:
@@ -310,7 +307,8 @@ class Circuit(Printed, WithExtents):
         Source: docs/theory_forces.md, (17) to (23).
         """
         how = {"radius": radius, "most_mass": most_mass, "measure": measure, "force": force, "moment": moment}
-        return self._answers.counterweights(self, links, {} if bodies is None else {"bodies": bodies}, how)
+        forces = self._answers.forces(self, _given(bodies=bodies))
+        return self._answers.counterweights(self, forces, links, how)
 
     @ends_here
     def free_motion(
@@ -352,17 +350,18 @@ class Circuit(Printed, WithExtents):
         Source: docs/theory_free.md, (1) to (13).
         """
         given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
-        options = {
-            "duration": duration,
-            "speed": speed,
-            "energy": energy,
-            "start": start,
-            "branch": branch,
-            "torque": torque,
-            "torque_by_time": torque_by_time,
-            "samples": samples,
-        }
-        return self._answers.free_motion(self, given, options)
+        return self._answers.free_motion(
+            self,
+            self._answers.loading(given),
+            duration,
+            speed=speed,
+            energy=energy,
+            start=start,
+            branch=branch,
+            torque=torque,
+            torque_by_time=torque_by_time,
+            samples=samples,
+        )
 
     @ends_here
     def equilibria(
@@ -390,7 +389,7 @@ class Circuit(Printed, WithExtents):
         Source: docs/theory_free.md, (11).
         """
         given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
-        return self._answers.equilibria(self, given, torque)
+        return self._answers.equilibria(self, self._answers.loading(given), torque)
 
     @ends_here
     def link_motion(self, link: int) -> LinkMotion:

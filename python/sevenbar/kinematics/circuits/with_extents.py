@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import ends_here
+from sevenbar.kinematics.loop.stops import Cone
 
 if TYPE_CHECKING:
     from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
@@ -85,7 +86,8 @@ class WithExtents:
             >>> round(math.degrees(cone.least.value), 3), round(math.degrees(cone.greatest.value), 3)
             (39.739, 79.047)
         """
-        return self._answers.ball_cone(self.fleeting(), joint, {"seat": seat, "stud": stud})
+        given = None if seat is None and stud is None else Cone(None, seat, stud)
+        return self._answers.ball_cone(self.fleeting(), joint, given)
 
     @cached_property
     def clearances(self) -> tuple[Clearance, ...]:

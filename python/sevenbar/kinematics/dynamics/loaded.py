@@ -19,29 +19,22 @@ from sevenbar.text.units import ANGLES, LENGTHS, MASSES
 L = TypeVar("L", bound=Loop)
 
 
-def loaded(
-    linkage: L,
-    *,
-    bodies: Mapping[int, Body | Sequence[Body]] | None = None,
-    gravity: npt.ArrayLike | None = None,
-    loads: Sequence[Load] | None = None,
-    springs: Sequence[Spring] | None = None,
-) -> L:
-    """The linkage with what is given in the place of its own; raises `RequestError`."""
-    given = loading_with(linkage, bodies=bodies, gravity=gravity, loads=loads, springs=springs)
+def loaded(linkage: L, **acting: Any) -> L:
+    """The linkage with what acts, as `loading_with` takes it, in the place of its own."""
+    given = loading_with(linkage, **acting)
     tables: dict[str, Any] = {}
     if linkage.description:
         forces = dict(linkage.description.get("forces", {}))
         unit = str(forces.get("mass_unit", "kg"))
-        if gravity is not None:
+        if acting["gravity"] is not None:
             tables["forces"] = forces | {"gravity": list(given.gravity)}
-        if bodies is not None:
+        if acting["bodies"] is not None:
             tables["body"] = [
                 _body(link, body, unit, linkage) for link, own in given.bodies.items() for body in own
             ]
-        if loads is not None:
+        if acting["loads"] is not None:
             tables["load"] = [_load(load, linkage) for load in given.loads]
-        if springs is not None:
+        if acting["springs"] is not None:
             tables["spring"] = [_spring(spring, linkage) for spring in given.springs]
     kept = {key: value for key, value in (dict(linkage.description) | tables).items() if value != []}
     return replace(linkage, loading=given, description=kept)
