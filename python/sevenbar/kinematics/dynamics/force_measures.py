@@ -24,12 +24,9 @@ from sevenbar.forces.shaking import shaking_along
 from sevenbar.forces.sizing import Sizing
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.dynamics.forces import ForceSolver
-from sevenbar.kinematics.numbers.gradients import MeasureSlopes, poses_at
+from sevenbar.kinematics.numbers.gradients import MeasureSlopes, nearest, poses_at
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.text.units import LENGTHS
-
-#: A pose found is the peak's own where it gives its value to this share of it.
-SAME_VALUE = 1e-6
 
 
 def sized(circuit: Circuit, joints: Sequence[str] = ()) -> Sizing | None:
@@ -164,11 +161,8 @@ def _measured(
         """A peak and its derivatives where the quantity has its value; nothing where it has it nowhere."""
         q = poses_at(solver.loop, circuit, peak.input)
         values, by = of(slopes(q[:, solver.input], q))
-        apart = np.abs(values - peak.value)
-        if not np.isfinite(apart).any():
-            return
-        best = int(np.nanargmin(apart))
-        if apart[best] <= SAME_VALUE * (abs(peak.value) or 1.0):
+        best = nearest(np.abs(values - peak.value), abs(peak.value))
+        if best is not None:
             yield MeasureSlopes(name, unit, peak.value, by[best].copy())
 
     if wanted("peak_torque"):

@@ -133,12 +133,9 @@ def _rates_at(
     here = loop.slopes(q, 3)
     found = np.column_stack([q[:, column], here.rates[:, :, column]]) * speed ** np.arange(4)
     apart = np.abs(_apart(found[:, order] - value, bool(order == 0 and loop.numbers.turns[column])))
-    if not np.isfinite(apart).any():
-        return None
-    best = int(np.nanargmin(apart))
     rows = (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)[order][:, column]
-    size = float(np.nanmax(np.abs(rows), initial=0.0))
-    if not apart[best] <= SAME_VALUE * (size or 1.0):
+    best = nearest(apart, float(np.nanmax(np.abs(rows), initial=0.0)))
+    if best is None:
         return None
     slopes = here.by_number[best, :, :, column] * speed ** np.arange(4.0)[:, None]
     if order:
@@ -156,8 +153,7 @@ def _limits(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
         slopes = np.full(len(numbers.names), np.nan)
         q = poses_at(back, circuit, centre.output)
         apart = np.abs(_apart(q[:, place] - centre.input, bool(numbers.turns[place])))
-        if len(q) and apart.min() < SAME_VALUE * numbers.scales[place]:
-            best = int(np.argmin(apart))
+        if (best := nearest(apart, numbers.scales[place])) is not None:
             slopes = back.slopes(q[best : best + 1], 0).by_number[0, 0, :, place] * scale
         yield MeasureSlopes(f"limit_{number}", unit, centre.input * scale, slopes, 1 / scale)
 
@@ -170,6 +166,14 @@ def poses_at(loop: NumberedLoop, circuit: Circuit, value: float) -> Floats:
     q = loop.numbers.poses(circuit.q[nearest])
     found = loop.closed(q[:, loop.input] + apart[nearest], q)
     return np.asarray(found[np.isfinite(found).all(axis=1)])
+
+
+def nearest(apart: Floats, size: float = 1.0) -> int | None:
+    """The pose (n,) that is least apart from a value, as a share of its size; `None` where none gives it."""
+    if not np.isfinite(apart).any():
+        return None
+    best = int(np.nanargmin(apart))
+    return best if apart[best] <= SAME_VALUE * (size or 1.0) else None
 
 
 def _transmission(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
@@ -192,9 +196,8 @@ def _transmission(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]
         places, by = here.points[:, :, 0], here.points_by_number[:, :, 0]
         sines = _sine(places, a, b, arm, foot, end)
         apart = np.abs(np.arcsin(np.minimum(np.abs(sines), 1.0)) - value)
-        best = int(np.argmin(apart)) if len(q) else 0
-        known = len(q) > 0 and np.isfinite(by[best]).all()
-        if known and apart[best] < SAME_VALUE and 1 - abs(sines[best]) > RIGHT_ANGLE:
+        best = nearest(apart)
+        if best is not None and np.isfinite(by[best]).all() and 1 - abs(sines[best]) > RIGHT_ANGLE:
             size = float(sines[best])
             # by a complex step: exact to rounding, since it is analytic
             stepped = places[best] + 1j * STEP * np.moveaxis(by[best], 1, 0)

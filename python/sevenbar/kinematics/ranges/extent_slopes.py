@@ -111,9 +111,7 @@ def _of_bend(course: JointCourse, numbers: Numbers, name: str, joint: str) -> Me
     total = np.full(len(numbers.names), np.nan if shares is None else 0.0)
     for place, share in [] if shares is None else zip(places, shares, strict=True):
         if share:
-            q, driver = course.pose(float(place))
-            here = numbers.loop(driver, extra=points).slopes(q, 0)
-            _, slopes = line_angles(here.points[:, -4:, 0], here.points_by_number[:, -4:, 0].swapaxes(2, 3))
+            _, slopes = line_angles(*_places_at(course, numbers, float(place), points))
             total = total + share * slopes[0]
     scale = math.degrees(1.0)
     return MeasureSlopes(name, "deg", value * scale, total * scale, 1 / scale)
@@ -153,6 +151,15 @@ def _arms(numbers: Numbers, place: int, given: Mapping[str, tuple[float, ...] | 
     return points
 
 
+def _places_at(
+    course: JointCourse, numbers: Numbers, place: float, points: Sequence[Carried]
+) -> tuple[Floats, Floats]:
+    """Where points are at a place on the path (1, points, 3), and their slopes (1, points, 3, k)."""
+    q, driver = course.pose(place)
+    here, own = numbers.loop(driver, extra=points).slopes(q, 0), slice(-len(points), None)
+    return here.points[:, own, 0], here.points_by_number[:, own, 0].swapaxes(2, 3)
+
+
 def _of_clearance(course: JointCourse, numbers: Numbers, name: str) -> MeasureSlopes | None:
     """The least gap of all pairs of links, of those with a radius where there are any."""
     linkage, radii = course.linkage, course.linkage.stops.radii
@@ -166,9 +173,6 @@ def _of_clearance(course: JointCourse, numbers: Numbers, name: str) -> MeasureSl
     place, distance, _ = least[pair]
     slopes = np.full(len(numbers.names), np.nan)
     if distance > CROSSED * course.size:
-        q, driver = course.pose(place)
         points = [point for link in pair for point in numbers.word.rod(link)]
-        here = numbers.loop(driver, extra=points).slopes(q, 0)
-        by = here.points_by_number[:, -4:, 0].swapaxes(2, 3)
-        slopes = distance_slopes(here.points[:, -4:, 0], by)[1][0]
+        slopes = distance_slopes(*_places_at(course, numbers, place, points))[1][0]
     return MeasureSlopes(name, linkage.length_unit, distance - thick[pair], slopes)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import accumulate, combinations
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -196,9 +196,7 @@ def sphere_of(loop: Loop) -> MotionSphere | None:
     parts = expanded(loop)
     if set(parts.letters) - {"R", "S"} or plane_of(loop) is not None:
         return None
-    frames = [parts.base]
-    for link in parts.links:
-        frames.append(frames[-1] @ link)
+    frames = list(accumulate([parts.base, *parts.links], np.matmul))
     places = np.stack([frame[:3, 3] for frame in frames])
     axes = np.stack([frame[:3, 2] for frame in frames])
     turning = [i for i, letter in enumerate(parts.letters) if letter == "R"]
