@@ -146,11 +146,7 @@ class ForcesForm(TableForm):
         0.0,
         0.0,
     )
-    mass_unit: Annotated[
-        str,
-        *one_of("unit", MASSES),
-        key("of the masses and inertias in this file"),
-    ] = "kg"
+    mass_unit: Annotated[str, *one_of("unit", MASSES), key("of the masses and inertias in this file")] = "kg"
 
 
 class BodyForm(TableForm):

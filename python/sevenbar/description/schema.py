@@ -8,12 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    Field,
-    ValidationError,
-)
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
@@ -38,14 +33,7 @@ from sevenbar.description.values import (
     one_word,
     refuse,
 )
-from sevenbar.description.written import (
-    RSSR_JOINTS,
-    Written,
-    drive_of,
-    driven,
-    joints_of,
-    meant_kind,
-)
+from sevenbar.description.written import RSSR_JOINTS, Written, drive_of, driven, joints_of, meant_kind
 from sevenbar.errors import DescriptionError, Problem, shown
 from sevenbar.kinematics.loop.geometry import following_coupler
 from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, ROW_KINDS, letters_with
@@ -69,8 +57,7 @@ class RssrForm(TableForm):
     L3: Annotated[Length, key("rocker", "length")]
     D: Annotated[Number, key("the rocker's axis goes along x through (M, D, 0)", "length")]
     L2: Annotated[
-        Length | None,
-        key("coupler; left out, that which closes with both joints at zero", "length"),
+        Length | None, key("coupler; left out, that which closes with both joints at zero", "length")
     ] = None
 
     @property
@@ -84,11 +71,7 @@ class RssrForm(TableForm):
 class JointForm(TableForm):
     """A joint as drawn in one assembled pose, in ground coordinates."""
 
-    kind: Annotated[
-        str,
-        *one_of("joint kind", JOINT_KINDS),
-        key("what the joint lets move"),
-    ]
+    kind: Annotated[str, *one_of("joint kind", JOINT_KINDS), key("what the joint lets move")]
     at: Annotated[Vector, key("any point of the axis; of U and S the centre", "length")]
     name: Annotated[Text | None, key("left out, theta_1, theta_2 .. by its place")] = None
     axis: Annotated[
@@ -119,10 +102,7 @@ class LinkForm(TableForm):
     """
 
     joint: Annotated[
-        str,
-        *one_of("joint kind", ROW_KINDS),
-        BeforeValidator(_row_kind),
-        key("the joint before this link"),
+        str, *one_of("joint kind", ROW_KINDS), BeforeValidator(_row_kind), key("the joint before this link")
     ] = "R"
     name: Annotated[Text | None, key("of the joint; left out, theta_1, theta_2 ..")] = None
     length: Annotated[Number, key("of the link, along x; may be negative", "length")] = 0.0
@@ -149,10 +129,7 @@ class PointForm(TableForm):
 class DriveForm(TableForm):
     """The input and its speed."""
 
-    speed: Annotated[
-        Speed,
-        key("of the input, as in 10 or '60 rpm'; not 0", "rad/s, or length/s"),
-    ] = 1.0
+    speed: Annotated[Speed, key("of the input, as in 10 or '60 rpm'; not 0", "rad/s, or length/s")] = 1.0
     joint: Annotated[
         Text | None,
         BeforeValidator(one_word("input")),
@@ -171,25 +148,17 @@ class LinkageForm(TableForm):
     format: Annotated[Literal[1], key("of this file")]
     name: Annotated[Text, key("of the linkage, for reports and figures")] = "linkage"
     length_unit: Annotated[
-        str,
-        *one_of("unit", LENGTHS),
-        key("of all lengths; carried into every header, never converted"),
+        str, *one_of("unit", LENGTHS), key("of all lengths; carried into every header, never converted")
     ] = "mm"
-    angle_unit: Annotated[
-        str,
-        *one_of("unit", ANGLES),
-        key("of the angles written in this file"),
-    ] = "deg"
+    angle_unit: Annotated[str, *one_of("unit", ANGLES), key("of the angles written in this file")] = "deg"
     drive: Annotated[DriveForm, key("the input, the output, the speed")] = DriveForm.model_construct()
     rssr: Annotated[RssrForm | None, key("the RSSR paper's dimensions")] = None
     joint: Annotated[tuple[JointForm, ...] | None, key("joints as drawn, in loop order")] = None
     link: Annotated[
-        tuple[LinkForm, ...] | None,
-        key("Denavit-Hartenberg rows in loop order, the last is the ground"),
+        tuple[LinkForm, ...] | None, key("Denavit-Hartenberg rows in loop order, the last is the ground")
     ] = None
     layout: Annotated[
-        Literal["dh", "planar"],
-        key("of [[link]] rows: where the frame lies and angles begin"),
+        Literal["dh", "planar"], key("of [[link]] rows: where the frame lies and angles begin")
     ] = "dh"
     point: Annotated[tuple[PointForm, ...], key("points to be traced")] = ()
     forces: Annotated[ForcesForm, key("gravity, and the unit of masses")] = ForcesForm.model_construct()

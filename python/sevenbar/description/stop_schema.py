@@ -65,8 +65,7 @@ class StopForm(TableForm):
         key("of S and U: a direction on the link before, as its points are written; left out, the middle"),
     ] = None
     stud: Annotated[
-        Direction | None,
-        key("of S and U: a direction on the link after; left out, towards its other joint"),
+        Direction | None, key("of S and U: a direction on the link after; left out, towards its other joint")
     ] = None
 
 

@@ -67,11 +67,7 @@ class Linkage(Solvable):
 
     @ends_here
     def stopped(
-        self,
-        *,
-        ranges: Ranges | None = None,
-        cones: Cones | None = None,
-        radii: Radii | None = None,
+        self, *, ranges: Ranges | None = None, cones: Cones | None = None, radii: Radii | None = None
     ) -> Linkage:
         """The linkage with other stops: ranges of joints by name, cones of S and U, radii of links.
 

@@ -10,8 +10,7 @@ from typing import Literal
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers, whole_number
-from sevenbar.description.draft import Draft
-from sevenbar.description.held import HeldDimensions, held_of
+from sevenbar.description.draft import Draft, HeldDimensions, held_of
 from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
 from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers, Words, counted
-from sevenbar.description.held import HeldDimensions, held_of
+from sevenbar.description.draft import HeldDimensions, held_of
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
 from sevenbar.errors import RequestError

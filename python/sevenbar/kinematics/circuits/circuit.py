@@ -161,11 +161,7 @@ class Circuit(Printed, WithExtents):
     def tally(self) -> Tally:
         """What there is to say of the rows as a whole."""
         known = self.residual[np.isfinite(self.residual)]
-        return Tally(
-            len(self.time),
-            counted(self.status),
-            float(known.max()) if known.size else math.nan,
-        )
+        return Tally(len(self.time), counted(self.status), float(known.max()) if known.size else math.nan)
 
     def fleeting(self) -> Circuit:
         """The circuit for one look at its rows: those of a long one are not kept with it."""

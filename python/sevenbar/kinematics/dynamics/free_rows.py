@@ -96,12 +96,7 @@ class CourseRows:
         return found
 
     def trace(
-        self,
-        place: Floats,
-        rates: tuple[Floats, Floats, Floats],
-        status: Words,
-        link: int,
-        at: Floats,
+        self, place: Floats, rates: tuple[Floats, Floats, Floats], status: Words, link: int, at: Floats
     ) -> Trace:
         """A point, `at` in its link's own frame, on rows at places (n,)."""
         linkage, path = self.builder.solver.linkage, self.builder.path
