@@ -21,7 +21,10 @@ from numpy.polynomial import Chebyshev, chebyshev
 
 from sevenbar._core import piecewise
 from sevenbar.arrays import Floats
-from sevenbar.curves.stationary import real_roots, zeros_between
+from sevenbar.curves.stationary import real_roots
+
+#: Halvings of a bracket, from any length to rounding, if Newton's method never helps.
+HALVINGS = 80
 
 #: Two zeros nearer than this part of the path are one, found from two pieces.
 SAME = 1e-12
@@ -89,15 +92,11 @@ class Along:
         """Places (j,) where one quantity has a value; `marks` are the edges and all stationary places."""
         own = self.part(column)
         heights = own.at(marks)[:, 0] - value
-        between = np.flatnonzero(heights[:-1] * heights[1:] < 0)
-        found = zeros_between(
-            lambda s: (own.at(s)[:, 0] - value, own.slope.at(s)[:, 0]),
-            marks[between],
-            marks[between + 1],
-            heights[between] > 0,
-        )
         # an edge belongs to the piece on its left as well
-        return np.unique(np.concatenate([marks[heights == 0.0], found]))
+        found = [marks[heights == 0.0]]
+        for i in np.flatnonzero(heights[:-1] * heights[1:] < 0):
+            found.append(np.array([zero_between(own, value, marks[i], marks[i + 1])]))
+        return np.unique(np.concatenate(found))
 
     @cached_property
     def reach(self) -> Floats:
@@ -107,3 +106,22 @@ class Along:
             np.max([np.abs(chebyshev.chebval(x, np.moveaxis(waves, 1, 0))).max(axis=0) for x in (-1, 0, 1)],
                    axis=0)
         )  # fmt: skip
+
+
+def zero_between(one: Along, value: float, low: float, high: float) -> float:
+    """Where a single quantity has a value between two places on whose sides it lies."""
+    rising = one.at(np.array([high]))[0, 0] > value
+    at = (low + high) / 2
+    for _ in range(HALVINGS):
+        here = np.array([at])
+        height, slope = one.at(here)[0, 0] - value, one.slope.at(here)[0, 0]
+        if (height > 0) == rising:
+            high = at
+        else:
+            low = at
+        step = at - height / slope if slope else np.inf
+        after = step if low < step < high else (low + high) / 2
+        if abs(after - at) <= 2 * np.spacing(max(abs(low), abs(high))):
+            return float(after)
+        at = after
+    return float(at)
