@@ -1,4 +1,4 @@
-"""A quantity along a cycle: what each kind of curve says of it; the kind of which rows in time are all."""
+"""A quantity along a cycle: what every kind of curve gives, and the kind known at rows in time only."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A description that is being shaped: its dimensions by name, what changes and what stays, back to a file."""
+"""A description that is being shaped: its dimensions, what changes, what stays, its way back to a file."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ class EnergyBuilder:
 
     def breaks(self) -> Floats:
         """Places where a load sets in, ends, or changes by another line."""
-        turns = self.solver.linkage.column_kinds[self.path.input] == "turn"
+        turns = self.solver.linkage.turns(self.path.input)
         values: list[float] = []
         for load in self.solver.loading.loads:
             values += load.between or ()
@@ -176,6 +176,6 @@ class EnergyBuilder:
             out[mine, 4] = sum((torque * by_s[:, c] for c, torque in self.wound), np.zeros(len(mine)))
             out[mine, 5:] = by_s[:, self.smooth]
             potential[mine] = energies[0][:, 1]
-        if self.solver.linkage.column_kinds[self.path.input] == "slide":
+        if not self.solver.linkage.turns(self.path.input):
             out[:, 3] *= LENGTHS[self.solver.linkage.length_unit]
         return out, potential

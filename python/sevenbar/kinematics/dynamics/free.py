@@ -88,7 +88,7 @@ class FreeCourse:
     @property
     def turns(self) -> bool:
         """Whether the input is an angle."""
-        return self.linkage.column_kinds[self.path.input] == "turn"
+        return self.linkage.turns(self.path.input)
 
     @property
     def first_row(self) -> int:

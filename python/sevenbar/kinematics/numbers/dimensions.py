@@ -1,4 +1,4 @@
-"""The numbers of a description by name: their units, their places in a file, which follows from others."""
+"""The numbers of a description by name: their units, places in a file, and which one follows from others."""
 
 from __future__ import annotations
 

@@ -47,8 +47,7 @@ def _covering(linkage: Solvable, circuit: Circuit) -> Circuit:
     known = circuit.q[np.isfinite(circuit.q).all(axis=1)]
     if not len(known):
         raise NotFollowedError("circuit: none of its rows has a pose")
-    best, nearest = None, math.inf
-    turns = np.array([kind == "turn" for kind in linkage.column_kinds])
+    best, nearest, turns = None, math.inf, linkage.turning
     for each in motion.circuits:
         off = each.q[:, None] - known[None, :: max(1, len(known) // 8)]
         off[..., turns] -= math.tau * np.round(off[..., turns] / math.tau)
