@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rigid import inverse, pose
 
 
@@ -47,19 +47,9 @@ class Walk:
         return turned
 
 
-#: A walk is made once and lives as long as its circuit.
-_WALKS: WeakKeyDictionary[Circuit, Walk] = WeakKeyDictionary()
-
-
+@once_for(0)
 def walk(circuit: Circuit) -> Walk:
     """The rows of a circuit in the order of its motion."""
-    found = _WALKS.get(circuit)
-    if found is None:
-        found = _WALKS[circuit] = _walked(circuit)
-    return found
-
-
-def _walked(circuit: Circuit) -> Walk:
     count = len(circuit.time)
     starts = [0, *(np.flatnonzero(np.diff(circuit.branch)) + 1), count]
     rows, inputs, outputs, times = np.arange(count), circuit.input, circuit.output, circuit.time

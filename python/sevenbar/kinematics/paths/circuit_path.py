@@ -262,9 +262,9 @@ class PathBuilder:
         return np.asarray(self.rows[low] + share * (self.rows[low + 1] - self.rows[low]))
 
     def _closed(self, wanted: list[tuple[int, Floats]]) -> list[Floats]:
-        """Poses closed with the driver's value held, in as few calls as there are drivers."""
-        out: list[Floats] = [np.empty(0)] * len(wanted)
-        for column in {column for column, _ in wanted}:
+        """Poses closed with the driver's value held, in as few calls as there are drivers; else NaN."""
+        out: list[Floats] = [np.full(start.shape, np.nan) for _, start in wanted]
+        for column in {column for column, _ in wanted if column >= 0}:
             mine = [i for i, (own, _) in enumerate(wanted) if own == column]
             start = np.concatenate([wanted[i][1] for i in mine])
             found = self.numbers.driven(column).closed(start[:, column], start)
@@ -280,15 +280,13 @@ class PathBuilder:
         usable = [i for i, column in enumerate(charts) if column >= 0]
         chords = sorted({x for i in usable for x in todo[i]})
         # both sides of an edge take its pose from one driver
-        drivers = [self._driver(x, x) for x in chords]
-        usable_edges = [i for i, column in enumerate(drivers) if column >= 0]
-        closed = self._closed([(drivers[i], self._at(chords[i])[None]) for i in usable_edges])
-        ends = {chords[i]: pose[0] for i, pose in zip(usable_edges, closed, strict=True)}
+        closed = self._closed([(self._driver(x, x), self._at(x)[None]) for x in chords])
+        ends = {x: pose[0] for x, pose in zip(chords, closed, strict=True)}
         starts: list[tuple[int, Floats]] = []
         kept: list[int] = []
         for i in usable:
             a, b = todo[i]
-            if a not in ends or b not in ends or not np.isfinite([ends[a], ends[b]]).all():
+            if not np.isfinite([ends[a], ends[b]]).all():
                 continue
             low, high = self._within(a, b)
             inner = self.rows[low + 1 : high]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from sevenbar.curves.along import Along
 from sevenbar.curves.stationary import nodes, series_through
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rigid import turns_about
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import ENOUGH_ROWS, TERMS, CircuitPath, NotFollowedError, path_of
@@ -19,20 +19,14 @@ from sevenbar.kinematics.paths.circuit_path import ENOUGH_ROWS, TERMS, CircuitPa
 #: Rows of a circuit beyond which fewer are computed anew: a path wants no more.
 MORE_THAN_ENOUGH = 100 * ENOUGH_ROWS
 
-#: A path is followed once and lives as long as its circuit.
-_PATHS: WeakKeyDictionary[Circuit, CircuitPath] = WeakKeyDictionary()
 
-
+@once_for(1)
 def covered_path(linkage: Solvable, circuit: Circuit, numbers: Numbers | None = None) -> CircuitPath:
     """The path of a circuit; raises `RequestError` where it cannot be followed.
 
     `numbers` are those of the linkage, worked out here where none are given.
     """
-    found = _PATHS.get(circuit)
-    if found is None:
-        own = Numbers(linkage) if numbers is None else numbers
-        found = _PATHS[circuit] = path_of(own, _covering(linkage, circuit))
-    return found
+    return path_of(Numbers(linkage) if numbers is None else numbers, _covering(linkage, circuit))
 
 
 def _covering(linkage: Solvable, circuit: Circuit) -> Circuit:

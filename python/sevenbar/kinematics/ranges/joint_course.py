@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from sevenbar.curves.least_cone import angles, dotted
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.circuits.poses import frames_of, joint_frames
+from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rods import RodPair
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import CircuitPath, NotFollowedError
@@ -124,19 +124,11 @@ class JointCourse:
         return (near, Peak(float(least), high.input)), (far, Peak(float(greatest), low.input))
 
 
-#: A course lives as long as its circuit.
-_COURSES: WeakKeyDictionary[Circuit, JointCourse] = WeakKeyDictionary()
-
-
+@once_for(1)
 def joint_course(linkage: Solvable, circuit: Circuit) -> JointCourse:
     """The course of a circuit's joints, made once; raises `RequestError` where it cannot be followed."""
-    found = _COURSES.get(circuit)
-    if found is None:
-        numbers = Numbers(linkage)
-        path = covered_path(linkage, circuit, numbers)
-        inputs = circuit.fleeting().input
-        start = float(inputs[np.isfinite(inputs)][0]) if np.isfinite(inputs).any() else 0.0
-        found = _COURSES[circuit] = JointCourse(
-            linkage, numbers, path, circuit.size, start, not circuit.speed < 0
-        )
-    return found
+    numbers = Numbers(linkage)
+    path = covered_path(linkage, circuit, numbers)
+    inputs = circuit.fleeting().input
+    start = float(inputs[np.isfinite(inputs)][0]) if np.isfinite(inputs).any() else 0.0
+    return JointCourse(linkage, numbers, path, circuit.size, start, not circuit.speed < 0)

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import accumulate, combinations
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rigid import cross, inverse, unit
 from sevenbar.kinematics.solvers.general import AGREE, expanded, size_of
 from sevenbar.text.printing import Printed
@@ -99,18 +99,9 @@ class InPlane(NamedTuple):
     held: int | None
 
 
-#: It is looked for once and lives as long as its loop.
-_FOUND: WeakKeyDictionary[Loop, InPlane | None] = WeakKeyDictionary()
-
-
+@once_for(0)
 def in_plane(loop: Loop) -> InPlane | None:
     """The plane of a planar loop, and what moves in it; `None` for any other."""
-    if loop not in _FOUND:
-        _FOUND[loop] = _found(loop)
-    return _FOUND[loop]
-
-
-def _found(loop: Loop) -> InPlane | None:
     parts = expanded(loop)
     letters, count = parts.letters, len(parts.letters)
     if "H" in letters:
