@@ -237,7 +237,7 @@ def check(raw: Mapping[str, Any], context: Mapping[str, Any], *, source: str = "
     joints = joints_of(raw)
     problems += contradictions(raw)
     if not raw.keys().isdisjoint(("body", "load", "spring")):
-        from sevenbar.description.load_contradictions import load_contradictions
+        from sevenbar.description.loads import load_contradictions
 
         problems += load_contradictions(raw, joints, context)
     problems += stop_contradictions(raw, joints, context)
