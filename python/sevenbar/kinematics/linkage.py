@@ -272,9 +272,7 @@ class Linkage(Solvable):
         """
         from sevenbar.kinematics.solvers.four_bar import four_bar_of
 
-        first, second = self.end_columns(
-            input, self.drive.output if output is None and input is None else output
-        )
+        first, second = self.end_columns(input, output)
         return four_bar_of(self, self.columns[first], self.columns[second])
 
     @property
@@ -401,9 +399,7 @@ class Linkage(Solvable):
         self, samples: int, input: str | None, output: str | None, speed: float | str | None
     ) -> tuple[int, int, int, float]:
         """Columns of input and output, a count, and the speed, once checked."""
-        column, output_column = self.end_columns(
-            input, self.drive.output if output is None and input is None else output
-        )
+        column, output_column = self.end_columns(input, output)
         return column, output_column, sample_count("samples", samples), self._speed(speed, column)
 
     def _has_closed_form(self, method: str) -> bool:
