@@ -4,12 +4,14 @@ import json
 import math
 from functools import reduce
 from operator import add
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 import sevenbar as sb
 from commands import killed, mistake, sevenbar
+from sevenbar import _core
 from sevenbar.curves.least_cone import half_angle
 from sevenbar.design.survey import SurveyTally, SurveyTask, SwingWish, Travel, survey
 from sevenbar.design.survey.journal import JOURNAL
@@ -18,7 +20,7 @@ from sevenbar.design.survey.skew_closure import L2, poses, reach
 from sevenbar.design.survey.task import drawn_numbers
 from sevenbar.design.wish import wish_of_function, wish_of_pairs
 from sevenbar.errors import OutputError, RequestError
-from sevenbar.kinematics.solvers.batches import VERDICTS, survey_figures
+from sevenbar.kinematics.solvers.batches import VERDICTS, WORDS
 
 #: A flap drive: a quarter turn of the motor, 23.75 deg of the flap, rod ends that take 15 deg.
 FLAP = Travel(math.radians(90), math.radians(23.75))
@@ -43,6 +45,21 @@ def pose_of(numbers):
 
 def around(angles, start):
     return np.sort(np.mod(np.asarray(angles) - start, math.tau))
+
+
+class Figures(NamedTuple):
+    """What the core's survey measures linkages by, one row each; NaN where there is nothing."""
+
+    types: Any
+    limits: Any
+    swing: Any
+    time_ratio: Any
+    transmission: Any
+
+
+def survey_figures(rows):
+    codes, *figures = _core.survey_figures(np.ravel(rows))
+    return Figures(WORDS[codes], *figures)
 
 
 def assert_measured_alike(rows):

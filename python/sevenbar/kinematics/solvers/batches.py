@@ -194,29 +194,3 @@ RawTally = _core.RawTally
 def core_survey(bounds: Floats, seed: int, **wish: Any) -> CoreSurvey:
     """The core's survey of linkages between bounds (7, 2) [parts of a length, rad]; `wish` as it takes it."""
     return _core.Survey(np.asarray(bounds, np.float64), seed, **wish)
-
-
-@dataclass(frozen=True, eq=False)
-class SurveyFigures:
-    """What RSSRs (n,) are measured by; NaN where there is nothing.
-
-    Motion types, limits (n, 4) [rad], swings [rad] and time ratios of both circuits (n, 2), and the least
-    transmission angle over a whole turn of the input (n,) [rad].
-    """
-
-    types: MotionTypes
-    limits: Floats
-    swing: Floats
-    time_ratio: Floats
-    transmission: Floats
-
-
-def survey_figures(numbers: Floats) -> SurveyFigures:
-    """The figures of RSSRs (n, 7) with the numbers `NUMBERS`: the crank turns about z, its ball N above 0.
-
-    The rocker turns about (sin, 0, cos) of the angle, M along it from (0, D, 0).
-    Source: docs/theory_many.md, (21) and (22).
-    """
-    flat = np.asarray(numbers, np.float64).reshape(-1)
-    codes, limits, swing, time_ratio, transmission = _core.survey_figures(flat)
-    return SurveyFigures(WORDS[codes], limits, swing, time_ratio, transmission)
