@@ -194,27 +194,24 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
     for name, bearing in found.bearings.items():
         force = bearing.in_plane if partly else bearing.force
         known = math.isfinite(force.peak.value)
-        cells = [
-            name,
-            _peak(force),
-            place(force.peak.input) if known else "",
-            number(force.mean_cube) if known else "",
-        ]
+        met = [place(force.peak.input), number(force.mean_cube)] if known else ["", ""]
         parts = (bearing.radial, bearing.axial, bearing.tilting, bearing.turning)
         # a ball has no axis
         ball = forces.reactions[name].kind == "S"
-        rows.append([*cells, *("" if ball else _peak(part) for part in parts)])
-    scales = [_scale(rows, (1, 4, 5)), _scale(rows, (6, 7))]
-    for row in rows:
-        for column, scale in ((1, 0), (4, 0), (5, 0), (6, 1), (7, 1)):
+        rows.append([name, _peak(force), *met, *("" if ball else _peak(part) for part in parts)])
+    # forces, then moments
+    for columns in ((1, 4, 5), (6, 7)):
+        sizes = {
+            (row, i): float(cells[i])
+            for row, cells in enumerate(rows)
+            for i in columns
+            if cells[i] not in (say(OPEN), "")
+        }
+        for (row, i), size in sizes.items():
             # what is left of rounding
-            if row[column] not in (say(OPEN), "") and abs(float(row[column])) < 1e-12 * scales[scale]:
-                row[column] = "0"
+            if abs(size) < 1e-12 * max(sizes.values()):
+                rows[row][i] = "0"
     return head, rows
-
-
-def _scale(rows: list[list[str]], of: tuple[int, ...]) -> float:
-    return max((float(row[i]) for row in rows for i in of if row[i] not in (say(OPEN), "")), default=0.0)
 
 
 def _peak(burden: Burden) -> str:
@@ -259,14 +256,9 @@ def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
 
 def _weights(found: Balance) -> dict[str, Any]:
     """Counterweights: mass times radius [kg length] in a direction, and the shaking [N] before and after."""
+    names = ("link", "pivot", "product", "direction", "mass")
     weights = [
-        {
-            "link": one.link,
-            "pivot": list(one.pivot),
-            "product": one.product,
-            "direction": one.direction.tolist(),
-            "mass": one.mass,
-        }
+        {name: getattr(one, name) for name in names} | {"direction": one.direction.tolist()}
         for one in found.counterweights
     ]
     return {"weights": weights, "before": found.before, "after": found.after, "measure": found.measure}
@@ -313,20 +305,8 @@ def numbers(found: CircuitForces) -> dict[str, Any]:
     forces, sizing, shaken = found.forces, found.sizing, found.shaking
     drive = None
     if sizing is not None:
-        drive = {
-            "peak_torque": _plain(sizing.peak_torque),
-            "rms_torque": sizing.rms_torque,
-            "mean_torque": sizing.mean_torque,
-            "peak_power": _plain(sizing.peak_power),
-            "braking_power": _plain(sizing.braking_power),
-            "fluctuation": sizing.fluctuation,
-            "fastest": sizing.fastest,
-            "slowest": sizing.slowest,
-            "unevenness": sizing.unevenness,
-            "flywheel": sizing.flywheel,
-            "found": sizing.found,
-            "tail": sizing.tail,
-        }
+        drive = {name: value for name, value in vars(sizing).items() if name != "bearings"}
+        drive |= {name: _plain(drive[name]) for name in ("peak_torque", "peak_power", "braking_power")}
     joints = {}
     for name, reaction in forces.reactions.items():
         flags = zip(COMPONENTS, reaction.determinate.tolist(), strict=True)

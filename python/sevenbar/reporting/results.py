@@ -105,10 +105,11 @@ def _circuits(motion: Motion) -> list[tuple[str, str]]:
     """A line for each circuit: its type where they differ, its ranges; one line where all agree."""
     rows = []
     for circuit in motion.circuits[:MOST_CIRCUITS]:
-        facts = circuit_facts(motion, circuit, ("motion type", "range of "))
-        texts = [text for label, text in facts if label == "motion type"]
-        ranges = [(label, text) for label, text in facts if label.startswith("range of ")]
-        texts += [f"{label.removeprefix('range of ')} {text}" for label, text in ranges]
+        facts = circuit_facts(motion, circuit, brief=True)
+        texts = (
+            text if label == "motion type" else f"{label.removeprefix('range of ')} {text}"
+            for label, text in facts
+        )
         rows.append((f"  {circuit.index}", ", ".join(texts)))
     if len({text for _, text in rows}) == 1:
         return [("", rows[0][1])]

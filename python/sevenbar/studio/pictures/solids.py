@@ -16,7 +16,7 @@ from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import GROUND, JOINT
 from sevenbar.kinematics.loop.rigid import rotation_of
 from sevenbar.studio.pictures.layout import NOWHERE, JointPlaces, Layout, Pair, layout
-from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, slices, turns
+from sevenbar.studio.pictures.poses import SOLID, Colours, Poses, SolidPlan, poses, slices, turns
 from sevenbar.studio.pictures.shapes import TURNS
 
 __all__ = ["Poses", "SolidPlan", "plan", "poses", "rgb"]
@@ -143,19 +143,10 @@ def _unit(where: Layout, pose: Floats, size: float) -> float:
 
 
 def _made(solids: _Solids, frame: Skeleton, pose: Floats, size: float) -> SolidPlan:
-    rows = [row for shape in solids.rows.values() for row in shape]
-    places, share, shift, length, twist, sides, colours, moves = zip(*rows, strict=True)
     where = solids.layout
     return SolidPlan(
         slices({shape: len(found) for shape, found in solids.rows.items()}),
-        np.array(places).T.copy(),
-        np.array(share),
-        np.array(shift),
-        np.array(length),
-        np.array(twist),
-        np.array([np.broadcast_to(side, 2) for side in sides]),
-        np.array(colours),
-        np.array(moves),
+        np.array([row for rows in solids.rows.values() for row in rows], SOLID),
         where.count,
         np.array(solids.fixed).reshape(-1, 3),
         np.array([pair for joint in where.joints for pair in joint.axes]).reshape(-1, 2),
