@@ -20,7 +20,6 @@ from sevenbar.drawing.page import (
     page_of_one,
     picture_height,
     prepare,
-    prepare_given,
     set_height,
     write_legend,
     write_title,
@@ -85,24 +84,20 @@ def configuration(
         if ax is not None:
             (ax,) = given_axes(ax, 1, "or none")
         seen = view_of(view, motion.linkage, shown_places(frame), ax)
-        if ax is None:
-            page = page_size(style, figsize, (WIDTH, WIDTH), wide=False)
-            which = say(
-                "circuit {number}, {count} position{s}",
-                number=chosen.index, count=len(poses), s="s" * (len(poses) > 1),
-            )  # fmt: skip
-            heading = title_text(title, f"{title_of(motion)}\n{which}")
-            shown_keys = keys(frame, ends, seen) if legend else []
-            box = frame_box(frame, seen)
-            figure, space, room = page_of_one(page, seen, box, heading, shown_keys, fixed=figsize is not None)
-            prepare(space, frame, room)
-            _, foot, _, tall = room
-            within: Bbox | None = Bbox.from_extents(
-                0, foot * figure.dpi, figure.bbox.width, (foot + tall) * figure.dpi
-            )
-        else:
-            figure, space, within = ax.figure.figure, ViewAxes(ax, seen), None
-            prepare_given(space, frame)
+        which = say(
+            "circuit {number}, {count} position{s}",
+            number=chosen.index, count=len(poses), s="s" * (len(poses) > 1),
+        )  # fmt: skip
+        heading = title_text(title, f"{title_of(motion)}\n{which}")
+        figure, space, room = page_of_one(
+            ax, seen, frame_box(frame, seen), heading, keys(frame, ends, seen) if legend else [],
+            usual=WIDTH, figsize=figsize, style=style,
+        )  # fmt: skip
+        prepare(space, frame, room)
+        within = None
+        if room is not None:
+            low, high = room[1] * figure.dpi, (room[1] + room[3]) * figure.dpi
+            within = Bbox.from_extents(0, low, figure.bbox.width, high)
         stage(space, frame, ends)
         for pose in poses[1:]:
             put(space, bars(space, frame, ends, ghost=True), pose)
@@ -161,7 +156,7 @@ def modes_overview(
         if given:
             for axes, index in zip(given, range(count), strict=True):
                 space = ViewAxes(axes, seen)
-                prepare_given(space, poses)
+                prepare(space, poses, None)
                 _draw_mode(space, poses, index, ends, 1.0)
                 if title:
                     axes.set_title(say("mode {number}", number=index))

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.figure import gridded
 from sevenbar.drawing.names import quantity_label, short, shown_name
 from sevenbar.drawing.panels import Panels, panels_across, panels_of
 from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, QUIET, letters, stroke
@@ -70,8 +71,7 @@ def curve(
     zero: bool = True,
 ) -> None:
     """A quantity over the input, each pass for itself; a growth without bound is cut."""
-    axes.grid(True)
-    axes.set_axisbelow(True)
+    gridded(axes)
     across, along = drawn_inputs(forces), closed(forces, values)
     branch = closed(forces, forces.branch.astype(float))
     if zero:
@@ -184,8 +184,7 @@ def reach_of(force: Floats, forces: Forces) -> float:
 
 def hodograph(axes: Axes, forces: Forces, pair: Floats, colour: str, *, reach: float | None = None) -> None:
     """The path of the tip of a force (n, 2) in a plane, both axes of one scale."""
-    axes.grid(True)
-    axes.set_axisbelow(True)
+    gridded(axes)
     path = closed(forces, pair)
     axes.axhline(0, color=QUIET, lw=0.7 * stroke())
     axes.axvline(0, color=QUIET, lw=0.7 * stroke())

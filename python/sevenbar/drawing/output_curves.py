@@ -16,6 +16,7 @@ from matplotlib.ticker import MaxNLocator
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import (
     circuits_text,
+    gridded,
     input_label,
     note,
     range_drawn,
@@ -197,8 +198,7 @@ def curves(
 
 def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str, over: str) -> None:
     """Draws one quantity of the passes over "input" or "time", with the input limits and the extremes."""
-    axes.grid(True)
-    axes.set_axisbelow(True)
+    gridded(axes)
     factor, length = _unit_of(motion, drawn, quantity)
     for line in drawn:
         axes.plot(getattr(line, over), factor * getattr(line, quantity), label=line.label, **line.style)

@@ -13,11 +13,11 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.drawing.figure import (
     CUT,
     given_axes,
-    input_label,
+    gridded,
+    input_axis,
     new_figure,
     note,
     shown_value,
-    slides,
     title_of,
     title_text,
 )
@@ -25,14 +25,13 @@ from sevenbar.drawing.names import amount_text, handy_unit, short
 from sevenbar.drawing.page import (
     EDGE,
     Rectangle,
-    fill_given,
-    fit_picture,
     own_axes,
     picture_height,
+    prepare_box,
     set_height,
     write_title,
 )
-from sevenbar.drawing.space import ViewAxes, box_round, draw_frame, set_limits
+from sevenbar.drawing.space import ViewAxes, box_round
 from sevenbar.drawing.style import (
     ACCELERATION,
     INK,
@@ -43,7 +42,6 @@ from sevenbar.drawing.style import (
     stroke,
     styled,
 )
-from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.drawing.view import Asked, Projection, view_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -123,9 +121,7 @@ def point_path(
                     _speed(axes, motion, chosen, trace)
                 else:
                     space = ViewAxes(axes, seen_as)
-                    set_limits(space, box)
-                    fill_given(space, box)
-                    draw_frame(space, box, unit)
+                    prepare_box(space, box, unit, None)
                     _arrows(space, places, arrows[part], part)
             return given[0].figure.figure  # type: ignore[no-any-return]
         wide = len(pictures) > 1
@@ -153,9 +149,7 @@ def point_path(
         for place, part in enumerate(pictures):
             space = ViewAxes(own_axes(figure, seen_as), seen_as)
             room: Rectangle = (place * across, below, across, height - top - line - below)
-            set_limits(space, box)
-            fit_picture(space, box, room)
-            draw_frame(space, box, unit)
+            prepare_box(space, box, unit, room)
             _arrows(space, places, arrows[part], part)
             greatest = _greatest(chosen, arrows[part][2], unit, part)
             words = letter[part] + say("{quantity}, {greatest}", quantity=say(part), greatest=greatest)
@@ -203,8 +197,7 @@ def _arrows(space: ViewAxes, places: Floats, arrows: tuple[Integers, Floats, flo
 def _speed(axes: Axes, motion: Motion, circuit: Circuit, trace: Trace) -> None:
     """The speed of a point over the input."""
     path = walk(circuit)
-    axes.grid(True)
-    axes.set_axisbelow(True)
+    gridded(axes)
     across = shown_value(motion, motion.input, path.input)
     speed = np.linalg.norm(trace.velocity[path.rows], axis=1)
     bounded = speed[np.isfinite(speed)]
@@ -215,12 +208,8 @@ def _speed(axes: Axes, motion: Motion, circuit: Circuit, trace: Trace) -> None:
     for number, part in enumerate(path.passes):
         dashes = LINE_STYLES[number % len(LINE_STYLES)]
         axes.plot(across[part], factor * speed[part], color=VELOCITY, ls=dashes, lw=1.6 * stroke())
-    if np.nanmax(across) > np.nanmin(across):
-        axes.set_xlim(np.nanmin(across), np.nanmax(across))
-    if not slides(motion, motion.input):
-        axes.xaxis.set_major_locator(DegreeLocator(10))
+    input_axis(axes, motion, across, 10)
     axes.set_ylim(0, 1.08 * factor * (most or 1.0))
-    axes.set_xlabel(input_label(motion))
     axes.set_ylabel(say("speed [{unit}/s]", unit=unit))
 
 
