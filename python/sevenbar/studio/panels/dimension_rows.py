@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import viser
 
 from sevenbar.errors import SevenbarError
 from sevenbar.kinematics.numbers.dimensions import Dimension
-from sevenbar.studio.panels.controls import PAUSE, Alert, Asked, by_person, put
+from sevenbar.studio.panels.controls import PAUSE, Alert, on_change, put
+from sevenbar.studio.worker import Worker
 from sevenbar.text.units import ANGLES
 
 #: Steps of a slider over its range, at most.
@@ -27,7 +27,7 @@ class DimensionRow:
     def __init__(
         self,
         gui: viser.GuiApi,
-        worker: Asked,
+        worker: Worker,
         dimension: Dimension,
         size: float,
         shape: Callable[[Dimension, float], None],
@@ -40,22 +40,14 @@ class DimensionRow:
         self._box = gui.add_text(label, number_text(dimension.value), hint=hint)
         self._slider = gui.add_slider("", min=low, max=high, step=step, initial_value=dimension.value)
         self._alert = Alert(gui)
-        self._slider.on_update(self._dragged)
-        self._box.on_update(self._typed)
-
-    def _dragged(self, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            value = float(self._slider.value)
-            self._worker.ask(self.dimension.place, lambda: self._take(lambda: value))
-
-    def _typed(self, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            text = self._box.value
-            self._worker.ask(
-                ("typed", self.dimension.place),
-                lambda: self._take(lambda: self.dimension.read(text)),
-                delay=PAUSE,
-            )
+        on_change(self._slider, worker, dimension.place, lambda value: self._take(lambda: float(value)))
+        on_change(
+            self._box,
+            worker,
+            ("typed", dimension.place),
+            lambda text: self._take(lambda: self.dimension.read(text)),
+            delay=PAUSE,
+        )
 
     def _take(self, read: Callable[[], float]) -> None:
         def change() -> None:

@@ -12,12 +12,13 @@ from sevenbar.drawing.force_panels import ROUNDING, greatest_of
 from sevenbar.drawing.style import REACTION
 from sevenbar.kinematics.circuits.poses import at_row
 from sevenbar.reporting.shown import number
-from sevenbar.studio.panels.controls import Asked, offer, put
+from sevenbar.studio.panels.controls import offer, put
 from sevenbar.studio.panels.scenery import arrow_unit
 from sevenbar.studio.pictures.stage import Arrow, Stage
 from sevenbar.studio.state.acting import SwitchedLoading, known_force
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
+from sevenbar.studio.worker import Worker
 
 #: The longest arrow, as a share of the linkage's extent.
 LONGEST = 0.25
@@ -33,7 +34,7 @@ _HINT = (
 class ForceArrows:
     """An arrow with its value at each joint that is chosen; none at first."""
 
-    def __init__(self, gui: viser.GuiApi, worker: Asked, session: Session, stage: Stage) -> None:
+    def __init__(self, gui: viser.GuiApi, worker: Worker, session: Session, stage: Stage) -> None:
         self._session, self._stage = session, stage
         self._choice = gui.add_dropdown("force arrows", (NO_ARROWS,), hint=_HINT)
         self._choice.on_update(lambda _: worker.ask("forces", lambda: None))

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from functools import partial
 from html import escape
-from typing import Any
 
 import viser
 
 from sevenbar.reporting.force_words import NOTHING_ACTS, drive_facts, open_facts
-from sevenbar.studio.panels.controls import Asked, by_person, put
+from sevenbar.studio.panels.controls import on_change, put
 from sevenbar.studio.panels.force_arrows import ForceArrows
 from sevenbar.studio.pictures.stage import Stage
 from sevenbar.studio.state.acting import Switch, drive_sizing
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import facts_block
+from sevenbar.studio.worker import Worker
 
 #: The peaks are found so long [s] after the last change: finding them takes longer than a picture may.
 AT_REST = 0.25
@@ -23,7 +23,7 @@ AT_REST = 0.25
 class ForcesPanel:
     """Check boxes of gravity, loads and springs, the arrows in the joints, and the peaks of the drive."""
 
-    def __init__(self, gui: viser.GuiApi, worker: Asked, session: Session, stage: Stage) -> None:
+    def __init__(self, gui: viser.GuiApi, worker: Worker, session: Session, stage: Stage) -> None:
         self._gui, self._worker, self._session = gui, worker, session
         self._hint = gui.add_html("")
         self._home = gui.add_folder("What acts", visible=False)
@@ -88,13 +88,11 @@ class ForcesPanel:
         with self._home:
             for switch in switches:
                 box = self._gui.add_checkbox(switch.name, True, hint=switch.words)
-                box.on_update(partial(self._switched, switch.key))
+                on_change(box, self._worker, ("switch", switch.key), partial(self._turn, switch.key))
                 self._boxes.append(box)
 
-    def _switched(self, key: str, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            on = bool(event.target.value)
-            self._worker.ask(("switch", key), lambda: self._session.switch(key, on=on))
+    def _turn(self, key: str, on: bool) -> None:
+        self._session.switch(key, on=on)
 
 
 def _nothing() -> str:

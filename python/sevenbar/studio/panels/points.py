@@ -8,16 +8,17 @@ from typing import Any
 import viser
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.studio.panels.controls import Alert, Asked, offer, put
+from sevenbar.studio.panels.controls import Alert, offer, put
 from sevenbar.studio.panels.shaping import DimensionList
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
+from sevenbar.studio.worker import Worker
 
 
 class PointsPanel:
     """The points of the description, and the form for one more."""
 
-    def __init__(self, gui: viser.GuiApi, worker: Asked, session: Session) -> None:
+    def __init__(self, gui: viser.GuiApi, worker: Worker, session: Session) -> None:
         self._worker, self._session = worker, session
         with gui.add_folder("New point"):
             self._name = gui.add_text("name", "P")

@@ -12,10 +12,11 @@ from sevenbar.drawing.skeleton import places_of, skeleton_of
 from sevenbar.drawing.style import ACCELERATION, CIRCUIT_COLOURS, VELOCITY
 from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.kinematics.ranges.reach import within
-from sevenbar.studio.panels.controls import Asked, offer
+from sevenbar.studio.panels.controls import offer
 from sevenbar.studio.pictures.stage import FIELD, Stage
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
+from sevenbar.studio.worker import Worker
 
 #: Ghosts of one circuit, spread over its cycle.
 POSITIONS = 8
@@ -34,7 +35,7 @@ NO_GHOSTS, ALONG, MODES = "none", "positions along the motion", "all modes at th
 class Scenery:
     """Draws the session into the scene of a tab."""
 
-    def __init__(self, client: viser.ClientHandle, worker: Asked, session: Session) -> None:
+    def __init__(self, client: viser.ClientHandle, worker: Worker, session: Session) -> None:
         self._client, self._worker, self._session = client, worker, session
         self.stage = Stage(client.scene)
         gui = client.gui

@@ -8,9 +8,10 @@ from typing import Any
 import viser
 
 from sevenbar.kinematics.numbers.dimensions import Dimension
-from sevenbar.studio.panels.controls import Alert, Asked, by_person, offer, put
+from sevenbar.studio.panels.controls import Alert, by_person, offer, put
 from sevenbar.studio.panels.dimension_rows import DimensionRow, largest_length
 from sevenbar.studio.state.session import Session
+from sevenbar.studio.worker import Worker
 
 #: More groups of dimensions than these are folded at first, except the first one.
 MOST_OPEN = 2
@@ -22,7 +23,7 @@ class DimensionList:
     def __init__(
         self,
         gui: viser.GuiApi,
-        worker: Asked,
+        worker: Worker,
         session: Session,
         wanted: Callable[[Dimension], bool],
     ) -> None:
@@ -67,7 +68,7 @@ class DimensionList:
 class ShapePanel:
     """Undo, redo, reset; the drive; and every dimension but those of points."""
 
-    def __init__(self, gui: viser.GuiApi, worker: Asked, session: Session) -> None:
+    def __init__(self, gui: viser.GuiApi, worker: Worker, session: Session) -> None:
         self._worker, self._session = worker, session
         self._history = gui.add_button_group("history", ("undo", "redo", "reset"))
         self._input = gui.add_dropdown("input", ("-",), hint="the joint that drives")
