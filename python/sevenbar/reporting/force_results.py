@@ -40,12 +40,8 @@ def _(forces: Forces) -> str:
         row = int(np.nanargmax(np.abs(forces.torque)))
         peak = f"{number(forces.torque[row])} {forces.unit} @ {place(float(forces.input[row]))}"
     dead = "dead-centre" in forces.status
-    facts.append(
-        (
-            f"input {quantity(forces)}",
-            f"no bound at dead centres of {forces.driver}" if dead else f"greatest of the rows {peak}",
-        )
-    )
+    bound = f"no bound at dead centres of {forces.driver}" if dead else f"greatest of the rows {peak}"
+    facts.append((f"input {quantity(forces)}", bound))
     if not forces.at_rest and not dead and lost < len(forces.torque):
         low, high = np.nanmin(forces.power), np.nanmax(forces.power)
         facts.append(("power", f"{number(float(low))} to {number(float(high))} W"))
@@ -87,10 +83,10 @@ def _(reaction: Reaction) -> str:
     ):
         for name, own in zip(names, values.T, strict=True):
             known = own[np.isfinite(own)]
-            said = (
-                f"{number(float(known.min()))} to {number(float(known.max()))} {unit}" if known.size else OPEN
+            ends = (
+                f"{number(float(known.min()))} to {number(float(known.max()))} {unit}" if known.size else ""
             )
-            facts.append((name, said))
+            facts.append((name, ends or OPEN))
     if not reaction.determinate.all():
         facts.append(("", "what is open is not determined by equilibrium of rigid bodies"))
     return lines(
@@ -113,6 +109,9 @@ def _(found: Sizing) -> str:
         ]
         for part in ("force", "in_plane")
     )
+    flywheel = ""
+    if found.flywheel is not None:
+        flywheel = f"{number(found.flywheel)} kg m^2 for an unevenness of {found.unevenness:g}"
     return lines(
         "Sizing of a drive",
         [
@@ -121,12 +120,7 @@ def _(found: Sizing) -> str:
             ("peak power", f"{at(found.peak_power)} W"),
             ("braking power", at(found.braking_power) + " W" * (found.braking_power is not None)),
             ("fluctuation", f"{number(found.fluctuation)} J"),
-            (
-                "flywheel",
-                ""
-                if found.flywheel is None
-                else f"{number(found.flywheel)} kg m^2 for an unevenness of {found.unevenness:g}",
-            ),
+            ("flywheel", flywheel),
             ("peak forces", ", ".join(most)),
             *([("in the plane", ", ".join(in_plane))] if in_plane else []),
             ("found", found_text(found)),
@@ -139,35 +133,22 @@ def _(bearing: Bearing) -> str:
     facts = []
     for part, unit in LISTED.items():
         burden: Burden = getattr(bearing, part)
-        said = OPEN
-        if part == "in_plane" and not math.isfinite(burden.peak.value):
-            continue
         if math.isfinite(burden.peak.value):
-            said = (
-                f"peak {number(burden.peak.value)} {unit} at {burden.peak.input:.6g}, "
-                f"cubic mean {number(burden.mean_cube)} {unit}"
-            )
-        facts.append((part.replace("_", " "), said))
+            peak = f"peak {number(burden.peak.value)} {unit} at {burden.peak.input:.6g}"
+            facts.append((part.replace("_", " "), f"{peak}, cubic mean {number(burden.mean_cube)} {unit}"))
+        elif part != "in_plane":
+            facts.append((part, OPEN))
     return lines("Loads of a bearing", facts)
 
 
 @text_of.register(Shaking)
 def _(found: Shaking) -> str:
-    return lines(
-        "Shaking",
-        [
-            (
-                "force",
-                f"peak {number(found.force.value)} N at {found.force.input:.6g}, "
-                f"rms {number(found.rms_force)} N",
-            ),
-            (
-                "moment",
-                f"peak {number(found.moment.value)} N m at {found.moment.input:.6g}, rms "
-                f"{number(found.rms_moment)} N m",
-            ),
-        ],
-    )
+    both = (("force", found.force, found.rms_force, "N"), ("moment", found.moment, found.rms_moment, "N m"))
+    facts = [
+        (word, f"peak {number(peak.value)} {unit} at {peak.input:.6g}, rms {number(rms)} {unit}")
+        for word, peak, rms, unit in both
+    ]
+    return lines("Shaking", facts)
 
 
 @text_of.register(Balance)
@@ -177,15 +158,10 @@ def _(found: Balance) -> str:
 
 def balance_facts(found: Balance) -> list[tuple[str, str]]:
     """The counterweights link by link, what they leave of the shaking, and how they were found."""
-    unit = "N"
     facts = [(f"link {one.link}", _weight(one, found.length_unit)) for one in found.counterweights]
     after = found.after if found.after > ROUNDING * found.before else 0.0
-    facts.append(
-        (
-            "shaking",
-            f"{found.measure} {number(found.before)} {unit} before, {number(after)} {unit} after",
-        )
-    )
+    shaking = f"{found.measure} {number(found.before)} N before, {number(after)} N after"
+    facts.append(("shaking", shaking))
     facts.append(("found", f"{found.status}; {found.rank} of {found.unknowns} numbers act"))
     facts.append(("idle", "; ".join(found.idle)))
     return facts

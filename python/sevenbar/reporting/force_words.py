@@ -218,11 +218,9 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     energy = say(
         "fluctuates by {energy} J about a drive of constant {steady}: fastest at {fastest}, "
         "slowest at {slowest}",
-        energy=number(found.fluctuation),
-        steady=steady,
-        fastest=place(found.fastest),
+        energy=number(found.fluctuation), steady=steady, fastest=place(found.fastest),
         slowest=place(found.slowest),
-    )
+    )  # fmt: skip
     facts.append((say("energy"), energy))
     if found.flywheel is not None:
         inertia = number(found.flywheel)
@@ -307,18 +305,12 @@ def unbounded_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str
         for name, reaction in forces.reactions.items()
         if reaction.determinate.any() and not _any_known(found.bearings[name])
     ]
-    if not lost:
-        return []
-    return [
-        (
-            say("no bound"),
-            say(
-                "forces in {joints} grow without bound at the change points, where a link in line with its "
-                "neighbour cannot drive it; the torque does not",
-                joints=", ".join(lost),
-            ),
-        )
-    ]
+    text = say(
+        "forces in {joints} grow without bound at the change points, where a link in line with its "
+        "neighbour cannot drive it; the torque does not",
+        joints=", ".join(lost),
+    )
+    return [(say("no bound"), text)] if lost else []
 
 
 def _any_known(bearing: Bearing) -> bool:
@@ -347,14 +339,11 @@ def shaking_facts(forces: Forces, found: Shaking | None) -> list[tuple[str, str]
     if found is None:
         return []
     place = Places(forces)
-    force, rms_force = place.at(found.force, "N"), f"{number(found.rms_force)} N"
-    moment, rms_moment = place.at(found.moment, "N m"), f"{number(found.rms_moment)} N m"
+    force = {"value": place.at(found.force, "N"), "rms": f"{number(found.rms_force)} N"}
+    moment = {"value": place.at(found.moment, "N m"), "rms": f"{number(found.rms_moment)} N m"}
     return [
-        (say("shaking force"), say("peak {value}, rms {rms}", value=force, rms=rms_force)),
-        (
-            say("moment"),
-            say("about the origin: peak {value}, rms {rms}", value=moment, rms=rms_moment),
-        ),
+        (say("shaking force"), say("peak {value}, rms {rms}", **force)),
+        (say("moment"), say("about the origin: peak {value}, rms {rms}", **moment)),
     ]
 
 

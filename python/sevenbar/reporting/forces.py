@@ -22,7 +22,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.reporting.figures import FigureLook
-from sevenbar.reporting.files import Files, Report, columns_file, figure_files, json_file
+from sevenbar.reporting.files import Files, Report, Write, columns_file, figure_files, json_file
 from sevenbar.reporting.force_words import (
     LISTED,
     OPEN,
@@ -98,11 +98,11 @@ def _figures(
     if found.shaking is not None:
         draw["shaking"] = partial(force_figures.shaking, forces)
     draw["energies"] = partial(force_figures.energies, forces)
-    files: Files[CircuitForces] = {}
+    if not force_figures.drawn_bearings(forces, chosen):
+        del draw["bearings"]
+    files: dict[str, Write[CircuitForces]] = {}
     for name, one in draw.items():
-        if name == "bearings" and not force_figures.drawn_bearings(forces, chosen):
-            continue
-        files = {**files, **figure_files(name, formats, partial(_drawn, one, look))}
+        files |= figure_files(name, formats, partial(_drawn, one, look))
     return files
 
 
@@ -157,11 +157,10 @@ def text(found: CircuitForces) -> RenderableType:
     if found.sizing is not None:
         planar = found.motion.linkage.is_planar
         head, rows = bearing_rows(forces, found.sizing, planar=planar)
-        without = ""
-        if head[1] == say(IN_PLANE):
-            without = say("; in plane: the force in the plane of motion, the whole is open")
-        elif head[1] == say(KNOWN):
-            without = say("; known: the force without the component that is open")
+        without = {
+            say(IN_PLANE): say("; in plane: the force in the plane of motion, the whole is open"),
+            say(KNOWN): say("; known: the force without the component that is open"),
+        }.get(head[1], "")
         meaning = say(
             "peaks of what the link before puts on the link after; radial square to the joint's "
             "axis, axial along it, tilting moment square to it, turning about it"
