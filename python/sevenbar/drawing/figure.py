@@ -222,10 +222,9 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
 
 def _without_date(file: Path) -> None:
     """Takes the date and the name of a file aside out of an EPS, so that one figure gives the same bytes."""
-    lines = file.read_bytes().split(b"\n")
-    file.write_bytes(
-        b"\n".join(line for line in lines if not line.startswith((b"%%CreationDate", b"%%Title")))
-    )
+    dated = (b"%%CreationDate", b"%%Title")
+    lines = [line for line in file.read_bytes().split(b"\n") if not line.startswith(dated)]
+    file.write_bytes(b"\n".join(lines))
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import column_label, gridded, input_axis, shown_value, slides, title_of
 from sevenbar.drawing.panels import panels_across, panels_of
-from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, stroke, styled
+from sevenbar.drawing.style import circuit_colour, line_style, stroke, styled
 from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -97,7 +97,6 @@ def _panel(axes: Axes, motion: Motion, name: str) -> None:
 
 def _look(circuit: Circuit, above: int) -> dict[str, Any]:
     """The line of a circuit with so many others on it."""
-    count = len(CIRCUIT_COLOURS)
-    dashes = LINE_STYLES[(circuit.index + circuit.index // count) % len(LINE_STYLES)]
+    dashes = "-" if above else line_style(circuit.index)
     width = (1.5 + WIDER * min(above, 3)) * stroke()
-    return {"color": CIRCUIT_COLOURS[circuit.index % count], "ls": "-" if above else dashes, "lw": width}
+    return {"color": circuit_colour(circuit.index), "ls": dashes, "lw": width}

@@ -24,7 +24,7 @@ from sevenbar.drawing.panels import coinciding, panels_of
 from sevenbar.drawing.scene import bars, put, shown_places, stage
 from sevenbar.drawing.skeleton import skeleton
 from sevenbar.drawing.space import box_round
-from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, stroke, styled
+from sevenbar.drawing.style import LINE_STYLES, QUIET, circuit_colour, stroke, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.drawing.view import Asked, view_of
 from sevenbar.errors import RequestError
@@ -81,8 +81,10 @@ def transmission(
         gridded(axes)
         for place, group in enumerate(coinciding(lines, _alike)):
             numbers, (first, across, values) = [number for number, *_ in group], group[0]
-            colour = CIRCUIT_COLOURS[first % len(CIRCUIT_COLOURS)]
-            look: dict[str, Any] = {"color": colour, "ls": LINE_STYLES[place % len(LINE_STYLES)]}
+            look: dict[str, Any] = {
+                "color": circuit_colour(first),
+                "ls": LINE_STYLES[place % len(LINE_STYLES)],
+            }
             axes.plot(across, values, lw=1.6 * stroke(), label=circuits_text(numbers), **look)
         axes.axhline(
             RECOMMENDED, color=QUIET, lw=0.9 * stroke(), ls=":", label=say("{angle:g}°", angle=RECOMMENDED)
@@ -166,11 +168,9 @@ def axodes(
         ]
         if seen.planar:
             handles[2] = Line2D([], [], color="black", ls="", marker="o", ms=5, label=say("instant centre"))
-        which = (
-            say("centrodes of link {link}, circuit {number}", link=link, number=chosen.index)
-            if seen.planar
-            else say("axodes of link {link}, circuit {number}", link=link, number=chosen.index)
-        )
+        which = say("axodes of link {link}, circuit {number}", link=link, number=chosen.index)
+        if seen.planar:
+            which = say("centrodes of link {link}, circuit {number}", link=link, number=chosen.index)
         heading = title_text(title, f"{title_of(motion)}\n{which}")
         figure, space, room = page_of_one(
             given, seen, box, heading, handles if legend else [], usual=6.4, figsize=figsize, style=style
@@ -193,10 +193,8 @@ def axodes(
 
 def _frame_of(circuit: Circuit, link: int, row: int) -> tuple[Floats, Floats]:
     """Turn (3, 3) and place (3,) that lead from a link's coordinates to the report frame on a row."""
-    ends = [
-        circuit.point(link, at).position[row]
-        for at in ((0.0, 0.0, 0.0), (1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0))
-    ]
+    places = ((0.0, 0.0, 0.0), (1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0))
+    ends = [circuit.point(link, at).position[row] for at in places]
     return np.stack([end - ends[0] for end in ends[1:]], axis=1), ends[0]
 
 

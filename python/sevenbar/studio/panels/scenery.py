@@ -9,7 +9,7 @@ import viser
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import places_of, skeleton_of
-from sevenbar.drawing.style import ACCELERATION, CIRCUIT_COLOURS, VELOCITY
+from sevenbar.drawing.style import ACCELERATION, VELOCITY, circuit_colour
 from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.kinematics.ranges.reach import within
 from sevenbar.studio.panels.controls import offer
@@ -220,7 +220,7 @@ class Scenery:
                 others = [mode for i, mode in enumerate(modes) if i != shown]
                 q = np.array([each.joints(row) for each, row in others])
                 places = list(places_of(q, view.frame)) if others else []
-                colours = [CIRCUIT_COLOURS[each.circuit.index % len(CIRCUIT_COLOURS)] for each, _ in others]
+                colours = [circuit_colour(each.circuit.index) for each, _ in others]
                 self.stage.ghosts(list(zip(places, colours, strict=True)))
             case _:
                 self.stage.ghosts([])

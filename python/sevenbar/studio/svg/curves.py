@@ -13,7 +13,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import input_label, range_drawn, shown_value, slides
 from sevenbar.drawing.output_curves import inputs_between, place_of
-from sevenbar.drawing.style import CIRCUIT_COLOURS
+from sevenbar.drawing.style import circuit_colour
 from sevenbar.drawing.ticks import FLAT
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.extents import Flags
@@ -63,7 +63,7 @@ class ShownCurve:
     @property
     def colour(self) -> str:
         """The circuit's colour, as in all figures."""
-        return CIRCUIT_COLOURS[self.view.circuit.index % len(CIRCUIT_COLOURS)]
+        return circuit_colour(self.view.circuit.index)
 
     @property
     def passes(self) -> tuple[slice, ...]:
