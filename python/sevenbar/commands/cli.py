@@ -22,15 +22,7 @@ from sevenbar.commands import options
 from sevenbar.commands.command import Command
 from sevenbar.commands.consent import confirm
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
-from sevenbar.commands.given import (
-    check_law,
-    film_of,
-    input_value,
-    law_of,
-    look_of,
-    opened,
-    point_of,
-)
+from sevenbar.commands.given import check_law, film_of, input_value, law_of, look_of, opened, point_of
 from sevenbar.commands.long_tables import long_motion, table_ahead
 from sevenbar.commands.progress import STOPPED, progress_bar
 from sevenbar.errors import (
@@ -166,7 +158,8 @@ def analyze(
     formats = options.figure_formats(figures, out)
     film_look = film_of(fps, seconds, animate)
     if out is None and animate is None:
-        _refuse_unused({"--circuit": circuit, "--view": view, "--size": size, "--style": style})
+        unused = {"--circuit": circuit, "--view": view, "--size": size, "--style": style}
+        options.refuse_unused(unused, "--out, --animate, or both")
     check_law(law, speed)
     if not json:
         # the report has it
@@ -193,13 +186,6 @@ def analyze(
         else:
             elsewhere[animate] = film
     deliver(motion, report, out, json=json, force=force, also=elsewhere)
-
-
-def _refuse_unused(given: dict[str, object]) -> None:
-    """Refuses options of figures where none is drawn."""
-    for option, value in given.items():
-        if value is not None:
-            raise RequestError(f"{option}: no figure is drawn; give --out, --animate, or both")
 
 
 def _film(
@@ -262,10 +248,8 @@ def modes(
     check_targets([] if out is None else [out], force=force)
     value = input_value("--at", at, loaded, input_joint)
     found = loaded.assembly_modes(value, input=loaded.columns[column])
-    elsewhere: dict[Path, Callable[[Path], object]] = {}
-    if out is not None:
-        elsewhere[out] = partial(_draw_modes, loaded, found, loaded.columns[column])
-    deliver(found, modes_report(loaded, column), json=json, also=elsewhere)
+    draw = partial(_draw_modes, loaded, found, loaded.columns[column])
+    deliver(found, modes_report(loaded, column), json=json, also={} if out is None else {out: draw})
 
 
 def _draw_modes(linkage: sb.Linkage, found: sb.Modes, held: str, path: Path) -> None:
@@ -379,12 +363,9 @@ def _tell_warning(
     line: str | None = None,
 ) -> None:
     """Writes a warning of ours as one line on the error stream, any other as Python does."""
-    ours = issubclass(category, (AngleUnitWarning, MissingFontWarning))
-    text = (
-        f"sevenbar: {message}\n"
-        if ours
-        else warnings.formatwarning(message, category, filename, lineno, line)
-    )
+    text = warnings.formatwarning(message, category, filename, lineno, line)
+    if issubclass(category, (AngleUnitWarning, MissingFontWarning)):
+        text = f"sevenbar: {message}\n"
     (file or sys.stderr).write(text)
 
 

@@ -78,9 +78,7 @@ def forces(
     look = look_of(None, size, style)
     formats = options.figure_formats(figures, out)
     if out is None:
-        for option, given in (("--joint", joint), ("--size", size), ("--style", style)):
-            if given:
-                raise RequestError(f"{option}: no figure is drawn; give --out")
+        options.refuse_unused({"--joint": joint, "--size": size, "--style": style}, "--out")
     check_law(law, speed)
     unit = _unit_at_rest(speed)
     at_rest = unit is not None

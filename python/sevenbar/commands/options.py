@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -65,10 +66,7 @@ Figures = Annotated[
     list[str] | None,
     typer.Option(help="Format of the figures: png (the default), svg, pdf, eps; may be repeated."),
 ]
-FigureView = Annotated[
-    str | None,
-    typer.Option("--view", help=VIEW_HELP),
-]
+FigureView = Annotated[str | None, typer.Option("--view", help=VIEW_HELP)]
 FigureSize = Annotated[
     str | None, typer.Option("--size", help="Size of the figures, as in '85x60mm' or '3.3x2.5in'.")
 ]
@@ -165,6 +163,20 @@ def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]
     if out is None:
         raise RequestError("--figures: a folder for them is missing; give --out, as in '--out report'")
     return endings
+
+
+def refuse_unused(given: Mapping[str, object], remedy: str) -> None:
+    """Raises `RequestError` for options of figures that are given where none is drawn."""
+    for option, value in given.items():
+        if value not in (None, []):
+            raise RequestError(f"{option}: no figure is drawn; give {remedy}")
+
+
+def kept_in(folder: Path | None) -> str:
+    """What Ctrl+C leaves of work that keeps its finished parts in a folder, if it has one."""
+    if folder is None:
+        return "nothing is written"
+    return f"the finished parts are kept in {folder}, --resume goes on with them"
 
 
 def checked_designs(count: int, most: int = MOST_DESIGNS) -> None:

@@ -99,9 +99,7 @@ def survey(
     options.checked_designs(designs, 100)
     if resume and journal is None:
         raise RequestError("--resume: of no folder; give --journal too, as in '--journal survey'")
-    kept = "nothing is written"
-    if journal is not None:
-        kept = f"the finished parts are kept in {journal}, --resume goes on with them"
+    kept = options.kept_in(journal)
     settings: dict[str, Any] = {
         "out": journal, "resume": resume, "mixed": mixed, "threads": threads, "scheduler": scheduler,
     }  # fmt: skip

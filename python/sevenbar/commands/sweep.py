@@ -90,10 +90,7 @@ def sweep(
             f"(at most {MOST_WITHOUT_FOLDER}), so give a folder, as in --out sweep"
         )
     finished = out is not None and is_finished(out)
-    kept = "nothing is written"
-    if out is not None:
-        kept = f"the finished parts are kept in {out}, --resume goes on with them"
-    with progress_bar(f"sweep of {draft.linkage.name}", rate=True, kept=kept) as progress:
+    with progress_bar(f"sweep of {draft.linkage.name}", rate=True, kept=options.kept_in(out)) as progress:
         found = carry_out(
             plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
             progress=progress,

@@ -223,7 +223,7 @@ def _pictures(
     page = Bbox.from_extents(0, foot * DPI, part * DPI, (height - top) * DPI)
     names = []
     if len(known):
-        names = write_names(space, frame, known, range(len(frame.names)), within=page, distances=NEAR)
+        names = write_names(space, frame, known, within=page, distances=NEAR)
     (cursor,) = curve.plot([], [], color=INK, lw=1.0 * stroke(), zorder=5)
     (dot,) = curve.plot([], [], "o", color=INK, ms=7 * stroke(), zorder=6)
     place = room[0] / width, (bottom + tall + 0.7 * em) / height

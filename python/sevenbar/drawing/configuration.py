@@ -102,7 +102,7 @@ def configuration(
         for pose in poses[1:]:
             put(space, bars(space, frame, ends, ghost=True), pose)
         put(space, bars(space, frame, ends), poses[0])
-        write_names(space, frame, poses[0][None], range(len(frame.names)), within=within)
+        write_names(space, frame, poses[0][None], within=within)
     return figure
 
 
@@ -195,4 +195,4 @@ def _draw_mode(space: ViewAxes, poses: Skeleton, index: int, ends: tuple[str, st
     one = one_pose(poses, index)
     stage(space, one, ends, around=poses)
     put(space, bars(space, one, ends, scale=scale), one.pose(0))
-    write_names(space, one, one.places, range(len(one.names)))
+    write_names(space, one, one.places)

@@ -11,6 +11,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import column_label, shown_value
+from sevenbar.drawing.names import named_together
 from sevenbar.drawing.output_curves import QUANTITIES, output_label, passes
 from sevenbar.drawing.scene import SAME, link_colours, paths
 from sevenbar.drawing.skeleton import Skeleton
@@ -90,6 +91,7 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
         for place, colour in paths(frame, ends)
         if place in frame.points and place not in frame.far
     ]
+    named = named_together(frame.names, frame.places, SAME * frame.span, frame.far)
     sphere = frame.sphere
     return {
         "poses": _plain((poses - centre) / size),
@@ -100,7 +102,7 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
         "marks": marks,
         "stays": [list(stay) for stay in frame.stays if stay[1] not in frame.far],
         "points": points,
-        "names": _names(frame),
+        "names": [{"at": place, "text": ", ".join(names)} for place, names in named.items()],
         "paths": traces,
         "joints": list(frame.joints),
         "sphere": None
@@ -109,22 +111,6 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
         "view": _plain(np.vstack([view.screen, view.towards])),
         "flat": view.flat,
     }
-
-
-def _names(frame: Skeleton) -> list[dict[str, Any]]:
-    """The names of places; those that are always together are one."""
-    named: dict[int, list[str]] = {}
-    for place, name in enumerate(frame.names):
-        if not name or place in frame.far:
-            continue
-        near = (
-            k
-            for k in named
-            if np.nanmax(np.abs(frame.places[:, k] - frame.places[:, place])) < SAME * frame.span
-        )
-        own = named.setdefault(next(near, place), [])
-        own += [name] * (name not in own)
-    return [{"at": place, "text": ", ".join(names)} for place, names in named.items()]
 
 
 def _curves(motion: Motion, circuit: Circuit, rows: Floats) -> list[dict[str, Any]]:

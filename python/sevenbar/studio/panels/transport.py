@@ -70,10 +70,8 @@ class Transport:
 
     def _toggle(self) -> None:
         self._worker.playing = not self._worker.playing and self._session.view is not None
-        self._play.label = "Pause" if self._worker.playing else "Play"
-        self._play.icon = (
-            viser.Icon.PLAYER_PAUSE_FILLED if self._worker.playing else viser.Icon.PLAYER_PLAY_FILLED
-        )
+        pause, play = ("Pause", viser.Icon.PLAYER_PAUSE_FILLED), ("Play", viser.Icon.PLAYER_PLAY_FILLED)
+        self._play.label, self._play.icon = pause if self._worker.playing else play
 
     def pause(self) -> None:
         """Ends what plays."""

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.names import named_together
 from sevenbar.drawing.scene import link_colours, paths
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import GROUND, JOINT
@@ -156,12 +157,8 @@ def _made(solids: _Solids, frame: Skeleton, pose: Floats, size: float) -> SolidP
 
 def _labels(frame: Skeleton, pose: Floats, size: float) -> tuple[tuple[str, int], ...]:
     """The names of places; those in one place share a label."""
-    named: dict[int, list[str]] = {}
-    for place, name in enumerate(frame.names):
-        if name:
-            near = (other for other in named if np.abs(pose[other] - pose[place]).max() < 1e-6 * size)
-            named.setdefault(next(near, place), []).append(name)
-    return tuple((", ".join(dict.fromkeys(names)), place) for place, names in named.items())
+    named = named_together(frame.names, pose[None], 1e-6 * size)
+    return tuple((", ".join(names), place) for place, names in named.items())
 
 
 def _add_joint(

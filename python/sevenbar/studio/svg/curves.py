@@ -187,18 +187,12 @@ def _strong(own: ShownCurve, frame: Frame, x: Floats, y: Floats) -> str:
 
 def _empty(frame: Frame, quantity: Quantity, reason: str) -> Panel:
     left, top, right, bottom = frame.box
+    middle = (left + right) / 2, (top + bottom) / 2 + 4
     content = [
         f'<rect width="{frame.width}" height="{frame.height}" fill="{GROUND}"/>',
         f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" fill="#f4f5f7"/>',
         head(frame, quantity.name, quantity.unit, [], INK),
-        words(
-            frame,
-            (left + right) / 2,
-            (top + bottom) / 2 + 4,
-            fitted(reason, frame.width - 4),
-            anchor="middle",
-            look=f'fill="{QUIET}"',
-        ),
+        words(frame, *middle, fitted(reason, frame.width - 4), anchor="middle", look=f'fill="{QUIET}"'),
     ]
     nothing = np.empty(0)
     svg = frame.svg("".join(content), name=f"{quantity.name}: {reason}")
@@ -295,10 +289,8 @@ def _marks(quantity: Quantity, own: ShownCurve, frame: Frame, below: Scale, besi
     inputs = own.view.shown_input
     lines = [(inputs[part], own.across[part], own.values[part]) for part in own.passes]
     parts: list[str] = []
-    for word, value, at in (
-        ("lowest", extremes.lowest, extremes.lowest_at),
-        ("highest", extremes.highest, extremes.highest_at),
-    ):
+    for word in ("lowest", "highest"):
+        value, at = getattr(extremes, word), getattr(extremes, f"{word}_at")
         if quantity.order == 0:
             value = shown_value(motion, motion.output, value) + quantity.shift(own.view)
         across = place_of(lines, value, shown_value(motion, motion.input, at), period)
