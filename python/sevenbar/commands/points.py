@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 
 import typer
 
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from sevenbar.design.points.least import LeastPoint, Rate
     from sevenbar.design.points.nearest import NearestPath
     from sevenbar.kinematics.circuits.motion import Motion
+    from sevenbar.reporting.files import Report
 
 ChosenCircuit = Annotated[int, typer.Option(help="The circuit whose cycle counts.")]
 ChosenBranch = Annotated[int, typer.Option(help="The pass of a circuit that rocks; it needs a law.")]
@@ -79,25 +82,18 @@ def point(
         _ = longer.linkage
         return longer.toml()
 
-    if curve is not None:
-        of_curve = nearest_report(toml, called, formats)
-        check_out(of_curve, out, force=force)
-        motion = _motion(loaded, 360, input_joint, speed, law)
-        places, inputs = read_curve(curve, motion.linkage, motion.input)
-        with progress_bar(f"searching a point of link {link} of {loaded.heading}") as progress:
-            nearest = nearest_path_point(
-                motion, link, places, sides, inputs=inputs, circuit=circuit, branch=branch, progress=progress
-            )
-        deliver(nearest, of_curve, out, json=json, force=force)
-        return
-    report = least_report(toml, called, formats)
+    report: Report[Any] = (least_report if curve is None else nearest_report)(toml, called, formats)
     check_out(report, out, force=force)
     motion = _motion(loaded, 360, input_joint, speed, law)
-    of, measure = _least(least or "acceleration")
+    search: Callable[..., Any]
+    if curve is not None:
+        places, inputs = read_curve(curve, motion.linkage, motion.input)
+        search = partial(nearest_path_point, motion, link, places, sides, inputs=inputs)
+    else:
+        of, measure = _least(least or "acceleration")
+        search = partial(least_point, motion, link, sides, of=of, measure=measure)
     with progress_bar(f"searching a point of link {link} of {loaded.heading}") as progress:
-        found = least_point(
-            motion, link, sides, of=of, measure=measure, circuit=circuit, branch=branch, progress=progress
-        )
+        found = search(circuit=circuit, branch=branch, progress=progress)
     deliver(found, report, out, json=json, force=force)
 
 

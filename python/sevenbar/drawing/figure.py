@@ -67,14 +67,19 @@ def gridded(axes: Axes) -> None:
     axes.set_axisbelow(True)
 
 
-def input_axis(axes: Axes, motion: Motion, inputs: Floats, most: int) -> None:
-    """Limits, ticks and label of the input below a panel; `inputs` (n,) as drawn, at most so many angles."""
+def input_scale(axes: Axes, inputs: Floats, most: int, *, turns: bool) -> None:
+    """Limits and ticks of the input below a panel; `inputs` (n,) as drawn, angles at most so many."""
     # a law may leave every range, or have one row
     known = inputs[np.isfinite(inputs)]
     if known.size and np.ptp(known) > 0:
         axes.set_xlim(known.min(), known.max())
-    if not slides(motion, motion.input):
+    if turns:
         axes.xaxis.set_major_locator(DegreeLocator(most))
+
+
+def input_axis(axes: Axes, motion: Motion, inputs: Floats, most: int) -> None:
+    """`input_scale` of a motion, and its label."""
+    input_scale(axes, inputs, most, turns=not slides(motion, motion.input))
     axes.set_xlabel(input_label(motion))
 
 

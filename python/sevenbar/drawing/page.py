@@ -79,26 +79,20 @@ def write_legend(
         return EDGE / 2
     page = figure.get_size_inches()
     place = ((page[0] / 2 if centre is None else centre) / page[0], EDGE / 2 / page[1])
-    made = None
+    made: Legend | None = None
     for columns in range(min(len(handles), MOST_COLUMNS), 0, -1):
         # no more columns than equal lines need
         lines = -(-len(handles) // columns)
-        made = legend_of(figure, handles, -(-len(handles) // lines), place)
+        made = figure.legend(
+            handles=list(handles), loc="lower center", bbox_to_anchor=place, ncols=-(-len(handles) // lines),
+            frameon=False, borderaxespad=0.0, columnspacing=1.4,
+        )  # fmt: skip
         size = made.get_window_extent(measuring(figure))
         if columns == 1 or size.width / figure.dpi <= (width or page[0]) - EDGE:
             break
         made.remove()
     assert made is not None
     return float(size.height / figure.dpi) + 1.5 * EDGE
-
-
-def legend_of(figure: Any, handles: Sequence[Any], columns: int, place: tuple[float, float]) -> Legend:
-    """A legend without frame whose lower middle is at a place of the page [shares]."""
-    made: Legend = figure.legend(
-        handles=list(handles), loc="lower center", bbox_to_anchor=place, ncols=columns, frameon=False,
-        borderaxespad=0.0, columnspacing=1.4,
-    )  # fmt: skip
-    return made
 
 
 def set_height(figure: Figure, height: float) -> None:

@@ -199,7 +199,10 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     if found is None:
         return [(what, no_peak(forces))]
     place = Places(forces)
-    rms, mean = f"{number(found.rms_torque)} {unit}", f"{_mean(found.mean_torque, found)} {unit}"
+    # a mean that is rounding is 0
+    average = found.mean_torque
+    average = 0.0 if abs(average) < 1e-12 * abs(found.peak_torque.value) else average
+    rms, mean = f"{number(found.rms_torque)} {unit}", f"{number(average)} {unit}"
     facts = [
         (what, say("peak {value}", value=place.at(found.peak_torque, unit))),
         ("", say("rms {rms}, mean {mean}", rms=rms, mean=mean)),
@@ -240,11 +243,6 @@ def _mean_power(forces: Forces, found: Sizing) -> float:
     else:
         mean, most = float(shares_of(forces.time) @ forces.power), float(np.abs(forces.power).max())
     return 0.0 if abs(mean) < 1e-12 * most else mean
-
-
-def _mean(mean: float, found: Sizing) -> str:
-    """The mean torque, 0 where it is rounding."""
-    return number(0.0 if abs(mean) < 1e-12 * abs(found.peak_torque.value) else mean)
 
 
 def spin_facts(forces: Forces) -> list[tuple[str, str]]:

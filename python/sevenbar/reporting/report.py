@@ -203,7 +203,9 @@ def motion_report(
     plain = partial(as_dict, ranges=ranges)
     files: Files[Motion] = {
         "report.json": json_file(plain),
-        "motion.csv": LongTable(Motion.column_parts, row_count),
+        "motion.csv": LongTable(
+            Motion.column_parts, lambda motion: sum(circuit.tally.rows for circuit in motion)
+        ),
     }
     return Report(
         partial(text, ranges=ranges),
@@ -213,11 +215,6 @@ def motion_report(
         {"report.md": partial(_write_markdown, ranges=ranges)},
         spoken=True,
     )
-
-
-def row_count(motion: Motion) -> int:
-    """The rows of all circuits."""
-    return sum(circuit.tally.rows for circuit in motion)
 
 
 def _write_markdown(motion: Motion, path: Path, *, ranges: bool = False) -> None:
