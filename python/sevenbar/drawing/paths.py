@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sevenbar.arrays import Floats, Integers
+from sevenbar.drawing import page
 from sevenbar.drawing.figure import (
     CUT,
     given_axes,
@@ -22,15 +23,6 @@ from sevenbar.drawing.figure import (
     title_text,
 )
 from sevenbar.drawing.names import amount_text, handy_unit, short
-from sevenbar.drawing.page import (
-    EDGE,
-    Rectangle,
-    own_axes,
-    picture_height,
-    prepare_box,
-    set_height,
-    write_title,
-)
 from sevenbar.drawing.space import ViewAxes, box_round
 from sevenbar.drawing.style import (
     ACCELERATION,
@@ -121,7 +113,7 @@ def point_path(
                     _speed(axes, motion, chosen, trace)
                 else:
                     space = ViewAxes(axes, seen_as)
-                    prepare_box(space, box, unit, None)
+                    page.prepare_box(space, box, unit, None)
                     _arrows(space, places, arrows[part], part)
             return given[0].figure.figure  # type: ignore[no-any-return]
         wide = len(pictures) > 1
@@ -134,26 +126,26 @@ def point_path(
             number=chosen.index, driven=note(motion, False),
         )  # fmt: skip
         heading = f"{title_of(motion)}\n{which}"
-        top = write_title(figure, title_text(title, heading))
+        top = page.write_title(figure, title_text(title, heading))
         width, height = figure.get_size_inches()
         line = 0.024 * letters()
         below = PANEL * letters() / 9.0 if "speed" in parts else 0.0
         across = width / max(len(pictures), 1)
         if figsize is None:
-            height = top + below + (picture_height(seen_as, box, across) + line if pictures else 0.0)
-            set_height(figure, height)
+            height = top + below + (page.picture_height(seen_as, box, across) + line if pictures else 0.0)
+            page.set_height(figure, height)
         elif pictures:
             below = min(below, 0.35 * height)
         else:
             below = height - top
         for place, part in enumerate(pictures):
-            space = ViewAxes(own_axes(figure, seen_as), seen_as)
-            room: Rectangle = (place * across, below, across, height - top - line - below)
-            prepare_box(space, box, unit, room)
+            space = ViewAxes(page.own_axes(figure, seen_as), seen_as)
+            room: page.Rectangle = (place * across, below, across, height - top - line - below)
+            page.prepare_box(space, box, unit, room)
             _arrows(space, places, arrows[part], part)
             greatest = _greatest(chosen, arrows[part][2], unit, part)
             words = letter[part] + say("{quantity}, {greatest}", quantity=say(part), greatest=greatest)
-            space.heading(words, room[0] + across / 2, height - top - line + EDGE / 4)
+            space.heading(words, room[0] + across / 2, height - top - line + page.EDGE / 4)
         if "speed" in parts:
             left, under = 0.075 * letters(), 0.052 * letters()
             room = (left, under, width - left - 0.2, below - under - line - 0.1)

@@ -12,28 +12,16 @@ from sevenbar.forces.counterweights import Balance, Counterweight
 from sevenbar.forces.result import COMPONENTS, Forces, Reaction
 from sevenbar.forces.shaking import Shaking
 from sevenbar.forces.sizing import Bearing, Burden, Sizing
-from sevenbar.reporting.force_words import (
-    LISTED,
-    OPEN,
-    ROUNDING,
-    Places,
-    acting_text,
-    check_text,
-    found_text,
-    greatest,
-    open_facts,
-    quantity,
-    spin_facts,
-)
+from sevenbar.reporting import force_words
 from sevenbar.reporting.shown import number, rows_text
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 
 @text_of.register(Forces)
 def _(forces: Forces) -> str:
-    place = Places(forces)
+    place = force_words.Places(forces)
     mass = sum(body.mass for body in forces.bodies.values())
-    facts = [("acts", acting_text(forces.loading)), ("mass", f"{mass:.6g} kg" if mass else "")]
+    facts = [("acts", force_words.acting_text(forces.loading)), ("mass", f"{mass:.6g} kg" if mass else "")]
     lost = int((~np.isfinite(forces.torque)).sum())
     peak = ""
     if lost < len(forces.torque):
@@ -41,20 +29,20 @@ def _(forces: Forces) -> str:
         peak = f"{number(forces.torque[row])} {forces.unit} @ {place(float(forces.input[row]))}"
     dead = "dead-centre" in forces.status
     bound = f"no bound at dead centres of {forces.driver}" if dead else f"greatest of the rows {peak}"
-    facts.append((f"input {quantity(forces)}", bound))
+    facts.append((f"input {force_words.quantity(forces)}", bound))
     if not forces.at_rest and not dead and lost < len(forces.torque):
         low, high = np.nanmin(forces.power), np.nanmax(forces.power)
         facts.append(("power", f"{number(float(low))} to {number(float(high))} W"))
     every = forces.reactions.values()
     scale = {
-        word: float(np.nanmax([greatest(getattr(r, word)) for r in every] + [0.0]))
+        word: float(np.nanmax([force_words.greatest(getattr(r, word)) for r in every] + [0.0]))
         for word in ("force", "moment")
     }
     for name, reaction in forces.reactions.items():
         facts.append((name, _of_joint(reaction, scale, bounded=not dead)))
-    facts += spin_facts(forces)
-    facts += [(label, said) for label, said in open_facts(forces) if label]
-    facts.append(("checks", check_text(forces)))
+    facts += force_words.spin_facts(forces)
+    facts += [(label, said) for label, said in force_words.open_facts(forces) if label]
+    facts.append(("checks", force_words.check_text(forces)))
     state = " at rest" if forces.at_rest else ""
     rows = rows_text(forces.status)
     return lines(f"Forces{state} of '{forces.heading}', driven by {forces.driver}: {rows}", facts)
@@ -67,8 +55,8 @@ def _of_joint(reaction: Reaction, scale: dict[str, float], *, bounded: bool) -> 
     if bounded:
         for word, unit, values in (("force", "N", reaction.force), ("moment", "N m", reaction.moment)):
             known = values[:, np.isfinite(values).any(axis=0)]
-            size = greatest(np.linalg.norm(known, axis=1)) if known.shape[1] else 0.0
-            if size > ROUNDING * scale[word]:
+            size = force_words.greatest(np.linalg.norm(known, axis=1)) if known.shape[1] else 0.0
+            if size > force_words.ROUNDING * scale[word]:
                 part = "" if known.shape[1] == 3 else " of what is known"
                 said.append(f"{word}{part} up to {number(size)} {unit}")
     return ", ".join(said + ([f"{' '.join(lost)} open"] if lost else []))
@@ -86,7 +74,7 @@ def _(reaction: Reaction) -> str:
             ends = (
                 f"{number(float(known.min()))} to {number(float(known.max()))} {unit}" if known.size else ""
             )
-            facts.append((name, ends or OPEN))
+            facts.append((name, ends or force_words.OPEN))
     if not reaction.determinate.all():
         facts.append(("", "what is open is not determined by equilibrium of rigid bodies"))
     return lines(
@@ -123,7 +111,7 @@ def _(found: Sizing) -> str:
             ("flywheel", flywheel),
             ("peak forces", ", ".join(most)),
             *([("in the plane", ", ".join(in_plane))] if in_plane else []),
-            ("found", found_text(found)),
+            ("found", force_words.found_text(found)),
         ],
     )
 
@@ -131,13 +119,13 @@ def _(found: Sizing) -> str:
 @text_of.register(Bearing)
 def _(bearing: Bearing) -> str:
     facts = []
-    for part, unit in LISTED.items():
+    for part, unit in force_words.LISTED.items():
         burden: Burden = getattr(bearing, part)
         if math.isfinite(burden.peak.value):
             peak = f"peak {number(burden.peak.value)} {unit} at {burden.peak.input:.6g}"
             facts.append((part.replace("_", " "), f"{peak}, cubic mean {number(burden.mean_cube)} {unit}"))
         elif part != "in_plane":
-            facts.append((part, OPEN))
+            facts.append((part, force_words.OPEN))
     return lines("Loads of a bearing", facts)
 
 
@@ -159,7 +147,7 @@ def _(found: Balance) -> str:
 def balance_facts(found: Balance) -> list[tuple[str, str]]:
     """The counterweights link by link, what they leave of the shaking, and how they were found."""
     facts = [(f"link {one.link}", _weight(one, found.length_unit)) for one in found.counterweights]
-    after = found.after if found.after > ROUNDING * found.before else 0.0
+    after = found.after if found.after > force_words.ROUNDING * found.before else 0.0
     shaking = f"{found.measure} {number(found.before)} N before, {number(after)} N after"
     facts.append(("shaking", shaking))
     facts.append(("found", f"{found.status}; {found.rank} of {found.unknowns} numbers act"))
@@ -170,7 +158,7 @@ def balance_facts(found: Balance) -> list[tuple[str, str]]:
 def _weight(one: Counterweight, unit: str) -> str:
     if not one.product:
         return "none"
-    way = ", ".join(f"{x if abs(x) > ROUNDING else 0.0:.4g}" for x in one.direction)
+    way = ", ".join(f"{x if abs(x) > force_words.ROUNDING else 0.0:.4g}" for x in one.direction)
     mass = "" if one.mass is None else f", {number(one.mass)} kg"
     return f"{number(one.product)} kg {unit} towards ({way}){mass}"
 

@@ -21,26 +21,9 @@ from sevenbar.forces.sizing import Burden, Sizing
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.columns import joint_column
+from sevenbar.reporting import force_words
 from sevenbar.reporting.figures import FigureLook
 from sevenbar.reporting.files import Files, Report, Write, columns_file, figure_files, json_file
-from sevenbar.reporting.force_words import (
-    LISTED,
-    OPEN,
-    Places,
-    acting_facts,
-    check_text,
-    check_values,
-    drive_facts,
-    drive_label,
-    found_text,
-    greatest,
-    no_peak,
-    open_facts,
-    shaking_facts,
-    shaking_found,
-    spin_facts,
-    unbounded_facts,
-)
 from sevenbar.reporting.page import Facts, number_table, page
 from sevenbar.reporting.shown import drive_text, number, rows_text
 from sevenbar.text.words import say
@@ -66,7 +49,7 @@ class CircuitForces:
     ) -> CircuitForces:
         """With the sizing for an unevenness."""
         found = forces.sizing(unevenness=unevenness)
-        return cls(motion, circuit, forces, found, shaking_found(forces))
+        return cls(motion, circuit, forces, found, force_words.shaking_found(forces))
 
 
 def forces_report(
@@ -130,14 +113,14 @@ def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     """All that a report says of forces above the table of joints."""
     forces, linkage = found.forces, found.motion.linkage
     sliding = [column for column in linkage.columns if not linkage.turns(column)]
-    facts = [(say("circuit"), drive_fact(found)), *acting_facts(forces, sliding)]
-    facts += drive_facts(forces, found.sizing)
-    facts += shaking_facts(forces, found.shaking)
-    facts += spin_facts(forces)
-    facts += open_facts(forces)
-    facts += unbounded_facts(forces, found.sizing)
-    facts.append((say("found"), found_text(found.sizing, law=found.motion.law is not None)))
-    facts.append((say("checks"), check_text(forces)))
+    facts = [(say("circuit"), drive_fact(found)), *force_words.acting_facts(forces, sliding)]
+    facts += force_words.drive_facts(forces, found.sizing)
+    facts += force_words.shaking_facts(forces, found.shaking)
+    facts += force_words.spin_facts(forces)
+    facts += force_words.open_facts(forces)
+    facts += force_words.unbounded_facts(forces, found.sizing)
+    facts.append((say("found"), force_words.found_text(found.sizing, law=found.motion.law is not None)))
+    facts.append((say("checks"), force_words.check_text(forces)))
     facts.append((say("rows"), f"{len(forces.status)}: {rows_text(forces.status)}"))
     return [(label, said) for label, said in facts if said]
 
@@ -146,7 +129,7 @@ def text(found: CircuitForces) -> RenderableType:
     """The forces on a circuit as a page."""
     forces = found.forces
     facts = Facts()
-    facts.add_all(facts_of_forces(found), bold=[drive_label(forces)])
+    facts.add_all(facts_of_forces(found), bold=[force_words.drive_label(forces)])
     tables = []
     if found.balance is not None:
         # a reader of its own, which knows these pages
@@ -181,7 +164,7 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
 
     Where no joint's whole force is determined, but that in the `planar` loop's plane is, it has the latter.
     """
-    place = Places(forces)
+    place = force_words.Places(forces)
     whole = any(math.isfinite(one.force.peak.value) for one in found.bearings.values())
     partly = not whole and any(math.isfinite(one.in_plane.peak.value) for one in found.bearings.values())
     first = (IN_PLANE if planar else KNOWN) if partly else WHOLE
@@ -204,7 +187,7 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
             (row, i): float(cells[i])
             for row, cells in enumerate(rows)
             for i in columns
-            if cells[i] not in (say(OPEN), "")
+            if cells[i] not in (say(force_words.OPEN), "")
         }
         for (row, i), size in sizes.items():
             # what is left of rounding
@@ -214,7 +197,7 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
 
 
 def _peak(burden: Burden) -> str:
-    return number(burden.peak.value) if math.isfinite(burden.peak.value) else say(OPEN)
+    return number(burden.peak.value) if math.isfinite(burden.peak.value) else say(force_words.OPEN)
 
 
 def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
@@ -294,8 +277,8 @@ def as_dict(found: CircuitForces) -> dict[str, Any]:
         **numbers(found),
         "counterweights": None if found.balance is None else _weights(found.balance),
         "not_determined": list(forces.indeterminate),
-        "idle_spin": {link: greatest(moment) for link, moment in forces.spin.items()},
-        "checks": check_values(forces),
+        "idle_spin": {link: force_words.greatest(moment) for link, moment in forces.spin.items()},
+        "checks": force_words.check_values(forces),
     }
 
 
@@ -312,12 +295,12 @@ def numbers(found: CircuitForces) -> dict[str, Any]:
         joints[name] = {"determinate": dict(flags)}
         if sizing is not None:
             bearing = sizing.bearings[name]
-            for part in LISTED:
+            for part in force_words.LISTED:
                 burden: Burden = getattr(bearing, part)
                 joints[name][part] = {**_plain(burden.peak), "mean_cube": burden.mean_cube}
     return {
         "sizing": drive,
-        "no_sizing": no_peak(forces) if sizing is None else None,
+        "no_sizing": force_words.no_peak(forces) if sizing is None else None,
         "joints": joints,
         "shaking": None
         if shaken is None

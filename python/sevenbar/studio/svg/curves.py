@@ -20,22 +20,8 @@ from sevenbar.kinematics.circuits.extents import Flags
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.ranges.reach import within
 from sevenbar.studio.state.view import View
+from sevenbar.studio.svg import picture
 from sevenbar.studio.svg.panel import Panel
-from sevenbar.studio.svg.picture import (
-    GROUND,
-    INK,
-    LABELLED,
-    MARGINS,
-    QUIET,
-    ZERO,
-    Frame,
-    breadth,
-    fitted,
-    grid,
-    head,
-    stroke,
-    words,
-)
 from sevenbar.studio.svg.quantities import Quantity
 from sevenbar.studio.svg.scale import Scale, scale
 
@@ -80,7 +66,7 @@ class ShownCurve:
         spans = (range_drawn(self.view.circuit, self.values[part], kind) for part in self.passes)
         return _union([span for span in spans if span is not None])
 
-    def lines(self, frame: Frame, x: Floats, y: Floats, most: int) -> str:
+    def lines(self, frame: picture.Frame, x: Floats, y: Floats, most: int) -> str:
         """The passes as SVG, in tenths of px from the plot area's corner, with at most about `most` rows."""
         left, top, _, _ = frame.box
         step = max(1, round(len(x) / most))
@@ -92,7 +78,7 @@ class ShownCurve:
             inputs = self.view.path.input[part]
             falls = len(self.passes) > 1 and inputs[-1] < inputs[0]
             look = ' stroke-dasharray="50 30"' if falls else ""
-            drawn.append(f'<path d="{stroke(x[rows] - left, y[rows] - top)}"{look}/>')
+            drawn.append(f'<path d="{picture.stroke(x[rows] - left, y[rows] - top)}"{look}/>')
         return "".join(drawn)
 
 
@@ -112,7 +98,7 @@ def panels(
     """
     motion = views[circuit].motion
     labelled = over == "input" and motion.limits.size > 0
-    frame = Frame(width, height, LABELLED if labelled else MARGINS[1])
+    frame = picture.Frame(width, height, picture.LABELLED if labelled else picture.MARGINS[1])
     across = [each.shown_input if over == "input" else each.path.time for each in views]
     reach = _reach(motion, across if over == "input" else [across[circuit]], over)
     made = []
@@ -130,7 +116,7 @@ def panels(
 
 
 def _panel(
-    frame: Frame,
+    frame: picture.Frame,
     quantity: Quantity,
     curves: Sequence[ShownCurve],
     circuit: int,
@@ -158,9 +144,9 @@ def _panel(
         if each is not own
     ]
     content = [
-        f'<rect width="{frame.width}" height="{frame.height}" fill="{GROUND}"/>',
-        head(frame, quantity.name, beside.unit(quantity.unit), _keys(quantity, own), own.colour),
-        grid(frame, below, beside, name, unit),
+        f'<rect width="{frame.width}" height="{frame.height}" fill="{picture.GROUND}"/>',
+        picture.head(frame, quantity.name, beside.unit(quantity.unit), _keys(quantity, own), own.colour),
+        picture.grid(frame, below, beside, name, unit),
         _limits(own.view, frame, below, unit) if over == "input" else "",
         f'<svg x="{left}" y="{top}" width="{wide}" height="{tall}" viewBox="0 0 {wide}0 {tall}0" '
         'fill="none" stroke-linejoin="round">',
@@ -173,7 +159,7 @@ def _panel(
     return Panel(frame, svg, x, y, own.values, beside, quantity.unit, own.colour)
 
 
-def _strong(own: ShownCurve, frame: Frame, x: Floats, y: Floats) -> str:
+def _strong(own: ShownCurve, frame: picture.Frame, x: Floats, y: Floats) -> str:
     """The chosen circuit's line, pale where a stop of the linkage keeps it from going."""
     whole = own.lines(frame, x, y, len(x))
     if not own.view.motion.linkage.stops.stops:
@@ -185,14 +171,14 @@ def _strong(own: ShownCurve, frame: Frame, x: Floats, y: Floats) -> str:
     )
 
 
-def _empty(frame: Frame, quantity: Quantity, reason: str) -> Panel:
+def _empty(frame: picture.Frame, quantity: Quantity, reason: str) -> Panel:
     left, top, right, bottom = frame.box
-    middle = (left + right) / 2, (top + bottom) / 2 + 4
+    middle, text = ((left + right) / 2, (top + bottom) / 2 + 4), picture.fitted(reason, frame.width - 4)
     content = [
-        f'<rect width="{frame.width}" height="{frame.height}" fill="{GROUND}"/>',
+        f'<rect width="{frame.width}" height="{frame.height}" fill="{picture.GROUND}"/>',
         f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" fill="#f4f5f7"/>',
-        head(frame, quantity.name, quantity.unit, [], INK),
-        words(frame, *middle, fitted(reason, frame.width - 4), anchor="middle", look=f'fill="{QUIET}"'),
+        picture.head(frame, quantity.name, quantity.unit, [], picture.INK),
+        picture.words(frame, *middle, text, anchor="middle", look=f'fill="{picture.QUIET}"'),
     ]
     nothing = np.empty(0)
     svg = frame.svg("".join(content), name=f"{quantity.name}: {reason}")
@@ -246,7 +232,7 @@ def _keys(quantity: Quantity, own: ShownCurve) -> list[tuple[str, str]]:
     return keys
 
 
-def _limits(view: View, frame: Frame, below: Scale, unit: str) -> str:
+def _limits(view: View, frame: picture.Frame, below: Scale, unit: str) -> str:
     """Dashed lines with values at input limits, paler for other circuits; dotted ones at change points."""
     motion = view.motion
     left, top, _, bottom = frame.box
@@ -260,16 +246,16 @@ def _limits(view: View, frame: Frame, below: Scale, unit: str) -> str:
         values = np.sort(inputs_between(motion, inputs, below.low, below.high))
         for value, x in zip(values.tolist(), frame.x(below, values).tolist(), strict=True):
             label = below.reading(value, unit)
-            colour = QUIET if (np.abs(own - value) < 1e-6 * (1 + abs(value))).any() else ZERO
+            colour = picture.QUIET if (np.abs(own - value) < 1e-6 * (1 + abs(value))).any() else picture.ZERO
             parts.append(
                 f'<path d="M{x:.1f} {top}V{bottom}" stroke="{colour}" stroke-dasharray="{dashes}">'
                 f"<title>{escape(f'{name} {label}')}</title></path>"
             )
             # a number without room beside its neighbour is left to the tooltip
-            wide = breadth(label)
+            wide = picture.breadth(label)
             start = max(x - wide / 2, left)
             if name == "input limit" and start >= free:
-                parts.append(words(frame, start, top - 3, label, look=f'fill="{QUIET}"'))
+                parts.append(picture.words(frame, start, top - 3, label, look=f'fill="{picture.QUIET}"'))
                 free = start + wide + 4
     return "".join(parts)
 
@@ -279,7 +265,7 @@ def _pale(colour: str) -> str:
     return "#" + "".join(f"{round(255 - 0.4 * (255 - int(colour[i : i + 2], 16))):02x}" for i in (1, 3, 5))
 
 
-def _marks(quantity: Quantity, own: ShownCurve, frame: Frame, below: Scale, beside: Scale) -> str:
+def _marks(quantity: Quantity, own: ShownCurve, frame: picture.Frame, below: Scale, beside: Scale) -> str:
     """Small circles at the extremes of the output's angle or rates, each with its value as a tooltip."""
     motion, circuit = own.view.motion, own.view.circuit
     extremes: Extremes | None = getattr(circuit, quantity.kind)
@@ -298,6 +284,6 @@ def _marks(quantity: Quantity, own: ShownCurve, frame: Frame, below: Scale, besi
         _, top, _, bottom = frame.box
         if math.isfinite(x) and top <= y <= bottom:
             label = escape(f"{word} {beside.reading(value, quantity.unit)}")
-            look = f'fill="{GROUND}" stroke="{own.colour}" stroke-width="1.5"'
+            look = f'fill="{picture.GROUND}" stroke="{own.colour}" stroke-width="1.5"'
             parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.2" {look}><title>{label}</title></circle>')
     return "".join(parts)
