@@ -65,10 +65,8 @@ def _of_joint(reaction: Reaction, scale: dict[str, float], *, bounded: bool) -> 
 @text_of.register(Reaction)
 def _(reaction: Reaction) -> str:
     facts = []
-    for unit, values, names in (
-        ("N", reaction.force, COMPONENTS[3:]),
-        ("N m", reaction.moment, COMPONENTS[:3]),
-    ):
+    both = ("N", reaction.force, COMPONENTS[3:]), ("N m", reaction.moment, COMPONENTS[:3])
+    for unit, values, names in both:
         for name, own in zip(names, values.T, strict=True):
             known = own[np.isfinite(own)]
             ends = (
@@ -77,11 +75,8 @@ def _(reaction: Reaction) -> str:
             facts.append((name, ends or force_words.OPEN))
     if not reaction.determinate.all():
         facts.append(("", "what is open is not determined by equilibrium of rigid bodies"))
-    return lines(
-        f"Reaction in {reaction.joint}: {len(reaction.force)} rows, "
-        "in its own frame, of the link before on the link after",
-        facts,
-    )
+    rows = f"{len(reaction.force)} rows, in its own frame, of the link before on the link after"
+    return lines(f"Reaction in {reaction.joint}: {rows}", facts)
 
 
 @text_of.register(Sizing)
