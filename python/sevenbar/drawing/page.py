@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing import style as style_
 from sevenbar.drawing.figure import headline, new_figure
 from sevenbar.drawing.scene import draw_box, frame_box
 from sevenbar.drawing.skeleton import Skeleton
@@ -25,6 +24,7 @@ from sevenbar.drawing.space import (
     seen_size,
     set_limits,
 )
+from sevenbar.drawing.style import letters, page_size
 from sevenbar.drawing.view import Projection
 
 #: Room [inch], for letters of 9 points: round the page; at the sides of a picture, for numbers and names of
@@ -45,7 +45,7 @@ Rectangle = tuple[float, float, float, float]
 
 def margins(view: Projection) -> Floats:
     """Room [inch] that the labels round a picture need: left, right, below, above."""
-    return np.array(FLAT_MARGINS if view.flat else SOLID_MARGINS) * style_.letters() / 9.0
+    return np.array(FLAT_MARGINS if view.flat else SOLID_MARGINS) * letters() / 9.0
 
 
 def write_title(figure: Figure, text: str) -> float:
@@ -63,7 +63,7 @@ def write_title_over_panels(figure: Figure, text: str) -> tuple[float, float]:
     Both are shares of the page's height.
     """
     height = float(figure.get_figheight())
-    line = LINE * (style_.letters() + 1) / 72
+    line = LINE * (letters() + 1) / 72
     below = height - write_title(figure, text)
     return (below - line) / height, (below - line - PANEL_ROOM) / height
 
@@ -139,7 +139,7 @@ def page_of_one(
     """
     if ax is not None:
         return ax.figure.figure, ViewAxes(ax, view), None
-    figure = new_figure(*style_.page_size(style, figsize, (usual, usual), wide=False))
+    figure = new_figure(*page_size(style, figsize, (usual, usual), wide=False))
     top, foot = write_title(figure, heading), write_legend(figure, handles)
     width, height = figure.get_size_inches()
     if figsize is None:
