@@ -85,10 +85,10 @@ def forces(
     loaded = sb.load(linkage)
     if loaded.loading.is_empty:
         raise RequestError(f"{linkage}: {NOTHING_ACTS}")
-    names = options.words(joint, "--joint")
+    names, known = options.words(joint, "--joint"), [one.name for one in loaded.joints]
     for name in names:
-        if name not in [one.name for one in loaded.joints]:
-            raise RequestError(f"--joint: {no_joint(name, [one.name for one in loaded.joints])}")
+        if name not in known:
+            raise RequestError(f"--joint: {no_joint(name, known)}")
     if at_rest and unevenness is not None:
         raise RequestError("--unevenness: at rest nothing fluctuates; give another speed, or leave it out")
     if law is not None and unevenness is not None:

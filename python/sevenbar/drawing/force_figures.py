@@ -150,11 +150,8 @@ def reactions(
 
 def drawn_bearings(forces: Forces, joints: Sequence[str] | None = None) -> list[Reaction]:
     """The joints whose force square to the axis is determined: those of a polar picture."""
-    return [
-        reaction
-        for reaction in chosen_reactions(forces, joints)
-        if reaction.determinate[3:5].all() and reaction.kind != "S"
-    ]
+    found = chosen_reactions(forces, joints)
+    return [one for one in found if one.determinate[3:5].all() and one.kind != "S"]
 
 
 def bearings(

@@ -97,9 +97,8 @@ def point_path(
     arrows = {what: arrows_along(places, getattr(trace, what)[rows]) for what in ("velocity", "acceleration")}
     # both views to one scale
     seen = np.concatenate([places, *(places[own] + ways for own, ways, _ in arrows.values())])
-    letter = {
-        part: f"({letter}) " if len(parts) > 1 else "" for part, letter in zip(parts, "abc", strict=False)
-    }
+    marks = [f"({letter}) " if len(parts) > 1 else "" for letter in "abc"]
+    letter = dict(zip(parts, marks, strict=False))
     pictures = [part for part in parts if part != "speed"]
     with styled(style):
         given = None if ax is None else given_axes(ax, len(parts), "one for each part")

@@ -106,10 +106,8 @@ def labelled(name: str, unit: str, room: float, *, bold: bool = False) -> str:
 def grid(frame: Frame, below: Scale, beside: Scale, name: str, unit: str) -> str:
     """Thin lines at the ticks of both axes, their numbers, and the name of the axis below."""
     left, top, right, bottom = frame.box
-    across, up = (
-        frame.x(below, np.array(below.ticks)).tolist(),
-        frame.y(beside, np.array(beside.ticks)).tolist(),
-    )
+    across = frame.x(below, np.array(below.ticks)).tolist()
+    up = frame.y(beside, np.array(beside.ticks)).tolist()
     lines = [f"M{x:.2f} {top}V{bottom}" for x in across] + [f"M{left} {y:.2f}H{right}" for y in up]
     parts = [f'<path d="{"".join(lines)}" stroke="{GRID}"/>']
     if beside.low < 0 < beside.high:
