@@ -20,10 +20,9 @@ import sevenbar as sb
 from sevenbar.arrays import whole_number
 from sevenbar.commands import options
 from sevenbar.commands.command import Command
-from sevenbar.commands.consent import confirm
+from sevenbar.commands.consent import confirm, long_motion, table_ahead
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
 from sevenbar.commands.given import check_law, film_of, input_value, law_of, look_of, opened, point_of
-from sevenbar.commands.long_tables import long_motion, table_ahead
 from sevenbar.commands.progress import STOPPED, progress_bar
 from sevenbar.errors import (
     AngleUnitWarning,

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sevenbar.commands import options
-from sevenbar.commands.consent import confirm
+from sevenbar.commands.consent import confirm, long_motion, table_ahead
 from sevenbar.commands.deliver import tell_written
 from sevenbar.commands.given import input_value, opened
-from sevenbar.commands.long_tables import long_motion, table_ahead
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.reporting.folder import check_targets

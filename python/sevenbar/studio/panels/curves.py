@@ -10,7 +10,7 @@ from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.curves import Over, panels
 from sevenbar.studio.svg.force_quantities import force_quantities
-from sevenbar.studio.svg.panel import Panel
+from sevenbar.studio.svg.picture import Panel
 from sevenbar.studio.svg.quantities import Quantity, quantities
 from sevenbar.studio.worker import Worker
 

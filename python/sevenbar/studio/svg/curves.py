@@ -21,7 +21,6 @@ from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.ranges.reach import within
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg import picture
-from sevenbar.studio.svg.panel import Panel
 from sevenbar.studio.svg.quantities import Quantity
 from sevenbar.studio.svg.scale import Scale, scale
 
@@ -90,7 +89,7 @@ def panels(
     over: Over = "input",
     width: int = 420,
     height: int = 170,
-) -> tuple[Panel, ...]:
+) -> tuple[picture.Panel, ...]:
     """A panel for each quantity: every circuit over the input, or over the time of the chosen one's cycle.
 
     `views` are those of all circuits of a motion, `circuit` is the index of the one drawn strong; `width` and
@@ -123,7 +122,7 @@ def _panel(
     reach: Span,
     own_span: Span,
     over: Over,
-) -> Panel:
+) -> picture.Panel:
     own = curves[circuit]
     motion = own.view.motion
     left, top, right, bottom = frame.box
@@ -156,7 +155,7 @@ def _panel(
         _marks(quantity, own, frame, below, beside) if own_span[1] - own_span[0] > least else "",
     ]
     svg = frame.svg("".join(content), name=f"{quantity.name}, circuit {circuit}")
-    return Panel(frame, svg, x, y, own.values, beside, quantity.unit, own.colour)
+    return picture.Panel(frame, svg, x, y, own.values, beside, quantity.unit, own.colour)
 
 
 def _strong(own: ShownCurve, frame: picture.Frame, x: Floats, y: Floats) -> str:
@@ -171,7 +170,7 @@ def _strong(own: ShownCurve, frame: picture.Frame, x: Floats, y: Floats) -> str:
     )
 
 
-def _empty(frame: picture.Frame, quantity: Quantity, reason: str) -> Panel:
+def _empty(frame: picture.Frame, quantity: Quantity, reason: str) -> picture.Panel:
     left, top, right, bottom = frame.box
     middle, text = ((left + right) / 2, (top + bottom) / 2 + 4), picture.fitted(reason, frame.width - 4)
     content = [
@@ -182,7 +181,7 @@ def _empty(frame: picture.Frame, quantity: Quantity, reason: str) -> Panel:
     ]
     nothing = np.empty(0)
     svg = frame.svg("".join(content), name=f"{quantity.name}: {reason}")
-    return Panel(frame, svg, nothing, nothing, nothing)
+    return picture.Panel(frame, svg, nothing, nothing, nothing)
 
 
 def _bounded(values: Floats) -> Floats:
