@@ -9,9 +9,8 @@ from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.curves import Over, panels
-from sevenbar.studio.svg.force_quantities import force_quantities
 from sevenbar.studio.svg.picture import Panel
-from sevenbar.studio.svg.quantities import Quantity, quantities
+from sevenbar.studio.svg.quantities import Quantity, force_quantities, quantities
 from sevenbar.studio.worker import Worker
 
 #: How many curves there are, and the size of each [px].
