@@ -14,8 +14,7 @@ import sevenbar as sb
 from sevenbar.arrays import Floats
 from sevenbar.studio.state.view import views_of
 from sevenbar.studio.svg.curves import panels
-from sevenbar.studio.svg.panel import Panel
-from sevenbar.studio.svg.picture import GRID
+from sevenbar.studio.svg.picture import GRID, Panel
 from sevenbar.studio.svg.quantities import Quantity, quantities
 
 SVG = "{http://www.w3.org/2000/svg}"

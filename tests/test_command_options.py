@@ -125,9 +125,9 @@ def test_much_output_and_long_work_are_refused_where_nobody_answers(tmp_path, ar
 
 
 def test_the_size_that_is_announced_is_the_size_that_is_written(tmp_path, monkeypatch):
-    from sevenbar.commands import consent, long_tables
+    from sevenbar.commands import consent
 
-    monkeypatch.setattr(long_tables, "LONG", 300)
+    monkeypatch.setattr(consent, "LONG", 300)
     monkeypatch.setattr(consent, "MUCH", 0.0)
     told = mistake("export", "rscr", "--to", "csv", cwd=tmp_path)
     announced = float(re.search(r"about (\d+) MB", told).group(1))

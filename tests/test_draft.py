@@ -20,7 +20,7 @@ from sevenbar.description.files import loads
 from sevenbar.description.gallery import names, text
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.numbers.dimensions import Dimension
-from sevenbar.studio.panels.dimension_rows import largest_length, number_text, slider_range
+from sevenbar.studio.panels.shaping import largest_length, number_text, slider_range
 
 RSSR = "M = 700\nN = 700 # height\nL1 = 250\nL3=550\nD = 0 # none\n"
 ROWS = (

@@ -20,9 +20,8 @@ from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.studio.state.acting import ALL_OFF, drive_sizing, known_force
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.svg.curves import panels
-from sevenbar.studio.svg.force_quantities import ForceQuantity, force_quantities
-from sevenbar.studio.svg.panel import Panel
-from sevenbar.studio.svg.quantities import quantities
+from sevenbar.studio.svg.picture import Panel
+from sevenbar.studio.svg.quantities import ForceQuantity, force_quantities, quantities
 from studio_pictures import texts, ticks, value_at
 from studio_sessions import DOUBLE_ROCKER, opened
 from test_studio_browser import SHOWN, Desk

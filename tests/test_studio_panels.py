@@ -17,7 +17,7 @@ from PIL import ImageFont
 import sevenbar as sb
 from sevenbar.studio.state.view import views_of
 from sevenbar.studio.svg.curves import panels
-from sevenbar.studio.svg.panel import Panel
+from sevenbar.studio.svg.picture import Panel
 from sevenbar.studio.svg.quantities import quantities
 from sevenbar.studio.svg.scale import scale
 from studio_pictures import (

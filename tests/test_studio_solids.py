@@ -113,7 +113,7 @@ def test_the_ground_stays_where_only_the_moving_places_are_unknown() -> None:
     # both feet of the two balls
     lost[[*frame.links[1], frame.links[0][-1], frame.links[2][0]]] = np.nan
     *_, scale = poses(made, lost)["cylinder"]
-    grounded = ~made.moves[made.shapes["cylinder"]]
+    grounded = ~made.solids["moves"][made.shapes["cylinder"]]
     assert (scale[grounded] > 0).all()
     assert (scale[:3] == 0).all(axis=1).sum() == 3 - grounded[:3].sum()
 
@@ -185,9 +185,9 @@ def test_input_is_blue_and_output_orange_whichever_joints_they_are() -> None:
         motion, frame, made = planned(name)
         back = plan(frame, (motion.output, motion.input))
         for colour, other in ((INPUT, OUTPUT), (OUTPUT, INPUT)):
-            here = (made.colours == rgb(colour)).all(axis=1)
+            here = (made.solids["colour"] == rgb(colour)).all(axis=1)
             assert here.any()
-            assert np.array_equal(here, (back.colours == rgb(other)).all(axis=1))
+            assert np.array_equal(here, (back.solids["colour"] == rgb(other)).all(axis=1))
 
 
 def test_thicknesses_follow_the_unit_and_a_linkage_of_any_size_looks_alike() -> None:

@@ -43,7 +43,7 @@ def changed(tab: Any, listener: Listener, changes: int) -> tuple[list[float], li
     Each begins when all of the one before has come, and ends with frames that are its own: the first with
     curves, and that with the new value in its box. Raises `ValueError` for a length at which nothing moves.
     """
-    from sevenbar.studio.panels.dimension_rows import number_text
+    from sevenbar.studio.panels.shaping import number_text
 
     dimension = next(d for d in tab.session.draft.dimensions if d.label in ("L1", "length"))
     drawn, all_sent = [], []

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from sevenbar.commands import options
 from sevenbar.commands.deliver import deliver
-from sevenbar.commands.options import Force, Json
 from sevenbar.description.step_axes import axes_of_step
 from sevenbar.errors import RequestError
 from sevenbar.reporting.axes import PartAxes, axes_report, write_axes
@@ -21,8 +21,8 @@ def axes(
         Path | None,
         typer.Option(help="Write the table to this .csv, in which you fill in order and kind."),
     ] = None,
-    force: Force = False,
-    json: Json = False,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """List the axes of a CAD model's cylinders, as a table from which a linkage is made (extra 'cad')."""
     if out is not None:

@@ -8,30 +8,30 @@ from typing import Annotated
 import typer
 
 from sevenbar.arrays import whole_number
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import opened
-from sevenbar.commands.options import Agree, Force, InputJoint, Json, OutputJoint, Samples, Source, Speed
 from sevenbar.errors import RequestError
 
 
 def axodes(
-    linkage: Source,
+    linkage: options.Source,
     link: Annotated[
         list[int] | None, typer.Option(help="A link, counted from 1; may be repeated; all moving ones.")
     ] = None,
     relative_to: Annotated[
         int | None, typer.Option(help="The link against which they move; the ground by default.")
     ] = None,
-    samples: Samples = 360,
-    input_joint: InputJoint = None,
-    output: OutputJoint = None,
-    speed: Speed = None,
-    agree: Agree = None,
+    samples: options.Samples = 360,
+    input_joint: options.InputJoint = None,
+    output: options.OutputJoint = None,
+    speed: options.Speed = None,
+    agree: options.Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for axodes.csv, with every row, and axodes.json.")
     ] = None,
-    force: Force = False,
-    json: Json = False,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Screw axes of links on every row: axodes, in a plane centrodes and instant centres."""
     from sevenbar.reporting.screws import axodes_report

@@ -18,42 +18,11 @@ import typer.core
 
 import sevenbar as sb
 from sevenbar.arrays import whole_number
+from sevenbar.commands import options
 from sevenbar.commands.command import Command
-from sevenbar.commands.consent import confirm
+from sevenbar.commands.consent import confirm, long_motion, table_ahead
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
-from sevenbar.commands.given import (
-    check_law,
-    film_of,
-    input_value,
-    law_of,
-    look_of,
-    opened,
-    point_of,
-)
-from sevenbar.commands.long_tables import long_motion, table_ahead
-from sevenbar.commands.options import (
-    Agree,
-    Figures,
-    FigureSize,
-    FigureStyle,
-    FigureView,
-    Force,
-    InputJoint,
-    InputValue,
-    Json,
-    Law,
-    OutputJoint,
-    PointLink,
-    PointName,
-    PointPlace,
-    Samples,
-    Source,
-    Speed,
-    Yes,
-    figure_formats,
-    number_option,
-    words,
-)
+from sevenbar.commands.given import check_law, film_of, input_value, law_of, look_of, opened, point_of
 from sevenbar.commands.progress import STOPPED, progress_bar
 from sevenbar.errors import (
     AngleUnitWarning,
@@ -150,17 +119,17 @@ def _root(
 
 @app.command(cls=Command)
 def analyze(
-    linkage: Source,
-    samples: Samples = 360,
-    input_joint: InputJoint = None,
-    output: OutputJoint = None,
-    speed: Speed = None,
-    law: Law = None,
-    agree: Agree = None,
+    linkage: options.Source,
+    samples: options.Samples = 360,
+    input_joint: options.InputJoint = None,
+    output: options.OutputJoint = None,
+    speed: options.Speed = None,
+    law: options.Law = None,
+    agree: options.Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for report.md, report.json, motion.csv and the figures.")
     ] = None,
-    figures: Figures = None,
+    figures: options.Figures = None,
     animate: Annotated[
         Path | None, typer.Option(help="Write the moving linkage to this .gif, .mp4 or .html.")
     ] = None,
@@ -170,23 +139,26 @@ def analyze(
     ranges: Annotated[
         bool, typer.Option("--ranges", help="Tables of the ranges of all joints, and the bends of balls.")
     ] = False,
-    view: FigureView = None,
-    size: FigureSize = None,
-    style: FigureStyle = None,
-    fps: Annotated[float | None, number_option("--fps", "30", "Pictures a second of the film.")] = None,
-    seconds: Annotated[float | None, number_option("--seconds", "10", "Length of the film.")] = None,
-    force: Force = False,
-    yes: Yes = False,
-    json: Json = False,
+    view: options.FigureView = None,
+    size: options.FigureSize = None,
+    style: options.FigureStyle = None,
+    fps: Annotated[
+        float | None, options.number_option("--fps", "30", "Pictures a second of the film.")
+    ] = None,
+    seconds: Annotated[float | None, options.number_option("--seconds", "10", "Length of the film.")] = None,
+    force: options.Force = False,
+    yes: options.Yes = False,
+    json: options.Json = False,
 ) -> None:
     """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them."""
     from sevenbar.reporting.report import motion_report
 
     look = look_of(view, size, style)
-    formats = figure_formats(figures, out)
+    formats = options.figure_formats(figures, out)
     film_look = film_of(fps, seconds, animate)
     if out is None and animate is None:
-        _refuse_unused({"--circuit": circuit, "--view": view, "--size": size, "--style": style})
+        unused = {"--circuit": circuit, "--view": view, "--size": size, "--style": style}
+        options.refuse_unused(unused, "--out, --animate, or both")
     check_law(law, speed)
     if not json:
         # the report has it
@@ -213,13 +185,6 @@ def analyze(
         else:
             elsewhere[animate] = film
     deliver(motion, report, out, json=json, force=force, also=elsewhere)
-
-
-def _refuse_unused(given: dict[str, object]) -> None:
-    """Refuses options of figures where none is drawn."""
-    for option, value in given.items():
-        if value is not None:
-            raise RequestError(f"{option}: no figure is drawn; give --out, --animate, or both")
 
 
 def _film(
@@ -264,15 +229,15 @@ def _same_folder(folder: Path, other: Path) -> bool:
 
 @app.command(cls=Command)
 def modes(
-    linkage: Source,
-    at: InputValue = "0",
+    linkage: options.Source,
+    at: options.InputValue = "0",
     input_joint: Annotated[
         str | None, typer.Option("--input", help="The joint that is held; the file's input by default.")
     ] = None,
-    agree: Agree = None,
+    agree: options.Agree = None,
     out: Annotated[Path | None, typer.Option(help="Draw all modes into this .png, .svg or .pdf.")] = None,
-    force: Force = False,
-    json: Json = False,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Every assembly mode at one value of the input: each way the loop can be put together."""
     from sevenbar.reporting.report import modes_report
@@ -282,10 +247,8 @@ def modes(
     check_targets([] if out is None else [out], force=force)
     value = input_value("--at", at, loaded, input_joint)
     found = loaded.assembly_modes(value, input=loaded.columns[column])
-    elsewhere: dict[Path, Callable[[Path], object]] = {}
-    if out is not None:
-        elsewhere[out] = partial(_draw_modes, loaded, found, loaded.columns[column])
-    deliver(found, modes_report(loaded, column), json=json, also=elsewhere)
+    draw = partial(_draw_modes, loaded, found, loaded.columns[column])
+    deliver(found, modes_report(loaded, column), json=json, also={} if out is None else {out: draw})
 
 
 def _draw_modes(linkage: sb.Linkage, found: sb.Modes, held: str, path: Path) -> None:
@@ -296,7 +259,7 @@ def _draw_modes(linkage: sb.Linkage, found: sb.Modes, held: str, path: Path) -> 
 
 @app.command("plot", cls=Command)
 def plot_(
-    linkage: Source,
+    linkage: options.Source,
     out: Annotated[Path, typer.Option(help="Folder for the figures.")],
     kind: Annotated[
         list[str] | None,
@@ -304,25 +267,25 @@ def plot_(
             help=f"{', '.join(KINDS)}, or all (the default), which leaves axodes out; may be repeated."
         ),
     ] = None,
-    point: PointName = None,
-    link: PointLink = None,
-    at: PointPlace = None,
+    point: options.PointName = None,
+    link: options.PointLink = None,
+    at: options.PointPlace = None,
     circuit: Annotated[
         int, typer.Option(help="The circuit of the pictures of the linkage, counted from 0.")
     ] = 0,
-    samples: Samples = 360,
-    input_joint: InputJoint = None,
-    output: OutputJoint = None,
-    speed: Speed = None,
-    agree: Agree = None,
-    figures: Figures = None,
-    view: FigureView = None,
-    size: FigureSize = None,
-    style: FigureStyle = None,
-    force: Force = False,
+    samples: options.Samples = 360,
+    input_joint: options.InputJoint = None,
+    output: options.OutputJoint = None,
+    speed: options.Speed = None,
+    agree: options.Agree = None,
+    figures: options.Figures = None,
+    view: options.FigureView = None,
+    size: options.FigureSize = None,
+    style: options.FigureStyle = None,
+    force: options.Force = False,
 ) -> None:
     """Draw a linkage: curves of the output, all joints, all modes, the linkage in space, a point's path."""
-    formats = figure_formats(figures, out)
+    formats = options.figure_formats(figures, out)
     kinds = _kinds(kind)
     look = look_of(view, size, style)
     loaded = opened(linkage, agree)
@@ -345,7 +308,7 @@ def plot_(
 
 
 def _kinds(given: list[str] | None) -> list[str]:
-    kinds = words(given or ["all"])
+    kinds = options.words(given or ["all"])
     if not kinds:
         raise RequestError(f"--kind: none given; give some of {', '.join(KINDS)}, all")
     for word in kinds:
@@ -399,12 +362,9 @@ def _tell_warning(
     line: str | None = None,
 ) -> None:
     """Writes a warning of ours as one line on the error stream, any other as Python does."""
-    ours = issubclass(category, (AngleUnitWarning, MissingFontWarning))
-    text = (
-        f"sevenbar: {message}\n"
-        if ours
-        else warnings.formatwarning(message, category, filename, lineno, line)
-    )
+    text = warnings.formatwarning(message, category, filename, lineno, line)
+    if issubclass(category, (AngleUnitWarning, MissingFontWarning)):
+        text = f"sevenbar: {message}\n"
     (file or sys.stderr).write(text)
 
 

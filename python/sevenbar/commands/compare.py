@@ -8,21 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import sevenbar as sb
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import opened
-from sevenbar.commands.options import (
-    Agree,
-    Figures,
-    Follow,
-    Force,
-    InputJoint,
-    Json,
-    Source,
-    Speed,
-    figure_formats,
-    number_option,
-    words,
-)
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.loop.joint_text import joint_value
@@ -55,7 +43,7 @@ ChosenBranch = Annotated[int | None, typer.Option(help="The pass of the circuit,
 
 
 def compare(
-    linkage: Source,
+    linkage: options.Source,
     table: Table,
     align: Annotated[
         list[str] | None,
@@ -66,19 +54,19 @@ def compare(
     column: Columns = None,
     unit: Units = None,
     skip_nan: SkipNan = False,
-    input_joint: InputJoint = None,
+    input_joint: options.InputJoint = None,
     output: Output = None,
-    speed: Speed = None,
-    agree: Agree = None,
+    speed: options.Speed = None,
+    agree: options.Agree = None,
     start: Start = "0",
     circuit: ChosenCircuit = None,
     branch: ChosenBranch = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for comparison.json, table.csv, rows.csv and the figure.")
     ] = None,
-    figures: Figures = None,
-    force: Force = False,
-    json: Json = False,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Compare measured values with the computed motion: differences, and the paper's Table 1."""
     from sevenbar.measuring.compare import Comparison
@@ -87,7 +75,7 @@ def compare(
     from sevenbar.measuring.measured import MeasuredExtremes
     from sevenbar.measuring.report import comparison_report
 
-    report = comparison_report(figure_formats(figures, out))
+    report = comparison_report(options.figure_formats(figures, out))
     loaded = opened(linkage, agree)
     check_out(report, out, force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
@@ -105,7 +93,7 @@ def compare(
             loaded,
             measured,
             ends,
-            align=words(align, "--align"),
+            align=options.words(align, "--align"),
             speed=speed,
             start=begin,
             circuit=circuit,
@@ -115,7 +103,7 @@ def compare(
 
 
 def calibrate(
-    linkage: Source,
+    linkage: options.Source,
     table: Table,
     free: Annotated[
         list[str] | None,
@@ -124,7 +112,7 @@ def calibrate(
     hold: Annotated[
         list[str] | None, typer.Option(help="A dimension to be kept, or a pattern; may be repeated.")
     ] = None,
-    follow: Follow = None,
+    follow: options.Follow = None,
     offset: Annotated[
         list[str] | None,
         typer.Option(help="Find the zero of the input or of the output too; may be repeated."),
@@ -132,15 +120,15 @@ def calibrate(
     column: Columns = None,
     unit: Units = None,
     skip_nan: SkipNan = False,
-    input_joint: InputJoint = None,
+    input_joint: options.InputJoint = None,
     output: Output = None,
-    speed: Speed = None,
-    agree: Agree = None,
+    speed: options.Speed = None,
+    agree: options.Agree = None,
     start: Start = "0",
     circuit: ChosenCircuit = None,
     branch: ChosenBranch = None,
     confidence: Annotated[
-        float, number_option("--confidence", "0.95", "How often an interval holds the true value.")
+        float, options.number_option("--confidence", "0.95", "How often an interval holds the true value.")
     ] = 0.95,
     out: Annotated[
         Path | None,
@@ -148,9 +136,9 @@ def calibrate(
             help="Folder for calibrated.toml, calibration.json, parameters.csv, rows.csv and the figure."
         ),
     ] = None,
-    figures: Figures = None,
-    force: Force = False,
-    json: Json = False,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Find the dimensions that explain a measured curve, with intervals; a new file (extra 'calibrate')."""
     from sevenbar.description.files import toml_text
@@ -159,7 +147,7 @@ def calibrate(
     from sevenbar.measuring.report import calibration_report
     from sevenbar.measuring.rewrite import calibrated_toml
 
-    formats = figure_formats(figures, out)
+    formats = options.figure_formats(figures, out)
     text = toml_text(linkage)
     loaded = opened(linkage, agree)
     check_out(calibration_report(lambda _: "", formats), out, force=force)
@@ -174,10 +162,10 @@ def calibrate(
             loaded,
             measured,
             ends,
-            free=words(free or ["*"], "--free"),
-            hold=words(hold, "--hold"),
-            follow=words(follow, "--follow"),
-            offsets=words(offset, "--offset"),
+            free=options.words(free or ["*"], "--free"),
+            hold=options.words(hold, "--hold"),
+            follow=options.words(follow, "--follow"),
+            offsets=options.words(offset, "--offset"),
             speed=speed,
             start=begin,
             circuit=circuit,

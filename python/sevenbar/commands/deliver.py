@@ -11,7 +11,7 @@ from typing import TypeVar
 
 import typer
 
-from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.progress import STOPPED, progress_bar
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.folder import check_targets
 
@@ -32,10 +32,12 @@ def deliver(
     json: bool,
     force: bool = False,
     also: Mapping[Path, Callable[[Path], object]] = MappingProxyType({}),
+    unfinished: str = "",
 ) -> None:
     """Prints a result for people, writes its files into `out` and names them; JSON is printed at the end.
 
-    `also` are files elsewhere, each with what writes it.
+    `also` are files elsewhere, each with what writes it. A result of a search that Ctrl+C stopped is
+    `unfinished`: the command ends as Ctrl+C does.
     """
     if out is not None:
         # nothing is printed before it is certain that files can go there
@@ -51,8 +53,10 @@ def deliver(
         written.append(path)
     if json:
         typer.echo(report.json(found))
-        return
-    tell_written(written)
+    else:
+        tell_written(written)
+    if unfinished:
+        raise typer.Exit(STOPPED)
 
 
 def write_files(report: Report[T], found: T, out: Path, *, force: bool) -> list[Path]:

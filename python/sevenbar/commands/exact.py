@@ -8,10 +8,9 @@ from typing import Annotated
 import typer
 
 from sevenbar.arrays import whole_number
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, command_line, deliver
-from sevenbar.commands.design_options import OutDesigns, checked_designs
 from sevenbar.commands.given import angle
-from sevenbar.commands.options import Force, Json
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, shown
 
@@ -43,9 +42,9 @@ def exact(
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of these draws.")] = None,
     designs: Annotated[int, typer.Option(help="How many linkages are printed and written, at most.")] = 50,
-    out: OutDesigns = None,
-    force: Force = False,
-    json: Json = False,
+    out: options.OutDesigns = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """All linkages that take pairs of angles, or poses of a link (extra 'design')."""
     from sevenbar.design.exact.report import ExactDesigns, exact_report
@@ -53,7 +52,7 @@ def exact(
     from sevenbar.design.extra import need_scipy
 
     need_scipy()
-    checked_designs(designs)
+    options.checked_designs(designs)
     report = exact_report(designs, command_line())
     check_out(report, out, force=force)
     given = {

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sevenbar.commands.consent import confirm
+from sevenbar.commands import options
+from sevenbar.commands.consent import confirm, long_motion, table_ahead
 from sevenbar.commands.deliver import tell_written
 from sevenbar.commands.given import input_value, opened
-from sevenbar.commands.long_tables import long_motion, table_ahead
-from sevenbar.commands.options import Agree, Force, InputJoint, OutputJoint, Samples, Source, Speed, Yes
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.reporting.folder import check_targets
@@ -34,7 +33,7 @@ def _formats(incomplete: str) -> list[str]:
 
 
 def export(
-    linkage: Source,
+    linkage: options.Source,
     to: Annotated[
         str | None,
         typer.Option(
@@ -58,16 +57,16 @@ def export(
     branch: Annotated[
         int | None, typer.Option(help="The pass of a circuit that rocks; 0 by default.")
     ] = None,
-    samples: Samples = 360,
-    input_joint: InputJoint = None,
-    output: OutputJoint = None,
-    speed: Speed = None,
-    agree: Agree = None,
+    samples: options.Samples = 360,
+    input_joint: options.InputJoint = None,
+    output: options.OutputJoint = None,
+    speed: options.Speed = None,
+    agree: options.Agree = None,
     units: Annotated[
         str | None, typer.Option(help="Of tables: file (the default), or si for metres and radians.")
     ] = None,
-    force: Force = False,
-    yes: Yes = False,
+    force: options.Force = False,
+    yes: options.Yes = False,
 ) -> None:
     """Write files for other programs: motion, bodies in a pose, models (some: extras 'export', 'cad')."""
     from sevenbar.export import FORMATS, Table, ending_of, format_of

@@ -10,23 +10,9 @@ import typer
 
 import sevenbar as sb
 from sevenbar.arrays import whole_number
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import agreed, check_law, law_of, look_of
-from sevenbar.commands.options import (
-    Agree,
-    Figures,
-    FigureSize,
-    FigureStyle,
-    Force,
-    InputJoint,
-    Json,
-    Law,
-    Samples,
-    Source,
-    figure_formats,
-    number_option,
-    words,
-)
 from sevenbar.errors import RequestError, no_joint, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import chosen_circuit
@@ -34,14 +20,14 @@ from sevenbar.text.units import split_quantity
 
 
 def forces(
-    linkage: Source,
+    linkage: options.Source,
     circuit: Annotated[int, typer.Option(help="The circuit whose forces are reported, from 0.")] = 0,
     branch: Annotated[
         int | None,
         typer.Option(help="The pass of a circuit that rocks; of a law's 0 by default."),
     ] = None,
-    samples: Samples = 360,
-    input_joint: InputJoint = None,
+    samples: options.Samples = 360,
+    input_joint: options.InputJoint = None,
     speed: Annotated[
         str | None,
         typer.Option(
@@ -49,10 +35,10 @@ def forces(
             "rest on every row."
         ),
     ] = None,
-    law: Law = None,
+    law: options.Law = None,
     unevenness: Annotated[
         float | None,
-        number_option(
+        options.number_option(
             "--unevenness", "0.01", "(highest - lowest) / mean speed that a flywheel shall keep, as in 0.01."
         ),
     ] = None,
@@ -65,7 +51,7 @@ def forces(
     ] = None,
     radius: Annotated[
         float | None,
-        number_option(
+        options.number_option(
             "--radius",
             "100",
             "How far counterweights are from their joints, in the length unit, for their masses.",
@@ -75,43 +61,41 @@ def forces(
         list[str] | None,
         typer.Option(help="A joint whose reactions are drawn; may be repeated; all of them."),
     ] = None,
-    agree: Agree = None,
+    agree: options.Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for forces.csv, with every row, forces.json and the figures.")
     ] = None,
-    figures: Figures = None,
-    size: FigureSize = None,
-    style: FigureStyle = None,
-    force: Force = False,
-    json: Json = False,
+    figures: options.Figures = None,
+    size: options.FigureSize = None,
+    style: options.FigureStyle = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Torque of the input and what every joint bears, from bodies, loads and springs of the file."""
     from sevenbar.reporting.force_words import NOTHING_ACTS
     from sevenbar.reporting.forces import CircuitForces, forces_report
 
     look = look_of(None, size, style)
-    formats = figure_formats(figures, out)
+    formats = options.figure_formats(figures, out)
     if out is None:
-        for option, given in (("--joint", joint), ("--size", size), ("--style", style)):
-            if given:
-                raise RequestError(f"{option}: no figure is drawn; give --out")
+        options.refuse_unused({"--joint": joint, "--size": size, "--style": style}, "--out")
     check_law(law, speed)
     unit = _unit_at_rest(speed)
     at_rest = unit is not None
     loaded = sb.load(linkage)
     if loaded.loading.is_empty:
         raise RequestError(f"{linkage}: {NOTHING_ACTS}")
-    names = words(joint, "--joint")
+    names, known = options.words(joint, "--joint"), [one.name for one in loaded.joints]
     for name in names:
-        if name not in [one.name for one in loaded.joints]:
-            raise RequestError(f"--joint: {no_joint(name, [one.name for one in loaded.joints])}")
+        if name not in known:
+            raise RequestError(f"--joint: {no_joint(name, known)}")
     if at_rest and unevenness is not None:
         raise RequestError("--unevenness: at rest nothing fluctuates; give another speed, or leave it out")
     if law is not None and unevenness is not None:
         raise RequestError(
             "--unevenness: a flywheel is found for a constant speed; give --speed in place of --law"
         )
-    links = [_link(name) for name in words(counterweights, "--counterweights")]
+    links = [_link(name) for name in options.words(counterweights, "--counterweights")]
     if radius is not None and not links:
         raise RequestError("--radius: it is that of counterweights; give --counterweights, as in 1,3")
     if links and (at_rest or law is not None):

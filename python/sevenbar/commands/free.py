@@ -8,18 +8,9 @@ from typing import Annotated
 import typer
 
 import sevenbar as sb
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import agreed, input_value
-from sevenbar.commands.options import (
-    Agree,
-    Figures,
-    Force,
-    InputJoint,
-    Json,
-    Samples,
-    Source,
-    figure_formats,
-)
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.reporting.folder import check_targets
@@ -27,7 +18,7 @@ from sevenbar.text.amounts import amount_in
 
 
 def free(
-    linkage: Source,
+    linkage: options.Source,
     duration: Annotated[
         str, typer.Option("--time", help="How long it moves, as in '10s' or '500ms'.")
     ] = "10s",
@@ -52,22 +43,22 @@ def free(
     branch: Annotated[
         int | None, typer.Option(help="Which of the poses with this start, counted along the circuit.")
     ] = None,
-    rows: Samples = 361,
-    input_joint: InputJoint = None,
-    agree: Agree = None,
+    rows: options.Samples = 361,
+    input_joint: options.InputJoint = None,
+    agree: options.Agree = None,
     film: Annotated[
         Path | None, typer.Option(help="Film of the motion: .html, .gif or .mp4; a second for a second.")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for free.json, free.csv and the figure.")] = None,
-    figures: Figures = None,
-    force: Force = False,
-    json: Json = False,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """How the linkage moves by itself: falling, swinging, coasting, starting up; and where it can rest."""
     from sevenbar.drawing.animate import animate
     from sevenbar.reporting.free_motion import free_report
 
-    report = free_report(figure_formats(figures, out))
+    report = free_report(options.figure_formats(figures, out))
     seconds = amount_in(duration, "s")
     if seconds is None or seconds <= 0:
         raise RequestError(f"--time: {shown(duration)} is not a time; give seconds > 0, as in 10s")

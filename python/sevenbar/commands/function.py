@@ -8,23 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sevenbar.arrays import whole_number
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, command_line, deliver
-from sevenbar.commands.design_options import (
-    Designs,
-    FunctionX,
-    MotionType,
-    OutFigures,
-    Pairs,
-    Seed,
-    TimeRatio,
-    Transmission,
-    checked_designs,
-    refuse_degrees_twice,
-)
 from sevenbar.commands.given import angle, angles, limits_of, numbers
-from sevenbar.commands.options import Figures, Force, Json, figure_formats
 from sevenbar.commands.progress import progress_bar
-from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError
 
 if TYPE_CHECKING:
@@ -41,8 +28,8 @@ def function(
         str | None,
         typer.Option(help="The function of x, as in 'x^2', 'log10(x)' or 'sin(x)'; sind takes degrees."),
     ] = None,
-    x: FunctionX = "0:1",
-    table: Pairs = None,
+    x: options.FunctionX = "0:1",
+    table: options.Pairs = None,
     input_range: Annotated[str, typer.Option(help="Readings of the input over the range of x.")] = "0:90deg",
     output_range: Annotated[
         str, typer.Option(help="Readings of the output from the least y to the greatest.")
@@ -52,15 +39,15 @@ def function(
         typer.Option(help="Meet the function exactly at 3 to 7 Chebyshev points; else the least error."),
     ] = None,
     tolerance: Annotated[str, typer.Option(help="Greatest error of a design that is given.")] = "2deg",
-    transmission: Transmission = "30deg",
+    transmission: options.Transmission = "30deg",
     size: Size = None,
-    motion_type: MotionType = None,
-    designs: Designs = 5,
-    seed: Seed = 0,
-    out: OutFigures = None,
-    figures: Figures = None,
-    force: Force = False,
-    json: Json = False,
+    motion_type: options.MotionType = None,
+    designs: options.Designs = 5,
+    seed: options.Seed = 0,
+    out: options.OutFigures = None,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """RSSR linkages whose output follows a function, or pairs of angles (extra 'design')."""
     from sevenbar.design.synthesis.function.generation import function_generation
@@ -75,7 +62,7 @@ def function(
         raise RequestError("--points: pairs of a table are the points themselves; leave it out")
     x_range = numbers("--x", x)
     if y is not None:
-        refuse_degrees_twice(y, x)
+        options.refuse_degrees_twice(y, x)
     wanted = f"y = {y}" if table is None else f"pairs of {table.name}"
     with progress_bar(f"searching RSSRs for {wanted}") as progress:
         found = function_generation(
@@ -94,21 +81,20 @@ def function(
         )
         # a search that found nothing says why
         found.required()
-    deliver(found, report, out, json=json, force=force)
-    end_of_work(found.unfinished)
+    deliver(found, report, out, json=json, force=force, unfinished=found.unfinished)
 
 
 def swing(
     swing: Annotated[str, typer.Option(help="Angle through which the rocker swings.")],
-    time_ratio: TimeRatio = 1.0,
-    transmission: Transmission = "30deg",
+    time_ratio: options.TimeRatio = 1.0,
+    transmission: options.Transmission = "30deg",
     size: Size = None,
-    designs: Designs = 5,
-    seed: Seed = 0,
-    out: OutFigures = None,
-    figures: Figures = None,
-    force: Force = False,
-    json: Json = False,
+    designs: options.Designs = 5,
+    seed: options.Seed = 0,
+    out: options.OutFigures = None,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """RSSR crank-rockers with a swing and a time ratio, that transmit best (extra 'design')."""
     from sevenbar.design.synthesis.function.swing import swing_generation
@@ -125,16 +111,15 @@ def swing(
         )
         # a search that found nothing says why
         found.required()
-    deliver(found, report, out, json=json, force=force)
-    end_of_work(found.unfinished)
+    deliver(found, report, out, json=json, force=force, unfinished=found.unfinished)
 
 
 def _before(out: Path | None, designs: int, figures: list[str] | None, force: bool) -> Report[Synthesis]:
     """How the designs are reported, once the folder was looked at, so that long work is not done in vain."""
     from sevenbar.design.synthesis.function.report import synthesis_report
 
-    formats = figure_formats(figures, out)
-    checked_designs(designs)
+    formats = options.figure_formats(figures, out)
+    options.checked_designs(designs)
     report = synthesis_report(designs, command_line(), formats)
     check_out(report, out, force=force)
     return report

@@ -7,19 +7,9 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import opened
-from sevenbar.commands.options import (
-    Agree,
-    Figures,
-    Follow,
-    Force,
-    InputJoint,
-    Json,
-    Source,
-    figure_formats,
-    words,
-)
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 
@@ -28,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def map_(
-    linkage: Source,
+    linkage: options.Source,
     over: Annotated[
         list[str] | None,
         typer.Option(help="A dimension and its range, as in L1=100:400 or L1=10:40cm; give it twice."),
@@ -45,21 +35,21 @@ def map_(
     grid: Annotated[
         int | None, typer.Option(help="Lines of the grid along each range; 61 for an RSSR, else 25.")
     ] = None,
-    input_joint: InputJoint = None,
-    follow: Follow = None,
-    agree: Agree = None,
+    input_joint: options.InputJoint = None,
+    follow: options.Follow = None,
+    agree: options.Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for map.json, boundaries.csv, contours.csv and the figures.")
     ] = None,
-    figures: Figures = None,
+    figures: options.Figures = None,
     size: Annotated[
         str | None, typer.Option(help="Sheet of the figures: A4 (the default), A3, A2 or A1.")
     ] = None,
     no_key: Annotated[
         bool, typer.Option("--no-key", help="Leave out the key and the numbers at the side.")
     ] = False,
-    force: Force = False,
-    json: Json = False,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Map motion types over two dimensions, with exact boundaries, and contours of any measure."""
     from sevenbar.design.maps.atlas import motion_map
@@ -68,13 +58,13 @@ def map_(
     from sevenbar.design.maps.report import MapFindings, map_report
     from sevenbar.design.maps.window import split_ranges
 
-    formats = figure_formats(figures, out)
+    formats = options.figure_formats(figures, out)
     sheet(size or "A4")
     ranges = split_ranges(over or [])
     at = None if levels is None else levels_of(levels, "--levels")
     which = cast("Take", int(take) if take.isdecimal() else take)
     check_take(which, "--take")
-    names = words(measure, "--measure")
+    names = options.words(measure, "--measure")
     if levels is not None and not names:
         raise RequestError("--levels: of no measure; give --measure too, as in '--measure swing'")
     chosen = with_contours(names) if names else ()
@@ -83,7 +73,12 @@ def map_(
     check_out(report, out, force=force)
     with progress_bar(f"mapping {loaded.heading}") as progress:
         found = motion_map(
-            loaded, ranges, grid=grid, input=input_joint, follow=words(follow, "--follow"), progress=progress
+            loaded,
+            ranges,
+            grid=grid,
+            input=input_joint,
+            follow=options.words(follow, "--follow"),
+            progress=progress,
         )
         heights = measure_heights(found, chosen, take=which, levels=at) if chosen else ()
     deliver(MapFindings(found, heights), report, out, json=json, force=force)

@@ -1,14 +1,20 @@
-"""What the commands share: arguments and options."""
+"""What the commands share: arguments and options, and the checks of what they are given."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from sevenbar.commands.command import STYLE_HELP, VIEW_HELP, count_of, number_of
-from sevenbar.errors import RequestError, check_word
+from sevenbar.errors import RequestError, check_word, shown
+from sevenbar.text.expression import IN_DEGREES, calls_in
+from sevenbar.text.units import ANGLES
+
+#: Most designs that one command gives.
+MOST_DESIGNS = 50
 
 
 def _noted(source: str) -> str:
@@ -60,10 +66,7 @@ Figures = Annotated[
     list[str] | None,
     typer.Option(help="Format of the figures: png (the default), svg, pdf, eps; may be repeated."),
 ]
-FigureView = Annotated[
-    str | None,
-    typer.Option("--view", help=VIEW_HELP),
-]
+FigureView = Annotated[str | None, typer.Option("--view", help=VIEW_HELP)]
 FigureSize = Annotated[
     str | None, typer.Option("--size", help="Size of the figures, as in '85x60mm' or '3.3x2.5in'.")
 ]
@@ -110,6 +113,29 @@ Speed = Annotated[
     str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'; the file's by default.")
 ]
 
+#: Those of `sevenbar design ..`.
+FunctionX = Annotated[str, typer.Option(help="Range of x: 0:1, 0:pi/2 or 0:90deg (radians then).")]
+Pairs = Annotated[
+    Path | None, typer.Option(help="CSV of pairs of angles in place of a function: input_deg,output_deg.")
+]
+TimeRatio = Annotated[
+    float, number_option("--time-ratio", "1.2", "Time of the slower stroke over the quicker, >= 1.")
+]
+Transmission = Annotated[str, typer.Option(help="Least transmission angle; 0 for none.")]
+MotionType = Annotated[
+    str | None,
+    typer.Option(help="crank-rocker, double-crank, rocker-crank or double-rocker; any by default."),
+]
+Designs = Annotated[int, typer.Option(help="How many designs that differ, at most.")]
+Starts = Annotated[int, typer.Option(help="Linkages within the bounds that are tried.")]
+Seed = Annotated[int, typer.Option(help="Seed of the search.")]
+OutDesigns = Annotated[
+    Path | None, typer.Option(help="Folder for design_1.toml, .., summary.csv and summary.json.")
+]
+OutFigures = Annotated[
+    Path | None, typer.Option(help="Folder for design_1.toml, .. with figures, summary.csv and summary.json.")
+]
+
 
 def words(given: list[str] | None, option: str = "") -> list[str]:
     """The words of an option that is repeated, or has several parted by commas; each once.
@@ -137,3 +163,33 @@ def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]
     if out is None:
         raise RequestError("--figures: a folder for them is missing; give --out, as in '--out report'")
     return endings
+
+
+def refuse_unused(given: Mapping[str, object], remedy: str) -> None:
+    """Raises `RequestError` for options of figures that are given where none is drawn."""
+    for option, value in given.items():
+        if value not in (None, []):
+            raise RequestError(f"{option}: no figure is drawn; give {remedy}")
+
+
+def kept_in(folder: Path | None) -> str:
+    """What Ctrl+C leaves of work that keeps its finished parts in a folder, if it has one."""
+    if folder is None:
+        return "nothing is written"
+    return f"the finished parts are kept in {folder}, --resume goes on with them"
+
+
+def checked_designs(count: int, most: int = MOST_DESIGNS) -> None:
+    """Raises `RequestError` for a number of designs that one command does not give."""
+    if not 1 <= count <= most:
+        raise RequestError(f"--designs: {count} designs are not offered; give 1 to {most}")
+
+
+def refuse_degrees_twice(y: str, x: str) -> None:
+    """Raises `RequestError` where sind and the like would take an x in radians."""
+    with_unit = any(unit in x for unit in (*ANGLES, "\u00b0"))
+    if with_unit and (called := sorted(calls_in(y) & IN_DEGREES.keys())):
+        raise RequestError(
+            f"--x: {shown(x)} counts in radians, and {called[0]} takes degrees; "
+            f"write {IN_DEGREES[called[0]]}, or leave the unit of x out"
+        )

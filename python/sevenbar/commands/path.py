@@ -7,34 +7,21 @@ from typing import Annotated
 
 import typer
 
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, command_line, deliver
-from sevenbar.commands.design_options import Designs, MotionType, OutFigures, Seed, Starts
 from sevenbar.commands.given import limits_of, point_of
-from sevenbar.commands.options import (
-    Figures,
-    Follow,
-    Force,
-    Json,
-    PointLink,
-    PointName,
-    PointPlace,
-    Source,
-    figure_formats,
-    words,
-)
 from sevenbar.commands.progress import progress_bar
-from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.ranges import split_named, split_range
 
 
 def path(
-    linkage: Source,
+    linkage: options.Source,
     wanted: Annotated[Path, typer.Option("--path", help="Table of wanted points in order: x, y, z.")],
-    point: PointName = None,
-    link: PointLink = None,
-    at: PointPlace = None,
+    point: options.PointName = None,
+    link: options.PointLink = None,
+    at: options.PointPlace = None,
     vary: Annotated[
         list[str] | None,
         typer.Option(help="A dimension that may change, or a pattern; may be repeated. All by default."),
@@ -43,7 +30,7 @@ def path(
         list[str] | None,
         typer.Option(help="Bounds of a dimension, as in L1=100:400 or L1=10:40cm; may be repeated."),
     ] = None,
-    follow: Follow = None,
+    follow: options.Follow = None,
     place: Annotated[bool, typer.Option("--place", help="The linkage may stand anywhere in space.")] = False,
     timing: Annotated[
         bool, typer.Option("--timing", help="Reach each point at the input that the table has for it.")
@@ -55,14 +42,14 @@ def path(
     size: Annotated[
         str | None, typer.Option(help="Shortest link and longest dimension, as in 50:1000 or 5cm:1m.")
     ] = None,
-    motion_type: MotionType = None,
-    designs: Designs = 5,
-    starts: Starts = 256,
-    seed: Seed = 0,
-    out: OutFigures = None,
-    figures: Figures = None,
-    force: Force = False,
-    json: Json = False,
+    motion_type: options.MotionType = None,
+    designs: options.Designs = 5,
+    starts: options.Starts = 256,
+    seed: options.Seed = 0,
+    out: options.OutFigures = None,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Linkages of a type whose point goes through wanted points in order (extra 'design')."""
     from sevenbar.description.draft import Draft
@@ -73,7 +60,7 @@ def path(
     from sevenbar.design.synthesis.path.report import PathDesigns, path_report
 
     need_scipy()
-    report = path_report(designs, command_line(), figure_formats(figures, out))
+    report = path_report(designs, command_line(), options.figure_formats(figures, out))
     draft = Draft.of(toml_text(linkage), linkage)
     check_out(report, out, force=force)
     drive = draft.linkage.drive.joint
@@ -94,19 +81,25 @@ def path(
         draft,
         points,
         asked,
-        vary=words(vary) if vary is not None else None,
-        bounds=parsed_bounds(words(bound or [])),
+        vary=options.words(vary) if vary is not None else None,
+        bounds=parsed_bounds(options.words(bound or [])),
         timing=inputs if timing else None,
         phase=phase,
         place=place,
         limits=limits_of(transmission, size, motion_type, draft.linkage.length_unit),
-        follow=words(follow or []),
+        follow=options.words(follow or []),
     )
     check_counts(designs, starts, seed)
     with progress_bar(f"searching paths of {draft.linkage.name}") as progress:
         found = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
-    deliver(PathDesigns(task, found, str(wanted), seed), report, out, json=json, force=force)
-    end_of_work(found.unfinished)
+    deliver(
+        PathDesigns(task, found, str(wanted), seed),
+        report,
+        out,
+        json=json,
+        force=force,
+        unfinished=found.unfinished,
+    )
 
 
 def missing_point(linkage: Linkage) -> str:

@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 
 import typer
 
 import sevenbar as sb
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import check_law, drafted, law_of, opened
-from sevenbar.commands.options import (
-    Agree,
-    Figures,
-    Force,
-    InputJoint,
-    Json,
-    Law,
-    Samples,
-    Source,
-    Speed,
-    figure_formats,
-)
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, check_word, shown
 from sevenbar.text.amounts import amount_in
@@ -32,6 +23,7 @@ if TYPE_CHECKING:
     from sevenbar.design.points.least import LeastPoint, Rate
     from sevenbar.design.points.nearest import NearestPath
     from sevenbar.kinematics.circuits.motion import Motion
+    from sevenbar.reporting.files import Report
 
 ChosenCircuit = Annotated[int, typer.Option(help="The circuit whose cycle counts.")]
 ChosenBranch = Annotated[int, typer.Option(help="The pass of a circuit that rocks; it needs a law.")]
@@ -41,7 +33,7 @@ LEAST = ("acceleration", "velocity", "jerk", "rms")
 
 
 def point(
-    linkage: Source,
+    linkage: options.Source,
     link: Annotated[int, typer.Option(help="The link that carries the point, counted from 1.")],
     box: Annotated[
         str, typer.Option(help="Where on the link, as points are written: '-200:200,-200:200,0:50'.")
@@ -57,23 +49,23 @@ def point(
     name: Annotated[str | None, typer.Option(help="The name of the point in the new file.")] = None,
     circuit: ChosenCircuit = 0,
     branch: ChosenBranch = 0,
-    input_joint: InputJoint = None,
-    speed: Speed = None,
-    law: Law = None,
-    agree: Agree = None,
+    input_joint: options.InputJoint = None,
+    speed: options.Speed = None,
+    law: options.Law = None,
+    agree: options.Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for point.toml, point.json, the rows and the figure.")
     ] = None,
-    figures: Figures = None,
-    force: Force = False,
-    json: Json = False,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Find the point of a link with the least acceleration, or with a wanted path (extra 'design')."""
     from sevenbar.design.curve_table import read_curve
     from sevenbar.design.points import least_point, nearest_path_point
     from sevenbar.design.points.report import least_report, nearest_report
 
-    formats = figure_formats(figures, out)
+    formats = options.figure_formats(figures, out)
     check_law(law, speed)
     if least is not None and curve is not None:
         raise RequestError("--least: a path near a curve is looked for with --curve; leave one of them out")
@@ -90,30 +82,23 @@ def point(
         _ = longer.linkage
         return longer.toml()
 
-    if curve is not None:
-        of_curve = nearest_report(toml, called, formats)
-        check_out(of_curve, out, force=force)
-        motion = _motion(loaded, 360, input_joint, speed, law)
-        places, inputs = read_curve(curve, motion.linkage, motion.input)
-        with progress_bar(f"searching a point of link {link} of {loaded.heading}") as progress:
-            nearest = nearest_path_point(
-                motion, link, places, sides, inputs=inputs, circuit=circuit, branch=branch, progress=progress
-            )
-        deliver(nearest, of_curve, out, json=json, force=force)
-        return
-    report = least_report(toml, called, formats)
+    report: Report[Any] = (least_report if curve is None else nearest_report)(toml, called, formats)
     check_out(report, out, force=force)
     motion = _motion(loaded, 360, input_joint, speed, law)
-    of, measure = _least(least or "acceleration")
+    search: Callable[..., Any]
+    if curve is not None:
+        places, inputs = read_curve(curve, motion.linkage, motion.input)
+        search = partial(nearest_path_point, motion, link, places, sides, inputs=inputs)
+    else:
+        of, measure = _least(least or "acceleration")
+        search = partial(least_point, motion, link, sides, of=of, measure=measure)
     with progress_bar(f"searching a point of link {link} of {loaded.heading}") as progress:
-        found = least_point(
-            motion, link, sides, of=of, measure=measure, circuit=circuit, branch=branch, progress=progress
-        )
+        found = search(circuit=circuit, branch=branch, progress=progress)
     deliver(found, report, out, json=json, force=force)
 
 
 def inertia(
-    linkage: Source,
+    linkage: options.Source,
     mass: Annotated[
         list[str], typer.Option(help="A mass in kg at a point of the linkage, as in P=2.5; may be repeated.")
     ],
@@ -123,23 +108,23 @@ def inertia(
     ] = None,
     circuit: ChosenCircuit = 0,
     branch: ChosenBranch = 0,
-    samples: Samples = 360,
-    input_joint: InputJoint = None,
-    speed: Speed = None,
-    law: Law = None,
-    agree: Agree = None,
+    samples: options.Samples = 360,
+    input_joint: options.InputJoint = None,
+    speed: options.Speed = None,
+    law: options.Law = None,
+    agree: options.Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for inertia.json, inertia.csv and the figure.")
     ] = None,
-    figures: Figures = None,
-    force: Force = False,
-    json: Json = False,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Inertia forces of masses at points over the cycle, and the torque that the input needs for them."""
     from sevenbar.design.points import inertia as of_masses
     from sevenbar.design.points.report import inertia_report
 
-    report = inertia_report(figure_formats(figures, out))
+    report = inertia_report(options.figure_formats(figures, out))
     check_law(law, speed)
     masses = parsed_masses(mass)
     pull = None if gravity is None else three_numbers("--gravity", gravity, "an acceleration", "0,0,-9.80665")

@@ -8,22 +8,10 @@ from typing import Annotated
 
 import typer
 
+from sevenbar.commands import options
 from sevenbar.commands.consent import Ahead, confirm
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import opened
-from sevenbar.commands.options import (
-    Agree,
-    Figures,
-    Force,
-    InputJoint,
-    Json,
-    OutputJoint,
-    Source,
-    Speed,
-    Yes,
-    count_option,
-    figure_formats,
-)
 from sevenbar.commands.progress import progress_bar
 
 #: Steps that an engine makes in a second, for an RSSR or a 7R on a machine of today.
@@ -31,25 +19,27 @@ STEPS = {"exudyn": 1000.0, "mujoco": 10000.0}
 
 
 def simulate(
-    linkage: Source,
+    linkage: options.Source,
     engine: Annotated[str, typer.Option(help="exudyn (hard constraints) or mujoco (soft ones).")] = "exudyn",
-    steps: Annotated[int, count_option("--steps", "Steps in a full turn of the input, as in 1e4.")] = 3600,
+    steps: Annotated[
+        int, options.count_option("--steps", "Steps in a full turn of the input, as in 1e4.")
+    ] = 3600,
     circuit: Annotated[int, typer.Option(help="The circuit that is followed, counted from 0.")] = 0,
-    input_joint: InputJoint = None,
-    output: OutputJoint = None,
-    speed: Speed = None,
-    agree: Agree = None,
+    input_joint: options.InputJoint = None,
+    output: options.OutputJoint = None,
+    speed: options.Speed = None,
+    agree: options.Agree = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the JSON, the CSV and the figures.")] = None,
-    figures: Figures = None,
-    force: Force = False,
-    yes: Yes = False,
-    json: Json = False,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    yes: options.Yes = False,
+    json: options.Json = False,
 ) -> None:
     """Build the linkage in another program, drive it, and compare (extra 'simulate')."""
     from sevenbar.simulation.report import simulation_report
     from sevenbar.simulation.run import moved, prepared, ready
 
-    formats = figure_formats(figures, out)
+    formats = options.figure_formats(figures, out)
     ready(engine)
     loaded = opened(linkage, agree)
     report = simulation_report(engine, formats)

@@ -9,8 +9,8 @@ from typing import Annotated
 
 import typer
 
+from sevenbar.commands import options
 from sevenbar.commands.given import agreed
-from sevenbar.commands.options import Agree
 from sevenbar.description.files import toml_text
 from sevenbar.errors import MissingExtraError, RequestError
 
@@ -31,7 +31,7 @@ def studio(
     open_browser: Annotated[
         bool, typer.Option("--open/--no-open", help="Whether to open the page in the browser.")
     ] = True,
-    agree: Agree = None,
+    agree: options.Agree = None,
 ) -> None:
     """Shape a linkage in the browser and see it move (extra 'studio'); Ctrl+C ends it."""
     text, error_taken = toml_text(linkage), agreed(agree)

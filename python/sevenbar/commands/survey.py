@@ -8,21 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, command_line, deliver
-from sevenbar.commands.design_options import (
-    FunctionX,
-    MotionType,
-    OutDesigns,
-    Pairs,
-    TimeRatio,
-    Transmission,
-    checked_designs,
-    refuse_degrees_twice,
-)
 from sevenbar.commands.given import angle, angles, numbers
-from sevenbar.commands.options import Force, Json, Mixed, Scheduler, Threads, count_option, number_option
 from sevenbar.commands.progress import progress_bar
-from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError
 from sevenbar.text.ranges import split_named
 
@@ -48,8 +37,8 @@ def survey(
         typer.Argument(metavar="[TASK]", help="A design task (TOML) for any loop, in place of an RSSR."),
     ] = None,
     y: Annotated[str | None, typer.Option(help="The function of x, as in 'x^2'; sind takes degrees.")] = None,
-    x: FunctionX = "0:1",
-    table: Pairs = None,
+    x: options.FunctionX = "0:1",
+    table: options.Pairs = None,
     input_range: Annotated[
         str,
         typer.Option(help="Readings of the input; without --y any one-way motion between the ends will do."),
@@ -58,7 +47,7 @@ def survey(
     swing: Annotated[
         str | None, typer.Option(help="In place of readings: the angle through which the rocker swings.")
     ] = None,
-    time_ratio: TimeRatio = 1.0,
+    time_ratio: options.TimeRatio = 1.0,
     bounds: Annotated[
         list[str] | None,
         typer.Option(
@@ -69,32 +58,36 @@ def survey(
     ] = None,
     count: Annotated[
         int | None,
-        count_option("--count", "How many linkages are drawn, as in 1e8: 1e6 by default, 1e5 of a task."),
+        options.count_option(
+            "--count", "How many linkages are drawn, as in 1e8: 1e6 by default, 1e5 of a task."
+        ),
     ] = None,
     tolerance: Annotated[str, typer.Option(help="Greatest error of one that does what is wanted.")] = "1deg",
-    transmission: Transmission = "30deg",
+    transmission: options.Transmission = "30deg",
     ball_angle: Annotated[
         str, typer.Option(help="Furthest that a ball may turn from its best seat; 180deg for any.")
     ] = "180deg",
-    motion_type: MotionType = None,
-    ratio: Annotated[float, number_option("--ratio", "10", "Longest length over shortest link.")] = 20.0,
+    motion_type: options.MotionType = None,
+    ratio: Annotated[
+        float, options.number_option("--ratio", "10", "Longest length over shortest link.")
+    ] = 20.0,
     rank: Annotated[
         str, typer.Option(help="What the best are best in: error, transmission, ball angle.")
     ] = "error",
     designs: Annotated[int, typer.Option(help="How many designs are shown and written.")] = 10,
     seed: Annotated[int, typer.Option(help="Seed of the sequence.")] = 0,
-    out: OutDesigns = None,
+    out: options.OutDesigns = None,
     journal: Annotated[
         Path | None, typer.Option(help="Folder that keeps every finished part, for surveys of minutes.")
     ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the parts that the journal has.")
     ] = False,
-    mixed: Mixed = False,
-    threads: Threads = None,
-    scheduler: Scheduler = None,
-    force: Force = False,
-    json: Json = False,
+    mixed: options.Mixed = False,
+    threads: options.Threads = None,
+    scheduler: options.Scheduler = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Judge millions of RSSRs, or linkages of a task; the best are polished and checked (extra 'design')."""
     from sevenbar.design.survey import LoopSurvey, SurveyTask, SwingWish, Travel
@@ -103,13 +96,11 @@ def survey(
     from sevenbar.design.task.file.reader import task_file
     from sevenbar.design.task.report import task_report
 
-    checked_designs(designs, 100)
+    options.checked_designs(designs, 100)
     if resume and journal is None:
         raise RequestError("--resume: of no folder; give --journal too, as in '--journal survey'")
-    kept = "nothing is written"
-    if journal is not None:
-        kept = f"the finished parts are kept in {journal}, --resume goes on with them"
-    options: dict[str, Any] = {
+    kept = options.kept_in(journal)
+    settings: dict[str, Any] = {
         "out": journal, "resume": resume, "mixed": mixed, "threads": threads, "scheduler": scheduler,
     }  # fmt: skip
     if file is not None:
@@ -122,9 +113,15 @@ def survey(
         of_loops = task_report(read.task, designs, command_line(), ())
         check_out(of_loops, out, force=force)
         with progress_bar(f"surveying linkages of {read.name}", rate=True, kept=kept) as progress:
-            found = carried_out(loops, designs_wanted=designs, **options, progress=progress)
-        deliver(of_task(found, read.name, read.source), of_loops, out, json=json, force=force)
-        end_of_work(found.unfinished)
+            found = carried_out(loops, designs_wanted=designs, **settings, progress=progress)
+        deliver(
+            of_task(found, read.name, read.source),
+            of_loops,
+            out,
+            json=json,
+            force=force,
+            unfinished=found.unfinished,
+        )
         return
     if [y is not None, table is not None, swing is not None].count(True) > 1:
         raise RequestError("--y: a function, a --table or a --swing; give one of the three")
@@ -151,9 +148,8 @@ def survey(
     report = survey_report(designs, command_line())
     check_out(report, out, force=force)
     with progress_bar(f"surveying RSSRs for {want.title}", rate=True, kept=kept) as progress:
-        found = carried_out(task, **options, progress=progress)
-    deliver(found, report, out, json=json, force=force)
-    end_of_work(found.unfinished)
+        found = carried_out(task, **settings, progress=progress)
+    deliver(found, report, out, json=json, force=force, unfinished=found.unfinished)
 
 
 def _readings(y: str | None, x: str, table: Path | None, input_range: str, output_range: str) -> Wish:
@@ -164,7 +160,7 @@ def _readings(y: str | None, x: str, table: Path | None, input_range: str, outpu
     if table is not None:
         return wish_of_pairs(*read_pairs(table), title=f"pairs of {table.name}")
     assert y is not None
-    refuse_degrees_twice(y, x)
+    options.refuse_degrees_twice(y, x)
     return wish_of_function(
         function_of(y),
         numbers("--x", x),

@@ -12,20 +12,9 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from sevenbar.commands import options
 from sevenbar.commands.deliver import deliver
 from sevenbar.commands.given import drafted
-from sevenbar.commands.options import (
-    Agree,
-    Follow,
-    InputJoint,
-    Json,
-    Mixed,
-    OutputJoint,
-    Scheduler,
-    Source,
-    Threads,
-    words,
-)
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report
@@ -40,7 +29,7 @@ MOST_WITHOUT_FOLDER = 100_000
 
 
 def sweep(
-    linkage: Source,
+    linkage: options.Source,
     over: Annotated[
         list[str] | None,
         typer.Option(
@@ -58,21 +47,21 @@ def sweep(
         typer.Option(help="What is measured: motion_type, limits, swing ..; may be repeated."),
     ] = None,
     samples: Annotated[int, typer.Option(help="Inputs in a full turn.")] = 90,
-    input_joint: InputJoint = None,
-    output: OutputJoint = None,
+    input_joint: options.InputJoint = None,
+    output: options.OutputJoint = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for sweep.json and the parts, Parquet files.")
     ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the parts that the folder has.")
     ] = False,
-    mixed: Mixed = False,
-    threads: Threads = None,
-    scheduler: Scheduler = None,
+    mixed: options.Mixed = False,
+    threads: options.Threads = None,
+    scheduler: options.Scheduler = None,
     part_size: Annotated[int | None, typer.Option(help="Linkages of a part.")] = None,
-    follow: Follow = None,
-    agree: Agree = None,
-    json: Json = False,
+    follow: options.Follow = None,
+    agree: options.Agree = None,
+    json: options.Json = False,
 ) -> None:
     """Measure many linkages: dimensions over grids, lists and samples, into Parquet (extra 'sweep')."""
     from sevenbar.sweep.axes import axis_from_text
@@ -90,9 +79,9 @@ def sweep(
             raise RequestError(f"{option}: of no folder; give --out too, as in '--out sweep'")
     draft = drafted(linkage, agree)
     plan = SweepPlan.of(
-        draft, axes, words(measure or list(USUAL), "--measure"), method=method, count=count, seed=seed,
-        samples=samples, input=input_joint, output=output, part_size=part_size,
-        follow=words(follow, "--follow"),
+        draft, axes, options.words(measure or list(USUAL), "--measure"), method=method, count=count,
+        seed=seed, samples=samples, input=input_joint, output=output, part_size=part_size,
+        follow=options.words(follow, "--follow"),
     )  # fmt: skip
     total = plan.space.count
     if out is None and total > MOST_WITHOUT_FOLDER:
@@ -101,10 +90,7 @@ def sweep(
             f"(at most {MOST_WITHOUT_FOLDER}), so give a folder, as in --out sweep"
         )
     finished = out is not None and is_finished(out)
-    kept = "nothing is written"
-    if out is not None:
-        kept = f"the finished parts are kept in {out}, --resume goes on with them"
-    with progress_bar(f"sweep of {draft.linkage.name}", rate=True, kept=kept) as progress:
+    with progress_bar(f"sweep of {draft.linkage.name}", rate=True, kept=options.kept_in(out)) as progress:
         found = carry_out(
             plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
             progress=progress,

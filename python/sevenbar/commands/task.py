@@ -8,12 +8,10 @@ from typing import Annotated, Any
 import typer
 import typer.core
 
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, command_line, deliver
-from sevenbar.commands.design_options import Designs, Seed, Starts
 from sevenbar.commands.given import agreed
-from sevenbar.commands.options import Agree, Figures, Force, Json, figure_formats, words
 from sevenbar.commands.progress import progress_bar
-from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError
 
 
@@ -29,24 +27,24 @@ class TaskGroup(typer.core.TyperGroup):
 
 def task(
     file: Annotated[Path, typer.Argument(metavar="TASK", help="A task file (TOML).")],
-    designs: Designs = 5,
-    starts: Starts = 256,
-    seed: Seed = 0,
+    designs: options.Designs = 5,
+    starts: options.Starts = 256,
+    seed: options.Seed = 0,
     pareto: Annotated[
         str | None,
         typer.Option(help="Two wants to trade off, by number or measure, as in 1,2 or 1,peak_torque."),
     ] = None,
     points: Annotated[int, typer.Option(help="With --pareto: how many points of the front.")] = 9,
-    agree: Agree = None,
+    agree: options.Agree = None,
     out: Annotated[
         Path | None,
         typer.Option(
             help="Folder for design_1.toml, .., figures of wants and musts, summary.csv and summary.json."
         ),
     ] = None,
-    figures: Figures = None,
-    force: Force = False,
-    json: Json = False,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """Designs of any loop for what a task file asks (extra 'design')."""
     from sevenbar.design.exact.starts import exact_starts
@@ -57,14 +55,14 @@ def task(
     from sevenbar.design.task.search import designed
 
     need_scipy()
-    formats = figure_formats(figures, out)
+    formats = options.figure_formats(figures, out)
     check_counts(designs, starts, seed)
     read = task_file(file, agree=agreed(agree))
     if pareto is not None:
         from sevenbar.design.task.front import pareto as front_of
         from sevenbar.design.task.front_report import FrontFound, front_report
 
-        pair = words([pareto])
+        pair = options.words([pareto])
         if len(pair) != 2:
             raise RequestError(f"--pareto: '{pareto}' are not two wants; give two, as in 1,2")
         report = front_report(read.task, points, command_line(), formats)
@@ -72,8 +70,7 @@ def task(
         with progress_bar(f"searching a front of {read.name}") as progress:
             front = front_of(read.task, *pair, points=points, starts=starts, seed=seed, progress=progress)
         whole = FrontFound(front.found, read.name, read.source, starts, seed, front=front)
-        deliver(whole, report, out, json=json, force=force)
-        end_of_work(front.unfinished)
+        deliver(whole, report, out, json=json, force=force, unfinished=front.unfinished)
         return
     single = task_report(read.task, designs, command_line(), formats)
     check_out(single, out, force=force)
@@ -84,5 +81,4 @@ def task(
         # a search that found nothing says why
         search.required(starts)
     found = TaskDesigns(search, read.name, read.source, starts, seed)
-    deliver(found, single, out, json=json, force=force)
-    end_of_work(found.unfinished)
+    deliver(found, single, out, json=json, force=force, unfinished=found.unfinished)

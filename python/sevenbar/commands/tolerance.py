@@ -7,28 +7,16 @@ from typing import Annotated
 
 import typer
 
+from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import opened
-from sevenbar.commands.options import (
-    Agree,
-    Figures,
-    Follow,
-    Force,
-    InputJoint,
-    Json,
-    OutputJoint,
-    Source,
-    Speed,
-    figure_formats,
-    words,
-)
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.amounts import amount_in
 
 
 def tolerance(
-    linkage: Source,
+    linkage: options.Source,
     given: Annotated[
         list[str] | None,
         typer.Option(
@@ -60,21 +48,21 @@ def tolerance(
     quantity: Annotated[
         str, typer.Option(help="What of it: position, velocity or acceleration.")
     ] = "position",
-    input_joint: InputJoint = None,
-    output: OutputJoint = None,
-    speed: Speed = None,
-    follow: Follow = None,
-    agree: Agree = None,
+    input_joint: options.InputJoint = None,
+    output: options.OutputJoint = None,
+    speed: options.Speed = None,
+    follow: options.Follow = None,
+    agree: options.Agree = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for tolerance.json, dimensions.csv, deviation.csv and the figures."),
     ] = None,
-    figures: Figures = None,
-    force: Force = False,
-    json: Json = False,
+    figures: options.Figures = None,
+    force: options.Force = False,
+    json: options.Json = False,
 ) -> None:
     """What tolerances of the dimensions do to the motion: which matters most, worst case, Monte Carlo."""
-    formats = figure_formats(figures, out)
+    formats = options.figure_formats(figures, out)
     if given and wanted is not None:
         raise RequestError("--wanted: --tolerance is given too; give one of them")
     loaded = opened(linkage, agree)
@@ -96,7 +84,7 @@ def tolerance(
         input=input_joint,
         output=output,
         speed=speed,
-        follow=words(follow, "--follow"),
+        follow=options.words(follow, "--follow"),
     )
     if wanted is not None:
         error = _wanted(wanted, found.outputs[found.place(of, quantity)].unit)

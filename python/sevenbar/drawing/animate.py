@@ -206,7 +206,7 @@ def _pictures(
     space = ViewAxes(own_axes(figure, seen), seen)
     prepare(space, frame, (0.0, foot, part, height - top - foot))
     scene.stage(space, frame, ends)
-    curve, keys_height = figure.add_axes((0.1, 0.1, 0.1, 0.1)), 0.0
+    curve = figure.add_axes((0.1, 0.1, 0.1, 0.1))
     drawn = [line for line in output_curves.passes(motion) if line.circuit is circuit]
     output_curves.panel(curve, motion, drawn, "angle", "input")
     keys = output_curves.curve_keys([curve], drawn)
@@ -221,11 +221,9 @@ def _pictures(
     named = frame.places[np.linspace(0, len(frame.places) - 1, NAMED_POSES).astype(int)]
     known = named[~np.isnan(named[:, : frame.solid]).any(axis=(1, 2))]
     page = Bbox.from_extents(0, foot * DPI, part * DPI, (height - top) * DPI)
-    names = (
-        write_names(space, frame, known, range(len(frame.names)), within=page, distances=NEAR)
-        if len(known)
-        else []
-    )
+    names = []
+    if len(known):
+        names = write_names(space, frame, known, within=page, distances=NEAR)
     (cursor,) = curve.plot([], [], color=INK, lw=1.0 * stroke(), zorder=5)
     (dot,) = curve.plot([], [], "o", color=INK, ms=7 * stroke(), zorder=6)
     place = room[0] / width, (bottom + tall + 0.7 * em) / height

@@ -11,20 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from sevenbar.arrays import whole_number
+from sevenbar.drawing import page
 from sevenbar.drawing.figure import given_axes, new_figure, slides, title_of, title_text
 from sevenbar.drawing.lettering import write_names
 from sevenbar.drawing.names import short, shown_name
-from sevenbar.drawing.page import (
-    EDGE,
-    own_axes,
-    page_of_one,
-    picture_height,
-    prepare,
-    prepare_given,
-    set_height,
-    write_legend,
-    write_title,
-)
 from sevenbar.drawing.scene import bars, frame_box, keys, put, shown_places, stage
 from sevenbar.drawing.skeleton import Skeleton, one_pose, skeleton, skeleton_of
 from sevenbar.drawing.space import ViewAxes
@@ -85,29 +75,25 @@ def configuration(
         if ax is not None:
             (ax,) = given_axes(ax, 1, "or none")
         seen = view_of(view, motion.linkage, shown_places(frame), ax)
-        if ax is None:
-            page = page_size(style, figsize, (WIDTH, WIDTH), wide=False)
-            which = say(
-                "circuit {number}, {count} position{s}",
-                number=chosen.index, count=len(poses), s="s" * (len(poses) > 1),
-            )  # fmt: skip
-            heading = title_text(title, f"{title_of(motion)}\n{which}")
-            shown_keys = keys(frame, ends, seen) if legend else []
-            box = frame_box(frame, seen)
-            figure, space, room = page_of_one(page, seen, box, heading, shown_keys, fixed=figsize is not None)
-            prepare(space, frame, room)
-            _, foot, _, tall = room
-            within: Bbox | None = Bbox.from_extents(
-                0, foot * figure.dpi, figure.bbox.width, (foot + tall) * figure.dpi
-            )
-        else:
-            figure, space, within = ax.figure.figure, ViewAxes(ax, seen), None
-            prepare_given(space, frame)
+        which = say(
+            "circuit {number}, {count} position{s}",
+            number=chosen.index, count=len(poses), s="s" * (len(poses) > 1),
+        )  # fmt: skip
+        heading = title_text(title, f"{title_of(motion)}\n{which}")
+        figure, space, room = page.page_of_one(
+            ax, seen, frame_box(frame, seen), heading, keys(frame, ends, seen) if legend else [],
+            usual=WIDTH, figsize=figsize, style=style,
+        )  # fmt: skip
+        page.prepare(space, frame, room)
+        within = None
+        if room is not None:
+            low, high = room[1] * figure.dpi, (room[1] + room[3]) * figure.dpi
+            within = Bbox.from_extents(0, low, figure.bbox.width, high)
         stage(space, frame, ends)
         for pose in poses[1:]:
             put(space, bars(space, frame, ends, ghost=True), pose)
         put(space, bars(space, frame, ends), poses[0])
-        write_names(space, frame, poses[0][None], range(len(frame.names)), within=within)
+        write_names(space, frame, poses[0][None], within=within)
     return figure
 
 
@@ -161,7 +147,7 @@ def modes_overview(
         if given:
             for axes, index in zip(given, range(count), strict=True):
                 space = ViewAxes(axes, seen)
-                prepare_given(space, poses)
+                page.prepare(space, poses, None)
                 _draw_mode(space, poses, index, ends, 1.0)
                 if title:
                     axes.set_title(say("mode {number}", number=index))
@@ -174,25 +160,24 @@ def modes_overview(
             linkage=short(linkage.heading, 60), count=count, s="s" * (count > 1),
             joint=shown_name(ends[0]), value=value,
         )  # fmt: skip
-        top = write_title(figure, title_text(title, named))
-        foot = write_legend(figure, keys(one_pose(poses, 0), ends, seen) if legend else [])
+        top = page.write_title(figure, title_text(title, named))
+        foot = page.write_legend(figure, keys(one_pose(poses, 0), ends, seen) if legend else [])
         width, height = figure.get_size_inches()
         heading = 0.026 * letters()
         if figsize is None:
-            height = top + foot + down * (heading + picture_height(seen, box, width / across))
-            set_height(figure, height)
+            height = top + foot + down * (heading + page.picture_height(seen, box, width / across))
+            page.set_height(figure, height)
         side = width / across, (height - top - foot) / down
         for index in range(count):
             row, column = divmod(index, across)
             left, bottom = column * side[0], height - top - (row + 1) * side[1]
             # the last row in the middle
             left += (across - min(across, count - row * across)) * side[0] / 2
-            space = ViewAxes(own_axes(figure, seen), seen)
-            prepare(space, poses, (left, bottom, side[0], side[1] - heading))
+            space = ViewAxes(page.own_axes(figure, seen), seen)
+            page.prepare(space, poses, (left, bottom, side[0], side[1] - heading))
             _draw_mode(space, poses, index, ends, SMALLER if across > 2 else 0.85)
-            space.heading(
-                say("mode {number}", number=index), left + side[0] / 2, bottom + side[1] - heading + EDGE / 2
-            )
+            middle, above = left + side[0] / 2, bottom + side[1] - heading + page.EDGE / 2
+            space.heading(say("mode {number}", number=index), middle, above)
     return figure
 
 
@@ -200,4 +185,4 @@ def _draw_mode(space: ViewAxes, poses: Skeleton, index: int, ends: tuple[str, st
     one = one_pose(poses, index)
     stage(space, one, ends, around=poses)
     put(space, bars(space, one, ends, scale=scale), one.pose(0))
-    write_names(space, one, one.places, range(len(one.names)))
+    write_names(space, one, one.places)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -19,6 +20,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.names import quantity_label, short, shown_name
 from sevenbar.drawing.space import measuring
 from sevenbar.drawing.style import STYLE, page_size
+from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.errors import OutputError, RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
@@ -57,6 +59,28 @@ def shown_value(motion: Motion, column: str, values: Any) -> Any:
 def input_label(motion: Motion) -> str:
     """What is written along an axis of the input."""
     return column_label(motion, motion.input)
+
+
+def gridded(axes: Axes) -> None:
+    """Draws a grid behind the curves of a panel."""
+    axes.grid(True)
+    axes.set_axisbelow(True)
+
+
+def input_scale(axes: Axes, inputs: Floats, most: int, *, turns: bool) -> None:
+    """Limits and ticks of the input below a panel; `inputs` (n,) as drawn, angles at most so many."""
+    # a law may leave every range, or have one row
+    known = inputs[np.isfinite(inputs)]
+    if known.size and np.ptp(known) > 0:
+        axes.set_xlim(known.min(), known.max())
+    if turns:
+        axes.xaxis.set_major_locator(DegreeLocator(most))
+
+
+def input_axis(axes: Axes, motion: Motion, inputs: Floats, most: int) -> None:
+    """`input_scale` of a motion, and its label."""
+    input_scale(axes, inputs, most, turns=not slides(motion, motion.input))
+    axes.set_xlabel(input_label(motion))
 
 
 def column_label(motion: Motion, column: str) -> str:
@@ -203,10 +227,9 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
 
 def _without_date(file: Path) -> None:
     """Takes the date and the name of a file aside out of an EPS, so that one figure gives the same bytes."""
-    lines = file.read_bytes().split(b"\n")
-    file.write_bytes(
-        b"\n".join(line for line in lines if not line.startswith((b"%%CreationDate", b"%%Title")))
-    )
+    dated = (b"%%CreationDate", b"%%Title")
+    lines = [line for line in file.read_bytes().split(b"\n") if not line.startswith(dated)]
+    file.write_bytes(b"\n".join(lines))
 
 
 @contextmanager

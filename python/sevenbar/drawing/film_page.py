@@ -11,11 +11,11 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import column_label, shown_value
-from sevenbar.drawing.names import quantity_label
-from sevenbar.drawing.output_curves import QUANTITIES, passes
+from sevenbar.drawing.names import named_together
+from sevenbar.drawing.output_curves import QUANTITIES, output_label, passes
 from sevenbar.drawing.scene import SAME, link_colours, paths
 from sevenbar.drawing.skeleton import Skeleton
-from sevenbar.drawing.style import CIRCUIT_COLOURS, GROUND, PATH
+from sevenbar.drawing.style import GROUND, PATH, circuit_colour
 from sevenbar.drawing.view import Projection
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
@@ -82,15 +82,16 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
         if word not in hidden and not (word == "axis" and joint in riding)
     ]
     traces = [
-        {
-            "colour": colour,
-            "thin": colour == PATH,
-            "at": _plain((frame.places[:, place] - centre) / size),
-        }
+        {"colour": colour, "thin": colour == PATH, "at": _plain((frame.places[:, place] - centre) / size)}
         for place, colour in paths(frame, ends)
         if place not in frame.far and np.nanmax(np.ptp(frame.places[:, place], axis=0)) > SAME * size
     ]
-    points = {place: colour for place, colour in paths(frame, ends) if place in frame.points}
+    points = [
+        {"at": place, "colour": colour}
+        for place, colour in paths(frame, ends)
+        if place in frame.points and place not in frame.far
+    ]
+    named = named_together(frame.names, frame.places, SAME * frame.span, frame.far)
     sphere = frame.sphere
     return {
         "poses": _plain((poses - centre) / size),
@@ -100,10 +101,8 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
         ],
         "marks": marks,
         "stays": [list(stay) for stay in frame.stays if stay[1] not in frame.far],
-        "points": [
-            {"at": place, "colour": colour} for place, colour in points.items() if place not in frame.far
-        ],
-        "names": _names(frame),
+        "points": points,
+        "names": [{"at": place, "text": ", ".join(names)} for place, names in named.items()],
         "paths": traces,
         "joints": list(frame.joints),
         "sphere": None
@@ -114,34 +113,12 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
     }
 
 
-def _names(frame: Skeleton) -> list[dict[str, Any]]:
-    """The names of places; those that are always together are one."""
-    named: dict[int, list[str]] = {}
-    for place, name in enumerate(frame.names):
-        if not name or place in frame.far:
-            continue
-        near = (
-            k
-            for k in named
-            if np.nanmax(np.abs(frame.places[:, k] - frame.places[:, place])) < SAME * frame.span
-        )
-        own = named.setdefault(next(near, place), [])
-        own += [name] * (name not in own)
-    return [{"at": place, "text": ", ".join(names)} for place, names in named.items()]
-
-
 def _curves(motion: Motion, circuit: Circuit, rows: Floats) -> list[dict[str, Any]]:
     """The output's curves over the input, and where the film is on them in each picture."""
     own = [line for line in passes(motion) if line.circuit is circuit]
     path = walk(circuit)
-    length = motion.linkage.length_unit
     made = []
     for order, quantity in enumerate(QUANTITIES):
-        suffix = ("", "/s", "/s²")[order]
-        if circuit.output_turns:
-            label = quantity_label(motion.output, quantity, f"rad{suffix}" if order else "deg")
-        else:
-            label = quantity_label(motion.output, "position" if not order else quantity, f"{length}{suffix}")
         lines = [{"x": _plain(line.input), "y": _plain(getattr(line, quantity))} for line in own]
         values = np.full(len(path.time), np.nan)
         for line, part in zip(own, path.passes, strict=True):
@@ -149,14 +126,14 @@ def _curves(motion: Motion, circuit: Circuit, rows: Floats) -> list[dict[str, An
         count = np.arange(len(path.time))
         made.append(
             {
-                "name": label,
+                "name": output_label(motion, quantity, motion.linkage.length_unit),
                 "lines": lines,
                 "turns": bool(circuit.output_turns and not order),
                 "across": column_label(motion, motion.input),
                 "acrossTurns": bool(circuit.input_turns),
                 "x": _plain(np.interp(rows, count, shown_value(motion, motion.input, path.input))),
                 "y": _plain(np.interp(rows, count, values)),
-                "colour": CIRCUIT_COLOURS[circuit.index % len(CIRCUIT_COLOURS)],
+                "colour": circuit_colour(circuit.index),
                 "cut": bool(order and circuit.turns_back),
             }
         )

@@ -84,8 +84,7 @@ def torque(
             mark_peak(panels[0], forces, found.peak_torque.input, found.peak_torque.value, forces.unit, WHOLE)
             if count > 1:
                 mark_peak(panels[1], forces, found.peak_power.input, found.peak_power.value, "W", OTHER)
-                if found.braking_power is not None:
-                    low = found.braking_power
+                if (low := found.braking_power) is not None:
                     mark_peak(panels[1], forces, low.input, low.value, "W", OTHER)
     return page.figure
 
@@ -151,11 +150,8 @@ def reactions(
 
 def drawn_bearings(forces: Forces, joints: Sequence[str] | None = None) -> list[Reaction]:
     """The joints whose force square to the axis is determined: those of a polar picture."""
-    return [
-        reaction
-        for reaction in chosen_reactions(forces, joints)
-        if reaction.determinate[3:5].all() and reaction.kind != "S"
-    ]
+    found = chosen_reactions(forces, joints)
+    return [one for one in found if one.determinate[3:5].all() and one.kind != "S"]
 
 
 def bearings(
@@ -217,15 +213,9 @@ def shaking(
         down = math.ceil((len(views) + 1) / across)
         usual = (7.2, 3.1 * down + 0.6) if views else (6.4, 3.6)
         page = panels_of(
-            len(views) + 1,
-            ax,
-            "one for each view and one for the size",
-            usual,
-            across=across,
-            figsize=figsize,
-            style=style,
-            sharex=False,
-        )
+            len(views) + 1, ax, "one for each view and one for the size", usual,
+            across=across, figsize=figsize, style=style, sharex=False,
+        )  # fmt: skip
         panels = page.axes
         reach = reach_of(force, forces)
         for axes, (i, j) in zip(panels, views, strict=False):
@@ -277,11 +267,7 @@ def energies(
 
 #: The figures of forces by their names.
 KINDS: dict[str, Callable[..., Figure]] = {
-    "torque": torque,
-    "reactions": reactions,
-    "bearings": bearings,
-    "shaking": shaking,
-    "energies": energies,
+    draw.__name__: draw for draw in (torque, reactions, bearings, shaking, energies)
 }
 
 

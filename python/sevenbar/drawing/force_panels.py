@@ -12,10 +12,10 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.figure import gridded, input_scale
 from sevenbar.drawing.names import quantity_label, short, shown_name
 from sevenbar.drawing.panels import Panels, panels_across, panels_of
 from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, QUIET, letters, stroke
-from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.result import Forces, Reaction
 from sevenbar.text.words import say
@@ -70,8 +70,7 @@ def curve(
     zero: bool = True,
 ) -> None:
     """A quantity over the input, each pass for itself; a growth without bound is cut."""
-    axes.grid(True)
-    axes.set_axisbelow(True)
+    gridded(axes)
     across, along = drawn_inputs(forces), closed(forces, values)
     branch = closed(forces, forces.branch.astype(float))
     if zero:
@@ -131,13 +130,8 @@ def digits(value: float) -> str:
 
 def input_axis(panels: Sequence[Axes], forces: Forces, *, most: int = 9) -> None:
     """Limits, ticks and label of the input below panels."""
-    across = drawn_inputs(forces)
-    known = across[np.isfinite(across)]
     for axes in panels:
-        if known.size and np.ptp(known) > 0:
-            axes.set_xlim(known.min(), known.max())
-        if not forces.slides:
-            axes.xaxis.set_major_locator(DegreeLocator(most))
+        input_scale(axes, drawn_inputs(forces), most, turns=not forces.slides)
     kind, unit = ("position", forces.length_unit) if forces.slides else ("angle", "deg")
     panels[-1].set_xlabel(quantity_label(forces.driver, kind, unit))
 
@@ -184,8 +178,7 @@ def reach_of(force: Floats, forces: Forces) -> float:
 
 def hodograph(axes: Axes, forces: Forces, pair: Floats, colour: str, *, reach: float | None = None) -> None:
     """The path of the tip of a force (n, 2) in a plane, both axes of one scale."""
-    axes.grid(True)
-    axes.set_axisbelow(True)
+    gridded(axes)
     path = closed(forces, pair)
     axes.axhline(0, color=QUIET, lw=0.7 * stroke())
     axes.axvline(0, color=QUIET, lw=0.7 * stroke())

@@ -13,9 +13,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import column_label, input_label, shown_value, slides, title_of
+from sevenbar.drawing.figure import column_label, gridded, input_axis, shown_value, slides, title_of
 from sevenbar.drawing.panels import panels_across, panels_of
-from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, stroke, styled
+from sevenbar.drawing.style import circuit_colour, line_style, stroke, styled
 from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -69,8 +69,7 @@ def joints(
 
 def _panel(axes: Axes, motion: Motion, name: str) -> None:
     """The curves of one column of all circuits."""
-    axes.grid(True)
-    axes.set_axisbelow(True)
+    gridded(axes)
     turns = not slides(motion, name)
     natural = NATURAL_ANGLE if turns else motion.circuits[0].size
     index = motion.linkage.columns.index(name)
@@ -92,20 +91,12 @@ def _panel(axes: Axes, motion: Motion, name: str) -> None:
     else:
         axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     widen(axes.yaxis, natural)
-    inputs = np.concatenate([across for _, across, _ in lines])
-    # a law may leave every range, or have one row
-    inputs = inputs[np.isfinite(inputs)]
-    if inputs.size and np.ptp(inputs) > 0:
-        axes.set_xlim(inputs.min(), inputs.max())
-    if not slides(motion, motion.input):
-        axes.xaxis.set_major_locator(DegreeLocator(6))
-    axes.set_xlabel(input_label(motion))
+    input_axis(axes, motion, np.concatenate([across for _, across, _ in lines]), 6)
     axes.set_ylabel(column_label(motion, name))
 
 
 def _look(circuit: Circuit, above: int) -> dict[str, Any]:
     """The line of a circuit with so many others on it."""
-    count = len(CIRCUIT_COLOURS)
-    dashes = LINE_STYLES[(circuit.index + circuit.index // count) % len(LINE_STYLES)]
+    dashes = "-" if above else line_style(circuit.index)
     width = (1.5 + WIDER * min(above, 3)) * stroke()
-    return {"color": CIRCUIT_COLOURS[circuit.index % count], "ls": "-" if above else dashes, "lw": width}
+    return {"color": circuit_colour(circuit.index), "ls": dashes, "lw": width}

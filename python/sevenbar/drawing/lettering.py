@@ -11,6 +11,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Bbox
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.names import named_together
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.space import ViewAxes, measuring
 from sevenbar.drawing.style import letters
@@ -29,12 +30,11 @@ def write_names(
     space: ViewAxes,
     frame: Skeleton,
     poses: Floats,
-    places: Sequence[int],
     *,
     within: Bbox | None = None,
     distances: Sequence[float] = DISTANCES,
 ) -> list[tuple[Any, int]]:
-    """Writes the names of places, where they are in the first of poses (m, k, 3); returns texts and places.
+    """Writes the names of a frame, where they are in the first of poses (m, k, 3); returns texts and places.
 
     Each name keeps its offset in all poses, one of `distances` [points], chosen so that it is clear in most.
     `within` is the part of the page [pixels] to stay in, that of the axes where none is given.
@@ -50,7 +50,9 @@ def write_names(
     taken: list[Floats] = [np.tile(box.get_points().ravel(), (len(poses), 1)) for box in space.taken]
     turns = np.linspace(0, math.tau, DIRECTIONS, endpoint=False)
     ways = np.stack([np.cos(turns), np.sin(turns)], axis=1)
-    for place, names in _shared(frame, seen, places, space.point).items():
+    lost = {int(place) for place in np.flatnonzero(np.isnan(seen[0]).any(axis=1))}
+    named = named_together(frame.names, seen, TOGETHER * space.point, lost | frame.far)
+    for place, names in named.items():
         size = letters() + 1.5
         halo = [withStroke(linewidth=2.2, foreground="white")]
         text = space.word(
@@ -72,18 +74,6 @@ def write_names(
         made.append((text, place))
         space.taken.append(Bbox.from_extents(*taken[-1][0]))
     return made
-
-
-def _shared(frame: Skeleton, seen: Floats, places: Sequence[int], point: float) -> dict[int, list[str]]:
-    """The names at each place; those of places that are together in all poses are one."""
-    named: dict[int, list[str]] = {}
-    for i in (place for place in places if frame.names[place] and place not in frame.far):
-        if np.isnan(seen[0, i]).any():
-            continue
-        near = [k for k in named if np.nanmax(np.abs(seen[:, k] - seen[:, i])) < TOGETHER * point]
-        own = named.setdefault(near[0] if near else i, [])
-        own += [frame.names[i]] * (frame.names[i] not in own)
-    return named
 
 
 def _cost(middle: Floats, half: Floats, lines: Floats, taken: Sequence[Floats], inside: Bbox) -> float:

@@ -13,9 +13,9 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import (
     circuits_text,
     given_axes,
-    input_label,
+    gridded,
+    input_axis,
     shown_value,
-    slides,
     title_of,
     title_text,
 )
@@ -23,8 +23,8 @@ from sevenbar.drawing.page import page_of_one, prepare_box
 from sevenbar.drawing.panels import coinciding, panels_of
 from sevenbar.drawing.scene import bars, put, shown_places, stage
 from sevenbar.drawing.skeleton import skeleton
-from sevenbar.drawing.space import ViewAxes, box_round
-from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, page_size, stroke, styled
+from sevenbar.drawing.space import box_round
+from sevenbar.drawing.style import LINE_STYLES, QUIET, circuit_colour, stroke, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.drawing.view import Asked, view_of
 from sevenbar.errors import RequestError
@@ -78,24 +78,20 @@ def transmission(
     with styled(style):
         page = panels_of(1, ax, "or none", (6.4, 3.6), figsize=figsize, style=style)
         (axes,) = page.axes
-        axes.grid(True)
-        axes.set_axisbelow(True)
+        gridded(axes)
         for place, group in enumerate(coinciding(lines, _alike)):
             numbers, (first, across, values) = [number for number, *_ in group], group[0]
-            colour = CIRCUIT_COLOURS[first % len(CIRCUIT_COLOURS)]
-            look: dict[str, Any] = {"color": colour, "ls": LINE_STYLES[place % len(LINE_STYLES)]}
+            look: dict[str, Any] = {
+                "color": circuit_colour(first),
+                "ls": LINE_STYLES[place % len(LINE_STYLES)],
+            }
             axes.plot(across, values, lw=1.6 * stroke(), label=circuits_text(numbers), **look)
         axes.axhline(
             RECOMMENDED, color=QUIET, lw=0.9 * stroke(), ls=":", label=say("{angle:g}°", angle=RECOMMENDED)
         )
-        ends = np.concatenate([across for _, across, _ in lines])
-        if np.ptp(ends) > 0:
-            axes.set_xlim(ends.min(), ends.max())
+        input_axis(axes, motion, np.concatenate([across for _, across, _ in lines]), 9)
         axes.set_ylim(0, 90)
         axes.yaxis.set_major_locator(DegreeLocator(7))
-        if not slides(motion, motion.input):
-            axes.xaxis.set_major_locator(DegreeLocator(9))
-        axes.set_xlabel(input_label(motion))
         axes.set_ylabel(say("transmission angle [deg]"))
         page.finish(title, title_of(motion), axes.get_legend_handles_labels()[0] if legend else [])
     return page.figure
@@ -172,20 +168,14 @@ def axodes(
         ]
         if seen.planar:
             handles[2] = Line2D([], [], color="black", ls="", marker="o", ms=5, label=say("instant centre"))
-        if given is None:
-            page = page_size(style, figsize, (6.4, 6.4), wide=False)
-            which = (
-                say("centrodes of link {link}, circuit {number}", link=link, number=chosen.index)
-                if seen.planar
-                else say("axodes of link {link}, circuit {number}", link=link, number=chosen.index)
-            )
-            heading = title_text(title, f"{title_of(motion)}\n{which}")
-            shown = handles if legend else []
-            figure, space, room = page_of_one(page, seen, box, heading, shown, fixed=figsize is not None)
-            prepare_box(space, box, motion.linkage.length_unit, room)
-        else:
-            figure, space = given.figure.figure, ViewAxes(given, seen)
-            prepare_box(space, box, motion.linkage.length_unit, None)
+        which = say("axodes of link {link}, circuit {number}", link=link, number=chosen.index)
+        if seen.planar:
+            which = say("centrodes of link {link}, circuit {number}", link=link, number=chosen.index)
+        heading = title_text(title, f"{title_of(motion)}\n{which}")
+        figure, space, room = page_of_one(
+            given, seen, box, heading, handles if legend else [], usual=6.4, figsize=figsize, style=style
+        )
+        prepare_box(space, box, motion.linkage.length_unit, room)
         stage(space, frame, ends)
         put(space, bars(space, frame, ends, scale=0.8), frame.pose(first))
         for line, colour in zip(lines, (FIXED, MOVING), strict=True):
@@ -203,10 +193,8 @@ def axodes(
 
 def _frame_of(circuit: Circuit, link: int, row: int) -> tuple[Floats, Floats]:
     """Turn (3, 3) and place (3,) that lead from a link's coordinates to the report frame on a row."""
-    ends = [
-        circuit.point(link, at).position[row]
-        for at in ((0.0, 0.0, 0.0), (1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0))
-    ]
+    places = ((0.0, 0.0, 0.0), (1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0))
+    ends = [circuit.point(link, at).position[row] for at in places]
     return np.stack([end - ends[0] for end in ends[1:]], axis=1), ends[0]
 
 

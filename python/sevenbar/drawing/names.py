@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Container, Sequence
 
+import numpy as np
+
+from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.units import LENGTHS, length_sizes
 from sevenbar.text.words import say
@@ -44,6 +48,22 @@ def joint_label(linkage: Loop, joint: int) -> str:
     if linkage.kind == "RSSR" and joint in RSSR_LETTERS and linkage.form == "rssr":
         return RSSR_LETTERS[joint]
     return str(joint + 1) if _UNNAMED.fullmatch(name) else short(name, 24)
+
+
+def named_together(
+    names: Sequence[str], places: Floats, near: float, without: Container[int] = ()
+) -> dict[int, list[str]]:
+    """The names of places (n, k, ..) in n poses by the first place of each group, `without` some places.
+
+    Places that are nearer to it than `near` in all poses are of its group; a name is there once.
+    """
+    named: dict[int, list[str]] = {}
+    for place, name in enumerate(names):
+        if name and place not in without:
+            same = (k for k in named if np.nanmax(np.abs(places[:, k] - places[:, place])) < near)
+            own = named.setdefault(next(same, place), [])
+            own += [name] * (name not in own)
+    return named
 
 
 def quantity_label(name: str, quantity: str, unit: str) -> str:

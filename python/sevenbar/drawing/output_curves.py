@@ -16,6 +16,7 @@ from matplotlib.ticker import MaxNLocator
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import (
     circuits_text,
+    gridded,
     input_label,
     note,
     range_drawn,
@@ -25,7 +26,7 @@ from sevenbar.drawing.figure import (
 )
 from sevenbar.drawing.names import handy_unit, quantity_label
 from sevenbar.drawing.panels import coinciding, panels_of
-from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, stroke, styled
+from sevenbar.drawing.style import QUIET, circuit_colour, line_style, stroke, styled
 from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
 from sevenbar.errors import check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -75,30 +76,20 @@ def passes(motion: Motion) -> list[DrawnPass]:
             shown_value(motion, motion.output, path.output), NATURAL_ANGLE if circuit.output_turns else size
         )
         for branch, part in enumerate(path.passes):
-            label = say("circuit {number}", number=circuit.index)
-            way = ""
+            label, way = say("circuit {number}", number=circuit.index), ""
+            inputs = path.input[part]
             if len(path.passes) > 1:
                 way = say("branch {number}", number=branch)
-                if motion.law is None:
-                    rise = path.input[part][-1] - path.input[part][0]
-                    way = (
-                        say("{branch}: input rising", branch=way)
-                        if rise > 0
-                        else say("{branch}: input falling", branch=way)
-                    )
+                if motion.law is None and inputs[-1] > inputs[0]:
+                    way = say("{branch}: input rising", branch=way)
+                elif motion.law is None:
+                    way = say("{branch}: input falling", branch=way)
                 label = say("{circuits}, {branch}", circuits=label, branch=way)
-            colour = CIRCUIT_COLOURS[circuit.index % len(CIRCUIT_COLOURS)]
-            style = {
-                "color": colour,
-                "ls": LINE_STYLES[(len(made) + len(made) // 8) % len(LINE_STYLES)],
-                "lw": 1.6 * stroke(),
-            }
-            places = shown_value(motion, motion.input, path.input[part]), path.time[part]
-            made.append(
-                DrawnPass(
-                    circuit, label, way, style, *places, angle[part], velocity[part], acceleration[part]
-                )
-            )
+            colour, dashes = circuit_colour(circuit.index), line_style(len(made))
+            style = {"color": colour, "ls": dashes, "lw": 1.6 * stroke()}
+            places = shown_value(motion, motion.input, inputs), path.time[part]
+            rates = velocity[part], acceleration[part]
+            made.append(DrawnPass(circuit, label, way, style, *places, angle[part], *rates))
     return made
 
 
@@ -124,7 +115,7 @@ def drawn_once(motion: Motion, drawn: Sequence[DrawnPass]) -> list[DrawnPass]:
             label = say("{circuits}, {branch}", circuits=label, branch=group[0].way)
         style = group[0].style
         if len(groups) < len(drawn):
-            style = style | {"ls": LINE_STYLES[(place + place // 8) % len(LINE_STYLES)]}
+            style = style | {"ls": line_style(place)}
         made.append(replace(group[0], label=label, style=style))
     return made
 
@@ -162,22 +153,16 @@ def curves(
     for quantity in quantities:
         check_word("quantities", quantity, QUANTITIES, "drawn")
     turning = motion.law is None and all(circuit.goes_round for circuit in motion)
-    columns = (
-        [against] if against != "both" else ["input"] if turning or ax is not None else ["input", "time"]
-    )
+    columns = [against]
+    if against == "both":
+        columns = ["input"] if turning or ax is not None else ["input", "time"]
     with styled(style):
         drawn = drawn_once(motion, passes(motion))
+        usual = 6.4 if len(columns) == 1 else 9.8, 0.6 + 2.4 * len(quantities)
         page = panels_of(
-            len(quantities) * len(columns),
-            ax,
-            "one for each of the quantities",
-            (6.4 if len(columns) == 1 else 9.8, 0.6 + 2.4 * len(quantities)),
-            across=len(columns),
-            figsize=figsize,
-            style=style,
-            sharex="col",
-            sharey="row",
-        )
+            len(quantities) * len(columns), ax, "one for each of the quantities", usual,
+            across=len(columns), figsize=figsize, style=style, sharex="col", sharey="row",
+        )  # fmt: skip
         grid = np.array(page.axes, dtype=object).reshape(-1, len(columns))
         cut = False
         for row, quantity in enumerate(quantities):
@@ -197,8 +182,7 @@ def curves(
 
 def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str, over: str) -> None:
     """Draws one quantity of the passes over "input" or "time", with the input limits and the extremes."""
-    axes.grid(True)
-    axes.set_axisbelow(True)
+    gridded(axes)
     factor, length = _unit_of(motion, drawn, quantity)
     for line in drawn:
         axes.plot(getattr(line, over), factor * getattr(line, quantity), label=line.label, **line.style)
@@ -207,10 +191,8 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
         extremes: Extremes | None = getattr(circuit, quantity)
         if own and extremes is not None:
             sides = ((extremes.lowest, extremes.lowest_at), (extremes.highest, extremes.highest_at))
-            values = [
-                shown_value(motion, motion.output, value) if quantity == "angle" else value
-                for value, _ in sides
-            ]
+            values = np.array([value for value, _ in sides])
+            values = shown_value(motion, motion.output, values) if quantity == "angle" else values
             if np.ptp(np.concatenate([getattr(line, quantity) for line in own])) == 0:
                 continue
             period = math.inf if slides(motion, motion.input) else 360.0
@@ -220,7 +202,7 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
                 for v, (_, at) in zip(values, sides, strict=True)
             ]
             ring = {"ms": 4.5 * stroke(), "mfc": "white", "mec": own[0].style["color"], "mew": 1.2 * stroke()}
-            axes.plot(places, factor * np.array(values), "o", ls="", label=say(EXTREME), zorder=4, **ring)
+            axes.plot(places, factor * values, "o", ls="", label=say(EXTREME), zorder=4, **ring)
     ends = np.concatenate([getattr(line, over) for line in drawn])
     room = 0.02 * np.ptp(ends) if over == "input" and motion.limits.size else 0.0
     if np.ptp(ends) > 0:
@@ -228,10 +210,8 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
     if over == "input":
         if not slides(motion, motion.input):
             axes.xaxis.set_major_locator(DegreeLocator(9))
-        for inputs, dashes, name in (
-            (motion.limits, "--", LIMIT),
-            (motion.change_point_inputs, ":", CHANGE_POINT),
-        ):
+        marked = (motion.limits, "--", LIMIT), (motion.change_point_inputs, ":", CHANGE_POINT)
+        for inputs, dashes, name in marked:
             for place in inputs_between(motion, inputs, ends.min(), ends.max()):
                 axes.axvline(place, color=QUIET, lw=1.0 * stroke(), ls=dashes, zorder=1, label=say(name))
     if quantity == "angle" and not slides(motion, motion.output):
@@ -240,7 +220,7 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
         axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
     widen(axes.yaxis, factor * _natural(motion, quantity))
     axes.set_xlabel(input_label(motion) if over == "input" else say("time [s]"))
-    axes.set_ylabel(_label(motion, quantity, length))
+    axes.set_ylabel(output_label(motion, quantity, length))
 
 
 def _natural(motion: Motion, quantity: str) -> float:
@@ -262,7 +242,8 @@ def _unit_of(motion: Motion, drawn: Sequence[DrawnPass], quantity: str) -> tuple
     return handy_unit(unit, max((abs(end) for ends in ranges if ends for end in ends), default=0.0))
 
 
-def _label(motion: Motion, quantity: str, length: str) -> str:
+def output_label(motion: Motion, quantity: str, length: str) -> str:
+    """What is written along an axis of the output: its name, the quantity, the unit."""
     suffix = {"angle": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
     if slides(motion, motion.output):
         word = "position" if quantity == "angle" else quantity

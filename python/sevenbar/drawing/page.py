@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing import style
 from sevenbar.drawing.figure import headline, new_figure
 from sevenbar.drawing.scene import draw_box, frame_box
 from sevenbar.drawing.skeleton import Skeleton
@@ -25,6 +24,7 @@ from sevenbar.drawing.space import (
     seen_size,
     set_limits,
 )
+from sevenbar.drawing.style import letters, page_size
 from sevenbar.drawing.view import Projection
 
 #: Room [inch], for letters of 9 points: round the page; at the sides of a picture, for numbers and names of
@@ -45,7 +45,7 @@ Rectangle = tuple[float, float, float, float]
 
 def margins(view: Projection) -> Floats:
     """Room [inch] that the labels round a picture need: left, right, below, above."""
-    return np.array(FLAT_MARGINS if view.flat else SOLID_MARGINS) * style.letters() / 9.0
+    return np.array(FLAT_MARGINS if view.flat else SOLID_MARGINS) * letters() / 9.0
 
 
 def write_title(figure: Figure, text: str) -> float:
@@ -63,7 +63,7 @@ def write_title_over_panels(figure: Figure, text: str) -> tuple[float, float]:
     Both are shares of the page's height.
     """
     height = float(figure.get_figheight())
-    line = LINE * (style.letters() + 1) / 72
+    line = LINE * (letters() + 1) / 72
     below = height - write_title(figure, text)
     return (below - line) / height, (below - line - PANEL_ROOM) / height
 
@@ -79,26 +79,20 @@ def write_legend(
         return EDGE / 2
     page = figure.get_size_inches()
     place = ((page[0] / 2 if centre is None else centre) / page[0], EDGE / 2 / page[1])
-    made = None
+    made: Legend | None = None
     for columns in range(min(len(handles), MOST_COLUMNS), 0, -1):
         # no more columns than equal lines need
         lines = -(-len(handles) // columns)
-        made = legend_of(figure, handles, -(-len(handles) // lines), place)
+        made = figure.legend(
+            handles=list(handles), loc="lower center", bbox_to_anchor=place, ncols=-(-len(handles) // lines),
+            frameon=False, borderaxespad=0.0, columnspacing=1.4,
+        )  # fmt: skip
         size = made.get_window_extent(measuring(figure))
         if columns == 1 or size.width / figure.dpi <= (width or page[0]) - EDGE:
             break
         made.remove()
     assert made is not None
     return float(size.height / figure.dpi) + 1.5 * EDGE
-
-
-def legend_of(figure: Any, handles: Sequence[Any], columns: int, place: tuple[float, float]) -> Legend:
-    """A legend without frame whose lower middle is at a place of the page [shares]."""
-    made: Legend = figure.legend(
-        handles=list(handles), loc="lower center", bbox_to_anchor=place, ncols=columns, frameon=False,
-        borderaxespad=0.0, columnspacing=1.4,
-    )  # fmt: skip
-    return made
 
 
 def set_height(figure: Figure, height: float) -> None:
@@ -113,7 +107,7 @@ def set_height(figure: Figure, height: float) -> None:
 
 
 def own_axes(figure: Figure, view: Projection) -> Any:
-    """New axes on a figure, of the kind that a view needs; `fit_picture` places them."""
+    """New axes on a figure, of the kind that a view needs; `prepare` places them."""
     if view.flat:
         return figure.add_axes((0.1, 0.1, 0.8, 0.8))
     return figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
@@ -128,28 +122,33 @@ def picture_height(view: Projection, box: Box, width: float) -> float:
 
 
 def page_of_one(
-    size: tuple[float, float],
+    ax: Any,
     view: Projection,
     box: Box,
     heading: str,
     handles: Sequence[Any],
     *,
-    fixed: bool,
-) -> tuple[Figure, ViewAxes, Rectangle]:
-    """A page [inch] with a title, one picture and a legend; its axes, and the room of the picture.
+    usual: float,
+    figsize: Sequence[float] | None,
+    style: str | None,
+) -> tuple[Figure, ViewAxes, Rectangle | None]:
+    """A page with a title, one picture and a legend; its axes, and the room of the picture.
 
-    Unless its height is `fixed`, it is what the picture needs.
+    It has the `usual` width [inch] unless `figsize` or the style gives another, and without `figsize` the
+    height that the picture needs. The caller's `ax` are on a page of their own, and have no room.
     """
-    figure = new_figure(*size)
+    if ax is not None:
+        return ax.figure.figure, ViewAxes(ax, view), None
+    figure = new_figure(*page_size(style, figsize, (usual, usual), wide=False))
     top, foot = write_title(figure, heading), write_legend(figure, handles)
     width, height = figure.get_size_inches()
-    if not fixed:
+    if figsize is None:
         height = top + foot + picture_height(view, box, width)
         set_height(figure, height)
     return figure, ViewAxes(own_axes(figure, view), view), (0.0, foot, width, height - top - foot)
 
 
-def fit_picture(space: ViewAxes, box: Box, room: Rectangle) -> None:
+def _fit_picture(space: ViewAxes, box: Box, room: Rectangle) -> None:
     """Places axes on the page so that their box and its labels fill a rectangle."""
     left, right, below, above = margins(space.view)
     if space.view.flat:
@@ -160,35 +159,33 @@ def fit_picture(space: ViewAxes, box: Box, room: Rectangle) -> None:
     space.axes.apply_aspect()
 
 
-def prepare(space: ViewAxes, frame: Skeleton, room: Rectangle) -> None:
-    """Limits, place on the page and frame of the axes, for all that a picture of a frame shows."""
-    box = frame_box(frame, space.view)
-    set_limits(space, box)
-    fit_picture(space, box, room)
-    draw_box(space, frame, box)
+def prepare(space: ViewAxes, frame: Skeleton, room: Rectangle | None) -> None:
+    """Limits, place on the page and frame of the axes, for all that a picture of a frame shows.
 
-
-def prepare_given(space: ViewAxes, frame: Skeleton) -> None:
-    """The same for the caller's axes, which keep their place."""
+    The caller's axes, which keep their place, have no `room`.
+    """
     box = frame_box(frame, space.view)
-    set_limits(space, box)
-    fill_given(space, box)
+    _place(space, box, room)
     draw_box(space, frame, box)
 
 
 def prepare_box(
     space: ViewAxes, box: Box, unit: str, room: Rectangle | None, *, letters: str = "xyz"
 ) -> None:
-    """The same for a box of any places; the caller's axes, which keep their place, have no `room`."""
-    set_limits(space, box)
-    if room is None:
-        fill_given(space, box)
-    else:
-        fit_picture(space, box, room)
+    """The same for a box of any places."""
+    _place(space, box, room)
     draw_frame(space, box, unit, letters=letters)
 
 
-def fill_given(space: ViewAxes, box: Box) -> None:
+def _place(space: ViewAxes, box: Box, room: Rectangle | None) -> None:
+    set_limits(space, box)
+    if room is None:
+        _fill_given(space, box)
+    else:
+        _fit_picture(space, box, room)
+
+
+def _fill_given(space: ViewAxes, box: Box) -> None:
     """Makes the box as large as the caller's axes can hold with its labels."""
     axes, view = space.axes, space.view
     axes.apply_aspect()

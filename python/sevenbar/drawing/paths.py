@@ -10,29 +10,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sevenbar.arrays import Floats, Integers
+from sevenbar.drawing import page
 from sevenbar.drawing.figure import (
     CUT,
     given_axes,
-    input_label,
+    gridded,
+    input_axis,
     new_figure,
     note,
     shown_value,
-    slides,
     title_of,
     title_text,
 )
 from sevenbar.drawing.names import amount_text, handy_unit, short
-from sevenbar.drawing.page import (
-    EDGE,
-    Rectangle,
-    fill_given,
-    fit_picture,
-    own_axes,
-    picture_height,
-    set_height,
-    write_title,
-)
-from sevenbar.drawing.space import ViewAxes, box_round, draw_frame, set_limits
+from sevenbar.drawing.space import ViewAxes, box_round
 from sevenbar.drawing.style import (
     ACCELERATION,
     INK,
@@ -43,7 +34,6 @@ from sevenbar.drawing.style import (
     stroke,
     styled,
 )
-from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.drawing.view import Asked, Projection, view_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -107,9 +97,8 @@ def point_path(
     arrows = {what: arrows_along(places, getattr(trace, what)[rows]) for what in ("velocity", "acceleration")}
     # both views to one scale
     seen = np.concatenate([places, *(places[own] + ways for own, ways, _ in arrows.values())])
-    letter = {
-        part: f"({letter}) " if len(parts) > 1 else "" for part, letter in zip(parts, "abc", strict=False)
-    }
+    marks = [f"({letter}) " if len(parts) > 1 else "" for letter in "abc"]
+    letter = dict(zip(parts, marks, strict=False))
     pictures = [part for part in parts if part != "speed"]
     with styled(style):
         given = None if ax is None else given_axes(ax, len(parts), "one for each part")
@@ -123,9 +112,7 @@ def point_path(
                     _speed(axes, motion, chosen, trace)
                 else:
                     space = ViewAxes(axes, seen_as)
-                    set_limits(space, box)
-                    fill_given(space, box)
-                    draw_frame(space, box, unit)
+                    page.prepare_box(space, box, unit, None)
                     _arrows(space, places, arrows[part], part)
             return given[0].figure.figure  # type: ignore[no-any-return]
         wide = len(pictures) > 1
@@ -138,28 +125,26 @@ def point_path(
             number=chosen.index, driven=note(motion, False),
         )  # fmt: skip
         heading = f"{title_of(motion)}\n{which}"
-        top = write_title(figure, title_text(title, heading))
+        top = page.write_title(figure, title_text(title, heading))
         width, height = figure.get_size_inches()
         line = 0.024 * letters()
         below = PANEL * letters() / 9.0 if "speed" in parts else 0.0
         across = width / max(len(pictures), 1)
         if figsize is None:
-            height = top + below + (picture_height(seen_as, box, across) + line if pictures else 0.0)
-            set_height(figure, height)
+            height = top + below + (page.picture_height(seen_as, box, across) + line if pictures else 0.0)
+            page.set_height(figure, height)
         elif pictures:
             below = min(below, 0.35 * height)
         else:
             below = height - top
         for place, part in enumerate(pictures):
-            space = ViewAxes(own_axes(figure, seen_as), seen_as)
-            room: Rectangle = (place * across, below, across, height - top - line - below)
-            set_limits(space, box)
-            fit_picture(space, box, room)
-            draw_frame(space, box, unit)
+            space = ViewAxes(page.own_axes(figure, seen_as), seen_as)
+            room: page.Rectangle = (place * across, below, across, height - top - line - below)
+            page.prepare_box(space, box, unit, room)
             _arrows(space, places, arrows[part], part)
             greatest = _greatest(chosen, arrows[part][2], unit, part)
             words = letter[part] + say("{quantity}, {greatest}", quantity=say(part), greatest=greatest)
-            space.heading(words, room[0] + across / 2, height - top - line + EDGE / 4)
+            space.heading(words, room[0] + across / 2, height - top - line + page.EDGE / 4)
         if "speed" in parts:
             left, under = 0.075 * letters(), 0.052 * letters()
             room = (left, under, width - left - 0.2, below - under - line - 0.1)
@@ -203,8 +188,7 @@ def _arrows(space: ViewAxes, places: Floats, arrows: tuple[Integers, Floats, flo
 def _speed(axes: Axes, motion: Motion, circuit: Circuit, trace: Trace) -> None:
     """The speed of a point over the input."""
     path = walk(circuit)
-    axes.grid(True)
-    axes.set_axisbelow(True)
+    gridded(axes)
     across = shown_value(motion, motion.input, path.input)
     speed = np.linalg.norm(trace.velocity[path.rows], axis=1)
     bounded = speed[np.isfinite(speed)]
@@ -215,12 +199,8 @@ def _speed(axes: Axes, motion: Motion, circuit: Circuit, trace: Trace) -> None:
     for number, part in enumerate(path.passes):
         dashes = LINE_STYLES[number % len(LINE_STYLES)]
         axes.plot(across[part], factor * speed[part], color=VELOCITY, ls=dashes, lw=1.6 * stroke())
-    if np.nanmax(across) > np.nanmin(across):
-        axes.set_xlim(np.nanmin(across), np.nanmax(across))
-    if not slides(motion, motion.input):
-        axes.xaxis.set_major_locator(DegreeLocator(10))
+    input_axis(axes, motion, across, 10)
     axes.set_ylim(0, 1.08 * factor * (most or 1.0))
-    axes.set_xlabel(input_label(motion))
     axes.set_ylabel(say("speed [{unit}/s]", unit=unit))
 
 

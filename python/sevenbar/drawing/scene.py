@@ -176,9 +176,8 @@ def _draw_sphere(space: ViewAxes, sphere: DrawnSphere) -> None:
         high, wide = math.sin(math.radians(angle)), math.cos(math.radians(angle))
         rings.append(np.column_stack([wide * circle, np.full(PLACES, high)]))
     for angle in np.radians(np.arange(0, 180, MERIDIANS)):
-        rings.append(
-            np.column_stack([np.outer(circle[:, 0], [math.cos(angle), math.sin(angle)]), circle[:, 1]])
-        )
+        flat = np.outer(circle[:, 0], [math.cos(angle), math.sin(angle)])
+        rings.append(np.column_stack([flat, circle[:, 1]]))
     for ring in rings:
         ring[ring @ view.towards < 0] = np.nan
         space.line(sphere.centre + sphere.radius * ring, color="#dbe0e5", lw=0.6, zorder=0.6)
@@ -246,30 +245,24 @@ def bars(
         still = _ground_rails(frame)
         riding = {joint for joint, word, _ in frame.marks if word == "rail"}
         for joint, word, joined in frame.marks:
-            if (word == "rail" and joint in still) or (
-                word == "axis" and (joint in riding or space.view.planar)
-            ):
+            hidden = {"rail": joint in still, "axis": joint in riding or space.view.planar}
+            if hidden.get(word):
                 continue
             colour = joint_colours[joint]
             if space.view.flat and word in ("cylinder", "arm") and joint not in riding:
                 # seen along its axis, a cylinder is a ring
                 ring = {"ls": "", "marker": "o", "mfc": "white", "mew": 2.0, "ms": 8 * scale}
-                add((frame.joints[joint],), **ring, mec=_ring(colour), zorder=order + 1)
+                # dark where the joint has no colour of its own
+                edge = "#303030" if colour == JOINT else colour
+                add((frame.joints[joint],), **ring, mec=edge, zorder=order + 1)
             # a block is under the pin that it carries
             above = {"axis": 0.0, "rail": 0.0, "block": -0.5}.get(word, 1.0)
             add(joined, **_mark(word, colour, scale) | {"zorder": order + above})
     for place, colour in paths(frame, ends)[: len(frame.points)]:
         if place not in frame.far:
-            look_of = paler(colour, FAINT) if ghost else colour
-            add(
-                (place,), ls="", marker="o", color=look_of, ms=3.0 if ghost else 6.5 * scale, zorder=order + 2
-            )
+            shade, size = (paler(colour, FAINT), 3.0) if ghost else (colour, 6.5 * scale)
+            add((place,), ls="", marker="o", color=shade, ms=size, zorder=order + 2)
     return made
-
-
-def _ring(colour: str) -> str:
-    """The colour of a hinge's ring: that of its joint, dark where it has none of its own."""
-    return "#303030" if colour == JOINT else colour
 
 
 def _mark(word: str, colour: str, scale: float = 1.0) -> dict[str, Any]:
@@ -282,12 +275,7 @@ def _mark(word: str, colour: str, scale: float = 1.0) -> dict[str, Any]:
     return {
         "axis": {"color": "#404040", "lw": 0.9 * scale, "ls": (0, (7, 2, 1.5, 2))},
         "rail": {"color": "#5c6066", "lw": 1.6 * scale},
-        "cylinder": {
-            "color": colour,
-            "lw": 8 * scale,
-            "solid_capstyle": "butt",
-            "path_effects": outline(9.6),
-        },
+        "cylinder": block | {"lw": 8 * scale, "path_effects": outline(9.6)},
         "thread": {"color": "white", "lw": 7 * scale, "ls": (0, (0.22, 0.22)), "dash_capstyle": "butt"},
         "arm": {"color": colour, "lw": 5 * scale, "solid_capstyle": "butt"},
         "plate": {"color": colour, "lw": 1.6 * scale},
@@ -330,10 +318,8 @@ def keys(frame: Skeleton, ends: tuple[str, str], seen: Projection) -> list[Line2
             found.append(Line2D([], [], **look, label=say(kind.legend)))
     if frame.sphere is not None and not frame.sphere.free:
         radius = amount_text(frame.sphere.radius, frame.linkage.length_unit)
-        look = {"color": "#f4f6f8", "mec": "#b9c0c7", "ms": 8 * thick}
-        found.append(
-            Line2D([], [], ls="", marker="o", **look, label=say("sphere, radius {radius}", radius=radius))
-        )
+        look = {"color": "#f4f6f8", "mec": "#b9c0c7", "ms": 8 * thick, "ls": "", "marker": "o"}
+        found.append(Line2D([], [], **look, label=say("sphere, radius {radius}", radius=radius)))
     names = {}
     for place, colour in paths(frame, ends) if len(frame.places) > 1 else ():
         line = frame.places[:, place]
@@ -346,7 +332,6 @@ def keys(frame: Skeleton, ends: tuple[str, str], seen: Projection) -> list[Line2
                 name = say("paths of the joints")
             if place in frame.far:
                 name = say("{name} is far off, not shown", name=frame.names[place])
-            names[name] = Line2D(
-                [], [], color=colour, lw=(0.8 if colour == PATH else 1.4) * thick, label=name
-            )
+            width = (0.8 if colour == PATH else 1.4) * thick
+            names[name] = Line2D([], [], color=colour, lw=width, label=name)
     return found + list(names.values())

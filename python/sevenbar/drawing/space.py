@@ -80,12 +80,8 @@ class ViewAxes:
 
     def face(self, corners: Floats, colour: Any, edge: Any, width: float, order: float) -> None:
         """Draws a filled polygon (n, 3) that stays."""
-        look: dict[str, Any] = {
-            "facecolors": [colour],
-            "edgecolors": [edge],
-            "linewidths": width * stroke(),
-            "zorder": order,
-        }
+        look: dict[str, Any] = {"facecolors": [colour], "edgecolors": [edge], "zorder": order}
+        look["linewidths"] = width * stroke()
         if self.view.flat:
             self.axes.add_collection(PolyCollection([self.view.seen(corners)], **look))
         else:
@@ -171,9 +167,8 @@ def set_limits(space: ViewAxes, box: Box) -> None:
         axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
         for scale, size in zip((axes.xaxis, axes.yaxis), seen_size(view, box), strict=True):
-            scale.set_major_locator(
-                MaxNLocator(max(3, round(8 * size / max(high - low))), steps=[1, 2, 5, 10])
-            )
+            count = max(3, round(8 * size / max(high - low)))
+            scale.set_major_locator(MaxNLocator(count, steps=[1, 2, 5, 10]))
         return
     axes.computed_zorder = False
     axes.set_proj_type("ortho")
@@ -261,9 +256,8 @@ def draw_frame(space: ViewAxes, box: Box, unit: str, *, letters: str = "xyz") ->
         for value, text in zip(ticks[axis], _numbers(ticks[axis]), strict=True):
             place = np.array(edge[0])
             place[axis] = value
-            widest = max(
-                widest, _keep_word(space, text, place, out, OFF, renderer, size=style.letters() - 1.5)
-            )
+            reach = _keep_word(space, text, place, out, OFF, renderer, size=style.letters() - 1.5)
+            widest = max(widest, reach)
         place, away = np.mean(edge, axis=0), OFF + BEYOND + widest
         if axis == 2:
             # at its upper end, where no room is lost at its side

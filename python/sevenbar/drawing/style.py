@@ -42,6 +42,17 @@ INK, QUIET = "#303030", "#505050"
 #: Styles of lines one after the other.
 LINE_STYLES = ("-", (0, (5, 1.6)), (0, (5, 1.5, 1, 1.5)), (0, (1.2, 1.2)))
 
+
+def circuit_colour(index: int) -> str:
+    """The colour of a circuit by its number."""
+    return CIRCUIT_COLOURS[index % len(CIRCUIT_COLOURS)]
+
+
+def line_style(index: int) -> Any:
+    """The style of a line by its number; lines of one colour have others."""
+    return LINE_STYLES[(index + index // len(CIRCUIT_COLOURS)) % len(LINE_STYLES)]
+
+
 #: Names may hold dollars, so mathematical text is off; text in SVG stays text.
 STYLE: dict[Any, Any] = {
     "font.size": 9.0,

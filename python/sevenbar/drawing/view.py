@@ -111,9 +111,8 @@ def _view(asked: Asked, loop: Loop, places: Floats) -> Projection:
         named = _letter(plane.x), _letter(plane.y)
         known = all(named)
         letters = named if known else ("x in the plane", "y in the plane")
-        return Projection(
-            screen, np.zeros(3) if known else plane.origin, flat=True, letters=letters, planar=True
-        )
+        origin = np.zeros(3) if known else plane.origin
+        return Projection(screen, origin, flat=True, letters=letters, planar=True)
     if isinstance(chosen, str) and chosen in ALONG:
         right, up = ALONG[chosen]
         return Projection(np.eye(3)[[right, up]], np.zeros(3), flat=True, letters=(chosen[0], chosen[1]))

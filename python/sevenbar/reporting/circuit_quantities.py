@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from typing import Literal
 
 import numpy as np
@@ -23,18 +23,20 @@ MOST_DEAD_CENTRES = 8
 
 Texts = tuple[str, ...]
 
+#: The quantities that say what a circuit is; others have no role.
+Role = Literal["", "motion type", "input range", "output range"]
+
 
 @dataclass(frozen=True)
 class CircuitQuantity:
     """What is reported of each circuit: one text or more.
 
-    `name`, in English, is what it is called here, `words` and `unit` are its label in a list, `head` is above
-    its column. Two texts that are the `ends` of something are two lines of a list, min and max; others are
-    one line, joined by `between`. `only` keeps it to lists or to tables; a column may be left out where it
-    is `spare` and room is short.
+    `words` and `unit` are its label in a list, `head` is above its column. Two texts that are the `ends` of
+    something are two lines of a list, min and max; others are one line, joined by `between`. `only` keeps it
+    to lists or to tables; a column may be left out where it is `spare` and room is short. `role` is what it
+    is known by in other modules.
     """
 
-    name: str
     words: str
     head: str
     cells: Callable[[Circuit], Texts]
@@ -43,6 +45,7 @@ class CircuitQuantity:
     between: str = ", "
     only: Literal["", "list", "table"] = ""
     spare: bool = False
+    role: Role = ""
 
     def label(self, end: str = "") -> str:
         """What it is called in a list: its words, an end of it, its unit."""
@@ -185,95 +188,56 @@ def quantities_of(motion: Motion) -> list[CircuitQuantity]:
     # of a slide the unit is in the label: a line is not broken between a number and its unit
     in_label, out_label = ("" if unit == "rad" else f"[{unit}]" for unit in (texts.in_unit, texts.out_unit))
     in_head, out_head = (f"\n{label}" if label else "" for label in (in_label, out_label))
-    position = "angle" if texts.out_unit == "rad" else "position"
-    between = say(" to ")
     first_range, second_range = (say("range of {joint}", joint=joint) for joint in (first, second))
+    in_head = say("range of\n{joint}", joint=first) + in_head
+    out_head = say("range of\n{joint} @ {other}", joint=second, other=first) + out_head
+    in_range = partial(CircuitQuantity, first_range, unit=in_label, between=say(" to "), role="input range")
+    out_range = partial(
+        CircuitQuantity, second_range, unit=out_label, between=say(" to "), role="output range"
+    )
+    position = _of_output(texts, "angle" if texts.out_unit == "rad" else "position", texts.out_unit)
+    velocity = _of_output(texts, "velocity", f"{texts.out_unit}/s")
+    acceleration = _of_output(texts, "acceleration", f"{texts.out_unit}/s\u00b2")
+    transmission = say("transmission angle"), say("transmission\nangle @ {joint}", joint=first)
+    swing = say("swing of {joint}", joint=second)
     return [
-        CircuitQuantity("motion type", say("motion type"), say("motion type"), texts.motion_type),
-        CircuitQuantity(
-            f"range of {first}",
-            first_range,
-            say("range of\n{joint}", joint=first) + in_head,
-            texts.input_range,
-            in_label,
-            between=between,
-        ),
+        CircuitQuantity(say("motion type"), say("motion type"), texts.motion_type, role="motion type"),
+        in_range(in_head, texts.input_range),
         *_standstills(texts, "input", in_label),
-        CircuitQuantity(
-            f"range of {second}",
-            second_range,
-            "",
-            texts.output_range,
-            out_label,
-            between=between,
-            only="list",
-        ),
-        CircuitQuantity(
-            f"range of {second}",
-            second_range,
-            say("range of\n{joint} @ {other}", joint=second, other=first) + out_head,
-            texts.output_reach,
-            out_label,
-            between=between,
-            only="table",
-        ),
-        CircuitQuantity(
-            f"swing of {second}",
-            say("swing of {joint}", joint=second),
-            "",
-            texts.swing,
-            out_label,
-            only="list",
-        ),
+        out_range("", texts.output_range, only="list"),
+        out_range(out_head, texts.output_reach, only="table"),
+        CircuitQuantity(swing, "", texts.swing, out_label, only="list"),
         *_standstills(texts, "output", in_label),
-        CircuitQuantity("time ratio", say("time ratio"), say("time\nratio"), texts.time_ratio, spare=True),
-        CircuitQuantity(
-            "transmission angle",
-            say("transmission angle"),
-            say("transmission\nangle @ {joint}", joint=first),
-            texts.transmission,
-            ends=True,
-        ),
-        CircuitQuantity(
-            f"{second} {position}",
-            say("{joint} {quantity}", joint=second, quantity=say(position)),
-            "",
-            texts.output_values,
-            f"[{texts.out_unit}]",
-            ends=True,
-            only="list",
-        ),
-        _rate(texts, "velocity", f"[{texts.out_unit}/s]", texts.velocity),
-        _rate(texts, "acceleration", f"[{texts.out_unit}/s\u00b2]", texts.acceleration),
+        CircuitQuantity(say("time ratio"), say("time\nratio"), texts.time_ratio, spare=True),
+        CircuitQuantity(*transmission, texts.transmission, ends=True),
+        position(texts.output_values, only="list"),
+        velocity(texts.velocity),
+        acceleration(texts.acceleration),
         *_forces(texts),
     ]
 
 
-def _rate(texts: _Texts, name: str, unit: str, cells: Callable[[Circuit], Texts]) -> CircuitQuantity:
+def _of_output(texts: _Texts, name: str, unit: str) -> Callable[..., CircuitQuantity]:
+    """The least and the greatest value of something of the output, by its cells."""
     words = say("{joint} {quantity}", joint=texts.output, quantity=say(name))
-    head = f"{words}\n{unit} @ {texts.input}"
-    return CircuitQuantity(f"{texts.output} {name}", words, head, cells, unit, ends=True)
+    head = f"{words}\n[{unit}] @ {texts.input}"
+    return partial(CircuitQuantity, words, head, unit=f"[{unit}]", ends=True)
 
 
 def _standstills(texts: _Texts, end: Literal["input", "output"], unit: str) -> list[CircuitQuantity]:
     """The dead centres of an end; in a table those that are no ends of a range, which is its own column."""
     ranged = end == "output" or any(c.input_range is not None for c in texts.motion)
-    name = f"dead centres of the {end}"
     if end == "input":
         words, others = say("dead centres of the input"), say("other dead centres of the input")
         head, head_of_others = say("dead\ncentres of\nthe input"), say("other dead\ncentres of\nthe input")
     else:
         words, others = say("dead centres of the output"), say("other dead centres of the output")
         head, head_of_others = "", say("other dead\ncentres of\nthe output")
+    within = partial(_dead_centres, kind=end, show=texts.place, within=True)
+    shown = (others, head_of_others) if ranged else (words, head)
     return [
-        CircuitQuantity(name, words, "", lambda c: _dead_centres(c, end, texts.place), unit, only="list"),
-        CircuitQuantity(
-            f"other {name}" if ranged else name,
-            others if ranged else words,
-            head_of_others if ranged else head,
-            lambda c: _dead_centres(c, end, texts.place, within=True),
-            only="table",
-        ),
+        CircuitQuantity(words, "", partial(_dead_centres, kind=end, show=texts.place), unit, only="list"),
+        CircuitQuantity(*shown, within, only="table"),
     ]
 
 
@@ -283,13 +247,10 @@ def _forces(texts: _Texts) -> list[CircuitQuantity]:
         return []
     first, unit = texts.input, "N m" if texts.in_unit == "rad" else "N"
     peak = say("peak torque") if unit == "N m" else say("peak force")
-    reaction = say("greatest reaction")
-    words = say("{joint} {quantity}", joint=first, quantity=peak)
+    words, reaction = say("{joint} {quantity}", joint=first, quantity=peak), say("greatest reaction")
     return [
-        CircuitQuantity("peak torque", words, f"{peak}\n[{unit}] @ {first}", texts.peak_torque, f"[{unit}]"),
-        CircuitQuantity(
-            "greatest reaction", reaction, f"{reaction}\n[N] @ {first}", texts.reaction, "[N]", spare=True
-        ),
+        CircuitQuantity(words, f"{peak}\n[{unit}] @ {first}", texts.peak_torque, f"[{unit}]"),
+        CircuitQuantity(reaction, f"{reaction}\n[N] @ {first}", texts.reaction, "[N]", spare=True),
     ]
 
 
@@ -300,25 +261,21 @@ def way_round(circuit: Circuit) -> str:
     return turns_text(circuit.turns) if circuit.turns else say("to and fro")
 
 
-def cells_of(
-    motion: Motion, form: Literal["list", "table"], labels: tuple[str, ...] = ("",)
-) -> list[Reported]:
+def cells_of(motion: Motion, form: Literal["list", "table"], *, in_brief: bool = False) -> list[Reported]:
     """Each quantity with its cells, without those that say nothing, or that the facts hold already.
 
-    Only those whose names begin with one of the `labels`, since some take time.
+    `in_brief` those that have a role, since others take time.
     """
-    quantities = [
-        quantity
+    found = [
+        (quantity, [quantity.cells(circuit) for circuit in motion])
         for quantity in quantities_of(motion)
-        if quantity.only in ("", form) and quantity.name.startswith(labels)
+        if quantity.only in ("", form) and (quantity.role or not in_brief)
     ]
-    found = [(quantity, [quantity.cells(circuit) for circuit in motion]) for quantity in quantities]
-    full = f"range of {motion.input}"
     return [
         (quantity, cells)
         for quantity, cells in found
         if any(cell[0] not in nothing() for cell in cells)
-        and not (quantity.name == full and set(cells) == {(say("full turns"),)})
+        and not (quantity.role == "input range" and set(cells) == {(say("full turns"),)})
     ]
 
 
@@ -327,7 +284,7 @@ def nothing() -> Texts:
     return "-", say("none")
 
 
-def _dead_centres(circuit: Circuit, kind: str, show: Shown, *, within: bool = False) -> Texts:
+def _dead_centres(circuit: Circuit, *, kind: str, show: Shown, within: bool = False) -> Texts:
     """Where the input or the output stands still; `within`: the ends of its range left out."""
     found: Sequence[DeadCentre] = [d for d in circuit.dead_centres if d.kind == kind]
     if within:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -122,39 +122,29 @@ def _files(
     """What draws and writes each figure, by the file's name."""
     from sevenbar.drawing import plot
 
-    def made() -> Iterator[tuple[str, Callable[[], Figure]]]:
-        if "curves" in kinds:
-            yield "motion", lambda: plot.curves(motion, **look.of_curves)
-        if "joints" in kinds:
-            yield "joints", lambda: plot.joints(motion, **look.of_curves)
-        if "transmission" in kinds:
-            yield "transmission", lambda: plot.transmission(motion, **look.of_curves)
-        if "axodes" in kinds:
-            yield "axodes", lambda: plot.axodes(motion, circuit=circuit, **look.of_pictures)
-        if "configuration" in kinds:
-            yield "configuration", lambda: plot.configuration(motion, circuit, **look.of_pictures)
-        if "point" in kinds:
-            for name, point in points.items():
-                yield (
-                    f"path_{_file_name(name)}",
-                    partial(plot.point_path, motion, point, circuit, name=name, **look.of_pictures),
-                )
-        if "modes" in kinds:
-            chosen = chosen_circuit(motion, circuit)
-            # a limit is no place to show modes at: there two are one
-            ends = chosen.pass_range(0)
-            value = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
-            modes = motion.linkage.assembly_modes(value, input=motion.input, agree=motion.agree)
-            yield (
-                "modes",
-                lambda: plot.modes_overview(
-                    motion.linkage, modes, input=motion.input, output=motion.output, **look.of_pictures
-                ),
-            )
-
+    curves, pictures = look.of_curves, look.of_pictures
+    known: tuple[tuple[str, str, Callable[[], Figure]], ...] = (
+        ("curves", "motion", partial(plot.curves, motion, **curves)),
+        ("joints", "joints", partial(plot.joints, motion, **curves)),
+        ("transmission", "transmission", partial(plot.transmission, motion, **curves)),
+        ("axodes", "axodes", partial(plot.axodes, motion, circuit=circuit, **pictures)),
+        ("configuration", "configuration", partial(plot.configuration, motion, circuit, **pictures)),
+    )
+    draw = {name: one for kind, name, one in known if kind in kinds}
+    for name, point in points.items() if "point" in kinds else ():
+        path = partial(plot.point_path, motion, point, circuit, name=name, **pictures)
+        draw[f"path_{_file_name(name)}"] = path
+    if "modes" in kinds:
+        chosen = chosen_circuit(motion, circuit)
+        # a limit is no place to show modes at: there two are one
+        ends = chosen.pass_range(0)
+        value = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
+        modes = motion.linkage.assembly_modes(value, input=motion.input, agree=motion.agree)
+        held: dict[str, Any] = {"input": motion.input, "output": motion.output, **pictures}
+        draw["modes"] = partial(plot.modes_overview, motion.linkage, modes, **held)
     files: dict[str, Write[Motion]] = {}
-    for name, draw in made():
-        files |= figure_files(name, formats, partial(_drawn, draw))
+    for name, one in draw.items():
+        files |= figure_files(name, formats, partial(_drawn, one))
     return files
 
 

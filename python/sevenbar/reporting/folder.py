@@ -7,10 +7,10 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from io import StringIO
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -151,17 +151,11 @@ def write_parts(
 
 def write_csv(path: Path | StringIO, head: Sequence[str], lines: Iterable[Iterable[Any]]) -> None:
     """Writes a table as CSV; a value that does not exist, NaN or None, is an empty cell."""
-    if isinstance(path, Path):
-        with path.open("w", newline="", encoding="utf-8") as file:
-            _write_lines(file, head, lines)
-    else:
-        _write_lines(path, head, lines)
-
-
-def _write_lines(file: TextIO, head: Sequence[str], lines: Iterable[Iterable[Any]]) -> None:
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows(map(_cells, lines))
+    written = path.open("w", newline="", encoding="utf-8") if isinstance(path, Path) else nullcontext(path)
+    with written as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(head)
+        writer.writerows(map(_cells, lines))
 
 
 def _cells(line: Iterable[Any]) -> list[Any]:

@@ -12,53 +12,37 @@ from sevenbar.forces.counterweights import Balance, Counterweight
 from sevenbar.forces.result import COMPONENTS, Forces, Reaction
 from sevenbar.forces.shaking import Shaking
 from sevenbar.forces.sizing import Bearing, Burden, Sizing
-from sevenbar.reporting.force_words import (
-    LISTED,
-    OPEN,
-    ROUNDING,
-    Places,
-    acting_text,
-    check_text,
-    found_text,
-    greatest,
-    open_facts,
-    quantity,
-    spin_facts,
-)
+from sevenbar.reporting import force_words
 from sevenbar.reporting.shown import number, rows_text
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 
 @text_of.register(Forces)
 def _(forces: Forces) -> str:
-    place = Places(forces)
+    place = force_words.Places(forces)
     mass = sum(body.mass for body in forces.bodies.values())
-    facts = [("acts", acting_text(forces.loading)), ("mass", f"{mass:.6g} kg" if mass else "")]
+    facts = [("acts", force_words.acting_text(forces.loading)), ("mass", f"{mass:.6g} kg" if mass else "")]
     lost = int((~np.isfinite(forces.torque)).sum())
     peak = ""
     if lost < len(forces.torque):
         row = int(np.nanargmax(np.abs(forces.torque)))
         peak = f"{number(forces.torque[row])} {forces.unit} @ {place(float(forces.input[row]))}"
     dead = "dead-centre" in forces.status
-    facts.append(
-        (
-            f"input {quantity(forces)}",
-            f"no bound at dead centres of {forces.driver}" if dead else f"greatest of the rows {peak}",
-        )
-    )
+    bound = f"no bound at dead centres of {forces.driver}" if dead else f"greatest of the rows {peak}"
+    facts.append((f"input {force_words.quantity(forces)}", bound))
     if not forces.at_rest and not dead and lost < len(forces.torque):
         low, high = np.nanmin(forces.power), np.nanmax(forces.power)
         facts.append(("power", f"{number(float(low))} to {number(float(high))} W"))
     every = forces.reactions.values()
     scale = {
-        word: float(np.nanmax([greatest(getattr(r, word)) for r in every] + [0.0]))
+        word: float(np.nanmax([force_words.greatest(getattr(r, word)) for r in every] + [0.0]))
         for word in ("force", "moment")
     }
     for name, reaction in forces.reactions.items():
         facts.append((name, _of_joint(reaction, scale, bounded=not dead)))
-    facts += spin_facts(forces)
-    facts += [(label, said) for label, said in open_facts(forces) if label]
-    facts.append(("checks", check_text(forces)))
+    facts += force_words.spin_facts(forces)
+    facts += [(label, said) for label, said in force_words.open_facts(forces) if label]
+    facts.append(("checks", force_words.check_text(forces)))
     state = " at rest" if forces.at_rest else ""
     rows = rows_text(forces.status)
     return lines(f"Forces{state} of '{forces.heading}', driven by {forces.driver}: {rows}", facts)
@@ -71,8 +55,8 @@ def _of_joint(reaction: Reaction, scale: dict[str, float], *, bounded: bool) -> 
     if bounded:
         for word, unit, values in (("force", "N", reaction.force), ("moment", "N m", reaction.moment)):
             known = values[:, np.isfinite(values).any(axis=0)]
-            size = greatest(np.linalg.norm(known, axis=1)) if known.shape[1] else 0.0
-            if size > ROUNDING * scale[word]:
+            size = force_words.greatest(np.linalg.norm(known, axis=1)) if known.shape[1] else 0.0
+            if size > force_words.ROUNDING * scale[word]:
                 part = "" if known.shape[1] == 3 else " of what is known"
                 said.append(f"{word}{part} up to {number(size)} {unit}")
     return ", ".join(said + ([f"{' '.join(lost)} open"] if lost else []))
@@ -81,23 +65,18 @@ def _of_joint(reaction: Reaction, scale: dict[str, float], *, bounded: bool) -> 
 @text_of.register(Reaction)
 def _(reaction: Reaction) -> str:
     facts = []
-    for unit, values, names in (
-        ("N", reaction.force, COMPONENTS[3:]),
-        ("N m", reaction.moment, COMPONENTS[:3]),
-    ):
+    both = ("N", reaction.force, COMPONENTS[3:]), ("N m", reaction.moment, COMPONENTS[:3])
+    for unit, values, names in both:
         for name, own in zip(names, values.T, strict=True):
             known = own[np.isfinite(own)]
-            said = (
-                f"{number(float(known.min()))} to {number(float(known.max()))} {unit}" if known.size else OPEN
+            ends = (
+                f"{number(float(known.min()))} to {number(float(known.max()))} {unit}" if known.size else ""
             )
-            facts.append((name, said))
+            facts.append((name, ends or force_words.OPEN))
     if not reaction.determinate.all():
         facts.append(("", "what is open is not determined by equilibrium of rigid bodies"))
-    return lines(
-        f"Reaction in {reaction.joint}: {len(reaction.force)} rows, "
-        "in its own frame, of the link before on the link after",
-        facts,
-    )
+    rows = f"{len(reaction.force)} rows, in its own frame, of the link before on the link after"
+    return lines(f"Reaction in {reaction.joint}: {rows}", facts)
 
 
 @text_of.register(Sizing)
@@ -113,6 +92,9 @@ def _(found: Sizing) -> str:
         ]
         for part in ("force", "in_plane")
     )
+    flywheel = ""
+    if found.flywheel is not None:
+        flywheel = f"{number(found.flywheel)} kg m^2 for an unevenness of {found.unevenness:g}"
     return lines(
         "Sizing of a drive",
         [
@@ -121,15 +103,10 @@ def _(found: Sizing) -> str:
             ("peak power", f"{at(found.peak_power)} W"),
             ("braking power", at(found.braking_power) + " W" * (found.braking_power is not None)),
             ("fluctuation", f"{number(found.fluctuation)} J"),
-            (
-                "flywheel",
-                ""
-                if found.flywheel is None
-                else f"{number(found.flywheel)} kg m^2 for an unevenness of {found.unevenness:g}",
-            ),
+            ("flywheel", flywheel),
             ("peak forces", ", ".join(most)),
             *([("in the plane", ", ".join(in_plane))] if in_plane else []),
-            ("found", found_text(found)),
+            ("found", force_words.found_text(found)),
         ],
     )
 
@@ -137,37 +114,24 @@ def _(found: Sizing) -> str:
 @text_of.register(Bearing)
 def _(bearing: Bearing) -> str:
     facts = []
-    for part, unit in LISTED.items():
+    for part, unit in force_words.LISTED.items():
         burden: Burden = getattr(bearing, part)
-        said = OPEN
-        if part == "in_plane" and not math.isfinite(burden.peak.value):
-            continue
         if math.isfinite(burden.peak.value):
-            said = (
-                f"peak {number(burden.peak.value)} {unit} at {burden.peak.input:.6g}, "
-                f"cubic mean {number(burden.mean_cube)} {unit}"
-            )
-        facts.append((part.replace("_", " "), said))
+            peak = f"peak {number(burden.peak.value)} {unit} at {burden.peak.input:.6g}"
+            facts.append((part.replace("_", " "), f"{peak}, cubic mean {number(burden.mean_cube)} {unit}"))
+        elif part != "in_plane":
+            facts.append((part, force_words.OPEN))
     return lines("Loads of a bearing", facts)
 
 
 @text_of.register(Shaking)
 def _(found: Shaking) -> str:
-    return lines(
-        "Shaking",
-        [
-            (
-                "force",
-                f"peak {number(found.force.value)} N at {found.force.input:.6g}, "
-                f"rms {number(found.rms_force)} N",
-            ),
-            (
-                "moment",
-                f"peak {number(found.moment.value)} N m at {found.moment.input:.6g}, rms "
-                f"{number(found.rms_moment)} N m",
-            ),
-        ],
-    )
+    both = (("force", found.force, found.rms_force, "N"), ("moment", found.moment, found.rms_moment, "N m"))
+    facts = [
+        (word, f"peak {number(peak.value)} {unit} at {peak.input:.6g}, rms {number(rms)} {unit}")
+        for word, peak, rms, unit in both
+    ]
+    return lines("Shaking", facts)
 
 
 @text_of.register(Balance)
@@ -177,15 +141,10 @@ def _(found: Balance) -> str:
 
 def balance_facts(found: Balance) -> list[tuple[str, str]]:
     """The counterweights link by link, what they leave of the shaking, and how they were found."""
-    unit = "N"
     facts = [(f"link {one.link}", _weight(one, found.length_unit)) for one in found.counterweights]
-    after = found.after if found.after > ROUNDING * found.before else 0.0
-    facts.append(
-        (
-            "shaking",
-            f"{found.measure} {number(found.before)} {unit} before, {number(after)} {unit} after",
-        )
-    )
+    after = found.after if found.after > force_words.ROUNDING * found.before else 0.0
+    shaking = f"{found.measure} {number(found.before)} N before, {number(after)} N after"
+    facts.append(("shaking", shaking))
     facts.append(("found", f"{found.status}; {found.rank} of {found.unknowns} numbers act"))
     facts.append(("idle", "; ".join(found.idle)))
     return facts
@@ -194,7 +153,7 @@ def balance_facts(found: Balance) -> list[tuple[str, str]]:
 def _weight(one: Counterweight, unit: str) -> str:
     if not one.product:
         return "none"
-    way = ", ".join(f"{x if abs(x) > ROUNDING else 0.0:.4g}" for x in one.direction)
+    way = ", ".join(f"{x if abs(x) > force_words.ROUNDING else 0.0:.4g}" for x in one.direction)
     mass = "" if one.mass is None else f", {number(one.mass)} kg"
     return f"{number(one.product)} kg {unit} towards ({way}){mass}"
 

@@ -198,7 +198,10 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     if found is None:
         return [(what, no_peak(forces))]
     place = Places(forces)
-    rms, mean = f"{number(found.rms_torque)} {unit}", f"{_mean(found.mean_torque, found)} {unit}"
+    # a mean that is rounding is 0
+    average = found.mean_torque
+    average = 0.0 if abs(average) < 1e-12 * abs(found.peak_torque.value) else average
+    rms, mean = f"{number(found.rms_torque)} {unit}", f"{number(average)} {unit}"
     facts = [
         (what, say("peak {value}", value=place.at(found.peak_torque, unit))),
         ("", say("rms {rms}, mean {mean}", rms=rms, mean=mean)),
@@ -217,11 +220,9 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     energy = say(
         "fluctuates by {energy} J about a drive of constant {steady}: fastest at {fastest}, "
         "slowest at {slowest}",
-        energy=number(found.fluctuation),
-        steady=steady,
-        fastest=place(found.fastest),
+        energy=number(found.fluctuation), steady=steady, fastest=place(found.fastest),
         slowest=place(found.slowest),
-    )
+    )  # fmt: skip
     facts.append((say("energy"), energy))
     if found.flywheel is not None:
         inertia = number(found.flywheel)
@@ -241,11 +242,6 @@ def _mean_power(forces: Forces, found: Sizing) -> float:
     else:
         mean, most = float(shares_of(forces.time) @ forces.power), float(np.abs(forces.power).max())
     return 0.0 if abs(mean) < 1e-12 * most else mean
-
-
-def _mean(mean: float, found: Sizing) -> str:
-    """The mean torque, 0 where it is rounding."""
-    return number(0.0 if abs(mean) < 1e-12 * abs(found.peak_torque.value) else mean)
 
 
 def spin_facts(forces: Forces) -> list[tuple[str, str]]:
@@ -306,18 +302,12 @@ def unbounded_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str
         for name, reaction in forces.reactions.items()
         if reaction.determinate.any() and not _any_known(found.bearings[name])
     ]
-    if not lost:
-        return []
-    return [
-        (
-            say("no bound"),
-            say(
-                "forces in {joints} grow without bound at the change points, where a link in line with its "
-                "neighbour cannot drive it; the torque does not",
-                joints=", ".join(lost),
-            ),
-        )
-    ]
+    text = say(
+        "forces in {joints} grow without bound at the change points, where a link in line with its "
+        "neighbour cannot drive it; the torque does not",
+        joints=", ".join(lost),
+    )
+    return [(say("no bound"), text)] if lost else []
 
 
 def _any_known(bearing: Bearing) -> bool:
@@ -346,14 +336,11 @@ def shaking_facts(forces: Forces, found: Shaking | None) -> list[tuple[str, str]
     if found is None:
         return []
     place = Places(forces)
-    force, rms_force = place.at(found.force, "N"), f"{number(found.rms_force)} N"
-    moment, rms_moment = place.at(found.moment, "N m"), f"{number(found.rms_moment)} N m"
+    force = {"value": place.at(found.force, "N"), "rms": f"{number(found.rms_force)} N"}
+    moment = {"value": place.at(found.moment, "N m"), "rms": f"{number(found.rms_moment)} N m"}
     return [
-        (say("shaking force"), say("peak {value}, rms {rms}", value=force, rms=rms_force)),
-        (
-            say("moment"),
-            say("about the origin: peak {value}, rms {rms}", value=moment, rms=rms_moment),
-        ),
+        (say("shaking force"), say("peak {value}, rms {rms}", **force)),
+        (say("moment"), say("about the origin: peak {value}, rms {rms}", **moment)),
     ]
 
 

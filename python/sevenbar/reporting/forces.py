@@ -21,26 +21,9 @@ from sevenbar.forces.sizing import Burden, Sizing
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.columns import joint_column
+from sevenbar.reporting import force_words
 from sevenbar.reporting.figures import FigureLook
-from sevenbar.reporting.files import Files, Report, columns_file, figure_files, json_file
-from sevenbar.reporting.force_words import (
-    LISTED,
-    OPEN,
-    Places,
-    acting_facts,
-    check_text,
-    check_values,
-    drive_facts,
-    drive_label,
-    found_text,
-    greatest,
-    no_peak,
-    open_facts,
-    shaking_facts,
-    shaking_found,
-    spin_facts,
-    unbounded_facts,
-)
+from sevenbar.reporting.files import Files, Report, Write, columns_file, figure_files, json_file
 from sevenbar.reporting.page import Facts, number_table, page
 from sevenbar.reporting.shown import drive_text, number, rows_text
 from sevenbar.text.words import say
@@ -66,7 +49,7 @@ class CircuitForces:
     ) -> CircuitForces:
         """With the sizing for an unevenness."""
         found = forces.sizing(unevenness=unevenness)
-        return cls(motion, circuit, forces, found, shaking_found(forces))
+        return cls(motion, circuit, forces, found, force_words.shaking_found(forces))
 
 
 def forces_report(
@@ -98,11 +81,11 @@ def _figures(
     if found.shaking is not None:
         draw["shaking"] = partial(force_figures.shaking, forces)
     draw["energies"] = partial(force_figures.energies, forces)
-    files: Files[CircuitForces] = {}
+    if not force_figures.drawn_bearings(forces, chosen):
+        del draw["bearings"]
+    files: dict[str, Write[CircuitForces]] = {}
     for name, one in draw.items():
-        if name == "bearings" and not force_figures.drawn_bearings(forces, chosen):
-            continue
-        files = {**files, **figure_files(name, formats, partial(_drawn, one, look))}
+        files |= figure_files(name, formats, partial(_drawn, one, look))
     return files
 
 
@@ -130,14 +113,14 @@ def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     """All that a report says of forces above the table of joints."""
     forces, linkage = found.forces, found.motion.linkage
     sliding = [column for column in linkage.columns if not linkage.turns(column)]
-    facts = [(say("circuit"), drive_fact(found)), *acting_facts(forces, sliding)]
-    facts += drive_facts(forces, found.sizing)
-    facts += shaking_facts(forces, found.shaking)
-    facts += spin_facts(forces)
-    facts += open_facts(forces)
-    facts += unbounded_facts(forces, found.sizing)
-    facts.append((say("found"), found_text(found.sizing, law=found.motion.law is not None)))
-    facts.append((say("checks"), check_text(forces)))
+    facts = [(say("circuit"), drive_fact(found)), *force_words.acting_facts(forces, sliding)]
+    facts += force_words.drive_facts(forces, found.sizing)
+    facts += force_words.shaking_facts(forces, found.shaking)
+    facts += force_words.spin_facts(forces)
+    facts += force_words.open_facts(forces)
+    facts += force_words.unbounded_facts(forces, found.sizing)
+    facts.append((say("found"), force_words.found_text(found.sizing, law=found.motion.law is not None)))
+    facts.append((say("checks"), force_words.check_text(forces)))
     facts.append((say("rows"), f"{len(forces.status)}: {rows_text(forces.status)}"))
     return [(label, said) for label, said in facts if said]
 
@@ -146,7 +129,7 @@ def text(found: CircuitForces) -> RenderableType:
     """The forces on a circuit as a page."""
     forces = found.forces
     facts = Facts()
-    facts.add_all(facts_of_forces(found), bold=[drive_label(forces)])
+    facts.add_all(facts_of_forces(found), bold=[force_words.drive_label(forces)])
     tables = []
     if found.balance is not None:
         # a reader of its own, which knows these pages
@@ -157,11 +140,10 @@ def text(found: CircuitForces) -> RenderableType:
     if found.sizing is not None:
         planar = found.motion.linkage.is_planar
         head, rows = bearing_rows(forces, found.sizing, planar=planar)
-        without = ""
-        if head[1] == say(IN_PLANE):
-            without = say("; in plane: the force in the plane of motion, the whole is open")
-        elif head[1] == say(KNOWN):
-            without = say("; known: the force without the component that is open")
+        without = {
+            say(IN_PLANE): say("; in plane: the force in the plane of motion, the whole is open"),
+            say(KNOWN): say("; known: the force without the component that is open"),
+        }.get(head[1], "")
         meaning = say(
             "peaks of what the link before puts on the link after; radial square to the joint's "
             "axis, axial along it, tilting moment square to it, turning about it"
@@ -182,7 +164,7 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
 
     Where no joint's whole force is determined, but that in the `planar` loop's plane is, it has the latter.
     """
-    place = Places(forces)
+    place = force_words.Places(forces)
     whole = any(math.isfinite(one.force.peak.value) for one in found.bearings.values())
     partly = not whole and any(math.isfinite(one.in_plane.peak.value) for one in found.bearings.values())
     first = (IN_PLANE if planar else KNOWN) if partly else WHOLE
@@ -194,31 +176,28 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
     for name, bearing in found.bearings.items():
         force = bearing.in_plane if partly else bearing.force
         known = math.isfinite(force.peak.value)
-        cells = [
-            name,
-            _peak(force),
-            place(force.peak.input) if known else "",
-            number(force.mean_cube) if known else "",
-        ]
+        met = [place(force.peak.input), number(force.mean_cube)] if known else ["", ""]
         parts = (bearing.radial, bearing.axial, bearing.tilting, bearing.turning)
         # a ball has no axis
         ball = forces.reactions[name].kind == "S"
-        rows.append([*cells, *("" if ball else _peak(part) for part in parts)])
-    scales = [_scale(rows, (1, 4, 5)), _scale(rows, (6, 7))]
-    for row in rows:
-        for column, scale in ((1, 0), (4, 0), (5, 0), (6, 1), (7, 1)):
+        rows.append([name, _peak(force), *met, *("" if ball else _peak(part) for part in parts)])
+    # forces, then moments
+    for columns in ((1, 4, 5), (6, 7)):
+        sizes = {
+            (row, i): float(cells[i])
+            for row, cells in enumerate(rows)
+            for i in columns
+            if cells[i] not in (say(force_words.OPEN), "")
+        }
+        for (row, i), size in sizes.items():
             # what is left of rounding
-            if row[column] not in (say(OPEN), "") and abs(float(row[column])) < 1e-12 * scales[scale]:
-                row[column] = "0"
+            if abs(size) < 1e-12 * max(sizes.values()):
+                rows[row][i] = "0"
     return head, rows
 
 
-def _scale(rows: list[list[str]], of: tuple[int, ...]) -> float:
-    return max((float(row[i]) for row in rows for i in of if row[i] not in (say(OPEN), "")), default=0.0)
-
-
 def _peak(burden: Burden) -> str:
-    return number(burden.peak.value) if math.isfinite(burden.peak.value) else say(OPEN)
+    return number(burden.peak.value) if math.isfinite(burden.peak.value) else say(force_words.OPEN)
 
 
 def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
@@ -259,14 +238,9 @@ def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
 
 def _weights(found: Balance) -> dict[str, Any]:
     """Counterweights: mass times radius [kg length] in a direction, and the shaking [N] before and after."""
+    names = ("link", "pivot", "product", "direction", "mass")
     weights = [
-        {
-            "link": one.link,
-            "pivot": list(one.pivot),
-            "product": one.product,
-            "direction": one.direction.tolist(),
-            "mass": one.mass,
-        }
+        {name: getattr(one, name) for name in names} | {"direction": one.direction.tolist()}
         for one in found.counterweights
     ]
     return {"weights": weights, "before": found.before, "after": found.after, "measure": found.measure}
@@ -303,8 +277,8 @@ def as_dict(found: CircuitForces) -> dict[str, Any]:
         **numbers(found),
         "counterweights": None if found.balance is None else _weights(found.balance),
         "not_determined": list(forces.indeterminate),
-        "idle_spin": {link: greatest(moment) for link, moment in forces.spin.items()},
-        "checks": check_values(forces),
+        "idle_spin": {link: force_words.greatest(moment) for link, moment in forces.spin.items()},
+        "checks": force_words.check_values(forces),
     }
 
 
@@ -313,32 +287,20 @@ def numbers(found: CircuitForces) -> dict[str, Any]:
     forces, sizing, shaken = found.forces, found.sizing, found.shaking
     drive = None
     if sizing is not None:
-        drive = {
-            "peak_torque": _plain(sizing.peak_torque),
-            "rms_torque": sizing.rms_torque,
-            "mean_torque": sizing.mean_torque,
-            "peak_power": _plain(sizing.peak_power),
-            "braking_power": _plain(sizing.braking_power),
-            "fluctuation": sizing.fluctuation,
-            "fastest": sizing.fastest,
-            "slowest": sizing.slowest,
-            "unevenness": sizing.unevenness,
-            "flywheel": sizing.flywheel,
-            "found": sizing.found,
-            "tail": sizing.tail,
-        }
+        drive = {name: value for name, value in vars(sizing).items() if name != "bearings"}
+        drive |= {name: _plain(drive[name]) for name in ("peak_torque", "peak_power", "braking_power")}
     joints = {}
     for name, reaction in forces.reactions.items():
         flags = zip(COMPONENTS, reaction.determinate.tolist(), strict=True)
         joints[name] = {"determinate": dict(flags)}
         if sizing is not None:
             bearing = sizing.bearings[name]
-            for part in LISTED:
+            for part in force_words.LISTED:
                 burden: Burden = getattr(bearing, part)
                 joints[name][part] = {**_plain(burden.peak), "mean_cube": burden.mean_cube}
     return {
         "sizing": drive,
-        "no_sizing": no_peak(forces) if sizing is None else None,
+        "no_sizing": force_words.no_peak(forces) if sizing is None else None,
         "joints": joints,
         "shaking": None
         if shaken is None

@@ -7,13 +7,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
 from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, number_table, page
 from sevenbar.text.printing import figure_of, lines, text_of
 from sevenbar.text.words import say
 
@@ -49,18 +48,10 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
     if found.period is not None:
         facts.append((say("period"), f"{found.period:.12g} s"))
     if found.turning:
-        facts.append(
-            (
-                say("turns back at"),
-                say(", ").join(f"{name} = {value(point.input)}" for point in found.turning),
-            )
-        )
-    facts.append(
-        (
-            say("greatest kinetic energy"),
-            say("{energy:.9g} J, of these rows", energy=np.nanmax(found.kinetic)),
-        )
-    )
+        turning = say(", ").join(f"{name} = {value(point.input)}" for point in found.turning)
+        facts.append((say("turns back at"), turning))
+    energy = say("{energy:.9g} J, of these rows", energy=np.nanmax(found.kinetic))
+    facts.append((say("greatest kinetic energy"), energy))
     if math.isfinite(found.energy_error):
         facts.append((say("energy"), say("kept to {share:.1e} of that", share=found.energy_error)))
     if math.isfinite(found.difference):
@@ -88,10 +79,7 @@ def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
     fall, places = found
     facts = Facts()
     facts.add_all(free_facts(fall))
-    parts: list[RenderableType] = [
-        Text(say("free motion of {linkage}", linkage=fall.heading), style="bold"),
-        facts.grid,
-    ]
+    tables = []
     if places:
         rows = [
             [
@@ -103,8 +91,8 @@ def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
             for place in places
         ]
         head = ["equilibrium", fall.columns[fall.input_column], "vibration [rad/s]", "potential [J]"]
-        parts += [Text(), number_table(head, rows, words=[0])]
-    return Group(*parts)
+        tables.append(number_table(head, rows, words=[0]))
+    return page(say("free motion of {linkage}", linkage=fall.heading), facts, *tables)
 
 
 def _vibration(place: Equilibrium) -> str:
@@ -141,19 +129,13 @@ def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]
 
 def free_report(formats: Sequence[str]) -> Report[tuple[FreeMotion, Sequence[Equilibrium]]]:
     """How a free motion is reported: free.json, free.csv and the figure."""
-
-    def draw(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> Any:
-        from sevenbar.drawing.free_curves import free_figure
-
-        return free_figure(found[0])
-
     return Report(
         text=_page,
         as_dict=free_dict,
         files={
             "free.json": json_file(free_dict),
             "free.csv": columns_file(lambda found: found[0].table()),
-            **figure_files("free", formats, draw),
+            **figure_files("free", formats, lambda found: figure_of(found[0])),
         },
         spoken=True,
     )

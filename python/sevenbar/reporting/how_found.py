@@ -43,12 +43,12 @@ def how_found(motion: Motion) -> str:
     if search.freedoms is None:
         parts.append(say("there are none"))
     elif motion.circuits:
-        lost = search.unfollowed
-        parts.append(
-            say("each lies on a circuit, but {count} from which no motion could be followed", count=lost)
-            if lost
-            else say("each lies on a circuit")
-        )
+        on_circuits = say("each lies on a circuit")
+        if lost := search.unfollowed:
+            on_circuits = say(
+                "each lies on a circuit, but {count} from which no motion could be followed", count=lost
+            )
+        parts.append(on_circuits)
         if free := sum(point.freedoms > 1 for point in motion.change_points):
             parts.append(
                 say(
@@ -91,19 +91,13 @@ def _counted(search: Search) -> str:
         start, wide = math.degrees(each.start), math.degrees(each.end - each.start)
         if wide < NARROW_RANGE_DEG:
             middle = (start + wide / 2) % 360
-            ranges_open.append(
-                say(
-                    "{what} within {half:.1g} deg of {middle:.6g} deg",
-                    what=what,
-                    half=wide / 2,
-                    middle=middle,
-                )
+            place = say(
+                "{what} within {half:.1g} deg of {middle:.6g} deg", what=what, half=wide / 2, middle=middle
             )
         else:
             low = start % 360
-            ranges_open.append(
-                say("{what} between {low:.6g} and {high:.6g} deg", what=what, low=low, high=low + wide)
-            )
+            place = say("{what} between {low:.6g} and {high:.6g} deg", what=what, low=low, high=low + wide)
+        ranges_open.append(place)
     ranges = say(", ").join(ranges_open)
     if len(count.open) > MOST_RANGES:
         ranges = say("{ranges} and elsewhere", ranges=ranges)

@@ -64,10 +64,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
             "name": linkage.name,
             "kind": linkage.kind,
             "joints": [{"name": joint.name, "kind": joint.kind} for joint in linkage.joints],
-            "columns": [
-                {"name": name, "kind": kind}
-                for name, kind in zip(linkage.columns, linkage.column_kinds, strict=True)
-            ],
+            "columns": _columns(linkage),
             "dimensions": dict(linkage.dimensions),
             "lengths": side_lengths(linkage),
             "planar": linkage.is_planar,
@@ -84,21 +81,11 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         "motion_type": motion.motion_type,
         "limits": motion.limits.tolist(),
         "change_points": [
-            {
-                "input": p.input,
-                "q": p.q.tolist(),
-                "circuits": list(p.circuits),
-                "ways": p.ways,
-                "freedoms": p.freedoms,
-            }
+            {"input": p.input, "q": p.q.tolist(), "circuits": list(p.circuits)}
+            | {"ways": p.ways, "freedoms": p.freedoms}
             for p in motion.change_points
         ],
-        "mobility": {
-            "gruebler": mobility.gruebler,
-            "freedoms": mobility.freedoms,
-            "rank": mobility.rank,
-            "finite": mobility.finite,
-        },
+        "mobility": {name: getattr(mobility, name) for name in ("gruebler", "freedoms", "rank", "finite")},
         "completeness": motion.completeness,
         "how_found": how_found(motion),
         "open_by": motion.search.open_by.tolist(),
@@ -114,6 +101,11 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         "redundant": list(motion.redundant),
     }
     return without_nan(report)  # type: ignore[no-any-return]
+
+
+def _columns(linkage: Loop) -> list[dict[str, str]]:
+    kinds = zip(linkage.columns, linkage.column_kinds, strict=True)
+    return [{"name": name, "kind": kind} for name, kind in kinds]
 
 
 def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
@@ -203,7 +195,9 @@ def motion_report(
     plain = partial(as_dict, ranges=ranges)
     files: Files[Motion] = {
         "report.json": json_file(plain),
-        "motion.csv": LongTable(Motion.column_parts, row_count),
+        "motion.csv": LongTable(
+            Motion.column_parts, lambda motion: sum(circuit.tally.rows for circuit in motion)
+        ),
     }
     return Report(
         partial(text, ranges=ranges),
@@ -213,11 +207,6 @@ def motion_report(
         {"report.md": partial(_write_markdown, ranges=ranges)},
         spoken=True,
     )
-
-
-def row_count(motion: Motion) -> int:
-    """The rows of all circuits."""
-    return sum(circuit.tally.rows for circuit in motion)
 
 
 def _write_markdown(motion: Motion, path: Path, *, ranges: bool = False) -> None:
@@ -278,10 +267,7 @@ def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
         "agree": modes.agree,
         "on_curve": None if modes.on_curve is None else modes.on_curve.tolist(),
         "count": len(modes),
-        "columns": [
-            {"name": name, "kind": kind}
-            for name, kind in zip(linkage.columns, linkage.column_kinds, strict=True)
-        ],
+        "columns": _columns(linkage),
         "modes": [
             {"q": q.tolist(), "residual": float(residual), "status": str(status)}
             for q, residual, status in zip(modes.q, modes.residual, modes.status, strict=True)

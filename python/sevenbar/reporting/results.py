@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Words
 from sevenbar.errors import check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes, Sensitivity, Trace
@@ -51,16 +52,14 @@ SIZE = (4.6, 2.8)
 @text_of.register(Linkage)
 def _(linkage: Linkage) -> str:
     drive = linkage.drive
-    return lines(
-        f"Linkage '{linkage.heading}'",
-        [
-            ("loop", joints_text(linkage)),
-            ("dimensions", dimensions_text(linkage) or _rows(linkage)),
-            ("drive", drive_text(drive.joint, drive.speed, linkage.unit_of(drive.joint), drive.output)),
-            ("points", ", ".join(f"{point.name} on link {point.link}" for point in linkage.points)),
-            ("length unit", linkage.length_unit),
-        ],
-    )
+    facts = [
+        ("loop", joints_text(linkage)),
+        ("dimensions", dimensions_text(linkage) or _rows(linkage)),
+        ("drive", drive_text(drive.joint, drive.speed, linkage.unit_of(drive.joint), drive.output)),
+        ("points", ", ".join(f"{point.name} on link {point.link}" for point in linkage.points)),
+        ("length unit", linkage.length_unit),
+    ]
+    return lines(f"Linkage '{linkage.heading}'", facts)
 
 
 def _rows(linkage: Linkage) -> str:
@@ -73,15 +72,13 @@ def _rows(linkage: Linkage) -> str:
 def _(modes: Modes) -> str:
     count = len(modes)
     worst = f"at most {modes.residual.max():.1e}" if count else ""
-    return lines(
-        f"{count} assembly mode{'s' * (count != 1)} at input {modes.input:.6g}",
-        [
-            ("q", f"{modes.q.shape}: {', '.join(modes.columns)}"),
-            ("status", rows_text(modes.status)),
-            ("residual", worst),
-            ("completeness", completeness_text(modes.completeness, curve=modes.on_curve is not None)),
-        ],
-    )
+    facts = [
+        ("q", f"{modes.q.shape}: {', '.join(modes.columns)}"),
+        ("status", rows_text(modes.status)),
+        ("residual", worst),
+        ("completeness", completeness_text(modes.completeness, curve=modes.on_curve is not None)),
+    ]
+    return lines(f"{count} assembly mode{'s' * (count != 1)} at input {modes.input:.6g}", facts)
 
 
 @text_of.register(Motion)
@@ -104,10 +101,11 @@ def _circuits(motion: Motion) -> list[tuple[str, str]]:
     """A line for each circuit: its type where they differ, its ranges; one line where all agree."""
     rows = []
     for circuit in motion.circuits[:MOST_CIRCUITS]:
-        facts = circuit_facts(motion, circuit, ("motion type", "range of "))
-        texts = [text for label, text in facts if label == "motion type"]
-        ranges = [(label, text) for label, text in facts if label.startswith("range of ")]
-        texts += [f"{label.removeprefix('range of ')} {text}" for label, text in ranges]
+        facts = circuit_facts(motion, circuit, brief=True)
+        texts = (
+            text if label == "motion type" else f"{label.removeprefix('range of ')} {text}"
+            for label, text in facts
+        )
         rows.append((f"  {circuit.index}", ", ".join(texts)))
     if len({text for _, text in rows}) == 1:
         return [("", rows[0][1])]
@@ -158,48 +156,43 @@ def _known_transmission(circuit: Circuit) -> Extremes | None:
     return known
 
 
+def _of_rows(head: str, status: Words, quantities: Iterable[tuple[str, Floats]]) -> str:
+    """A head, how many rows have each status, and from where to where each quantity goes."""
+    extents = ((name, _extent(values)) for name, values in quantities)
+    return lines(head, [("status", rows_text(status)), *extents])
+
+
+def _extent(values: Floats) -> str:
+    known = values[np.isfinite(values)]
+    return f"{known.min() + 0.0:.6g} to {known.max() + 0.0:.6g}" if known.size else "no value"
+
+
 @text_of.register(Trace)
 def _(trace: Trace) -> str:
-    return lines(
-        f"Trace of a point: {len(trace.position)} rows",
-        [
-            ("status", rows_text(trace.status)),
-            *((axis, _extent(values)) for axis, values in zip("xyz", trace.position.T, strict=True)),
-            ("speed", _extent(np.linalg.norm(trace.velocity, axis=1))),
-            ("acceleration", _extent(np.linalg.norm(trace.acceleration, axis=1))),
-        ],
-    )
+    rates = (("speed", trace.velocity), ("acceleration", trace.acceleration))
+    sizes = ((name, np.linalg.norm(values, axis=1)) for name, values in rates)
+    places = zip("xyz", trace.position.T, strict=True)
+    return _of_rows(f"Trace of a point: {len(trace.position)} rows", trace.status, (*places, *sizes))
 
 
 @text_of.register(ScrewAxes)
 def _(axes: ScrewAxes) -> str:
-    return lines(
-        f"Screw axes of link {axes.link} against link {axes.relative_to}: {len(axes.status)} rows",
-        [
-            ("status", rows_text(axes.status)),
-            ("pitch", _extent(axes.pitch)),
-            ("rate", _extent(axes.rate)),
-            ("slide rate", _extent(axes.slide_rate)),
-        ],
-    )
+    head = f"Screw axes of link {axes.link} against link {axes.relative_to}: {len(axes.status)} rows"
+    found = (("pitch", axes.pitch), ("rate", axes.rate), ("slide rate", axes.slide_rate))
+    return _of_rows(head, axes.status, found)
 
 
 @text_of.register(InstantCentre)
 def _(centre: InstantCentre) -> str:
     first, second = centre.links
-    sides = zip("xy", centre.in_plane.T, strict=True)
-    return lines(
-        f"Instant centre of links {first} and {second}: {len(centre.status)} rows",
-        [("status", rows_text(centre.status)), *((axis, _extent(values)) for axis, values in sides)],
-    )
+    head = f"Instant centre of links {first} and {second}: {len(centre.status)} rows"
+    return _of_rows(head, centre.status, zip("xy", centre.in_plane.T, strict=True))
 
 
 @text_of.register(InstantCentres)
 def _(found: InstantCentres) -> str:
-    return lines(
-        f"{len(found)} instant centres",
-        [(f"{a}-{b}", rows_text(centre.status)) for (a, b), centre in found.centres.items()],
-    )
+    facts = [(f"{a}-{b}", rows_text(centre.status)) for (a, b), centre in found.centres.items()]
+    return lines(f"{len(found)} instant centres", facts)
 
 
 @text_of.register(Sensitivity)
@@ -210,15 +203,13 @@ def _(found: Sensitivity) -> str:
         f"{name} [{unit}]: " + (f"{column} {value:.3g}" if value else "moves nothing")
         for name, unit, column, value in zip(found.names, found.units, *_moved_most(found), strict=True)
     ]
-    return lines(
-        f"Sensitivity of {columns} columns by {numbers} numbers: {rows} rows",
-        [
-            ("status", rows_text(found.status)),
-            ("greatest", "; ".join(most[:MOST_CIRCUITS]) + (" .." if len(most) > MOST_CIRCUITS else "")),
-            ("points", ", ".join(found.points)),
-            ("opening", ", ".join(found.opening)),
-        ],
-    )
+    facts = [
+        ("status", rows_text(found.status)),
+        ("greatest", "; ".join(most[:MOST_CIRCUITS]) + (" .." if len(most) > MOST_CIRCUITS else "")),
+        ("points", ", ".join(found.points)),
+        ("opening", ", ".join(found.opening)),
+    ]
+    return lines(f"Sensitivity of {columns} columns by {numbers} numbers: {rows} rows", facts)
 
 
 def _moved_most(found: Sensitivity) -> tuple[list[str], list[float]]:
@@ -230,23 +221,10 @@ def _moved_most(found: Sensitivity) -> tuple[list[str], list[float]]:
 
 @text_of.register(Output)
 def _(output: Output) -> str:
-    return lines(
-        f"Output of both branches at {output.position.shape[1]} inputs",
-        [
-            ("status", rows_text(output.status.ravel())),
-            ("position", _extent(output.position)),
-            *(
-                (name, _extent(values))
-                for name in ("velocity", "acceleration", "jerk")
-                if (values := getattr(output, name)) is not None
-            ),
-        ],
-    )
-
-
-def _extent(values: Floats) -> str:
-    known = values[np.isfinite(values)]
-    return f"{known.min() + 0.0:.6g} to {known.max() + 0.0:.6g}" if known.size else "no value"
+    head = f"Output of both branches at {output.position.shape[1]} inputs"
+    names = ("position", "velocity", "acceleration", "jerk")
+    found = [(name, getattr(output, name)) for name in names if getattr(output, name) is not None]
+    return _of_rows(head, output.status.ravel(), found)
 
 
 @figure_of.register(Linkage)
@@ -311,10 +289,8 @@ def _(motion: Motion) -> Figure | None:
 @picture_of.register(Circuit)
 def _(circuit: Circuit) -> Figure:
     figure, axes = _axes()
-    axes.plot(
-        np.degrees(circuit.input) if circuit.input_turns else circuit.input,
-        np.degrees(circuit.output) if circuit.output_turns else circuit.output,
-    )
+    across = np.degrees(circuit.input) if circuit.input_turns else circuit.input
+    axes.plot(across, np.degrees(circuit.output) if circuit.output_turns else circuit.output)
     axes.set_xlabel(circuit.columns[circuit.input_column] + " [deg]" * circuit.input_turns)
     axes.set_ylabel(circuit.columns[circuit.output_column] + " [deg]" * circuit.output_turns)
     return figure

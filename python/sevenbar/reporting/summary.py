@@ -135,12 +135,13 @@ def _every_digit(number: float) -> str:
     return f"{number!r}".removesuffix(".0")
 
 
-def circuit_facts(motion: Motion, circuit: Circuit, labels: tuple[str, ...] = ("",)) -> list[tuple[str, str]]:
+def circuit_facts(motion: Motion, circuit: Circuit, *, brief: bool = False) -> list[tuple[str, str]]:
     """What the report has of one circuit: names, and values each "@" the input where it is met.
 
-    Of all, those whose names begin with one of the `labels`.
+    In `brief` its motion type and its ranges.
     """
-    reported = [(quantity, [cells[circuit.index]]) for quantity, cells in cells_of(motion, "list", labels)]
+    every = cells_of(motion, "list", in_brief=brief)
+    reported = [(quantity, [cells[circuit.index]]) for quantity, cells in every]
     return [(label, cells[0]) for label, cells in _lines(reported) if cells[0] not in nothing()]
 
 
@@ -196,7 +197,7 @@ def _comparison(motion: Motion, reported: Sequence[Reported]) -> Sheet:
     rows = tuple((", ".join(indices), *row) for row, indices in alike.items())
     heads = (say("circuit"), *(quantity.head for quantity, _ in reported))
     notes = []
-    if any(quantity.name.startswith("range of") for quantity, _ in reported):
+    if any(quantity.role.endswith("range") for quantity, _ in reported):
         notes.append(say("the ends of a range are dead centres"))
     if len(rows) < len(motion.circuits):
         notes.append(say("circuits that agree in all of this share a row"))

@@ -36,7 +36,7 @@ class LocalServer(viser.ViserServer):
     def __init__(self, host: str, port: int) -> None:
         """Raises `OSError` for an address at which nothing can be served."""
         # viser would try a thousand ports, and then wait for ever
-        with socket.create_server((host, 0), family=_family(host)):
+        with socket.create_server((host, 0), family=socket.AF_INET6 if ":" in host else socket.AF_INET):
             pass
         # a tab may be closed in the middle of a picture
         warnings.filterwarnings("ignore", "Queued a .* on a closed connection", UserWarning)
@@ -75,7 +75,7 @@ def _guarded(guard: Guard) -> Iterator[None]:
             values = {name: request.headers.get_all(name) for name in ("Host", "Origin", "Upgrade")}
             path = guard.path(request.path, values)
             if path is None:
-                return _answer(HTTPStatus.FORBIDDEN, REFUSED)
+                return _refusal()
             answer: Response | None = process_request(connection, dataclasses.replace(request, path=path))
             if answer is not None:
                 answer.headers.update(HEADERS)
@@ -95,11 +95,10 @@ def _guarded(guard: Guard) -> Iterator[None]:
         raise RuntimeError("viser serves in a way that the studio cannot guard; install viser 1.1")
 
 
-def _answer(status: HTTPStatus, body: bytes) -> Response:
-    headers = Headers(
-        {"Content-Type": "text/plain; charset=utf-8", "Content-Length": str(len(body)), **HEADERS}
-    )
-    return Response(status.value, status.phrase, headers, body)
+def _refusal() -> Response:
+    about = {"Content-Type": "text/plain; charset=utf-8", "Content-Length": str(len(REFUSED))}
+    status = HTTPStatus.FORBIDDEN
+    return Response(status.value, status.phrase, Headers({**about, **HEADERS}), REFUSED)
 
 
 def _silent() -> logging.Logger:
@@ -108,7 +107,3 @@ def _silent() -> logging.Logger:
     if not logger.handlers:
         logger.addHandler(logging.NullHandler())
     return logger
-
-
-def _family(host: str) -> socket.AddressFamily:
-    return socket.AF_INET6 if ":" in host else socket.AF_INET

@@ -4,24 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from html import escape
-from typing import Any, Protocol
+from typing import Any
 
 import viser
 
 from sevenbar.errors import SevenbarError
+from sevenbar.studio.worker import Worker
 
 #: What stands in a box is taken so long [s] after the last key.
 PAUSE = 0.8
-
-
-class Asked(Protocol):
-    """The worker, as the panels know it."""
-
-    def ask(self, key: Hashable, action: Callable[[], object], *, delay: float = 0.0) -> None:
-        """Has an action done, after a delay [s]; it takes the place of one with the same key."""
-
-    def awaits(self, key: Hashable) -> bool:
-        """Whether an action with this key is still to be done."""
 
 
 def put(control: Any, value: object) -> None:
@@ -38,6 +29,19 @@ def offer(control: Any, choices: tuple[str, ...]) -> None:
 def by_person(event: viser.GuiEvent[Any]) -> bool:
     """Whether a person changed a control, and not the studio itself."""
     return event.client is not None
+
+
+def on_change(
+    control: Any, worker: Worker, key: Hashable, action: Callable[[Any], object], *, delay: float = 0.0
+) -> None:
+    """Has `action(value)` done, after a delay [s], for what a person sets a control to; the last alone."""
+
+    def changed(event: viser.GuiEvent[Any]) -> None:
+        if by_person(event):
+            value = control.value
+            worker.ask(key, lambda: action(value), delay=delay)
+
+    control.on_update(changed)
 
 
 class Alert:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import viser
 
-from sevenbar.studio.panels.controls import Asked, offer, put
+from sevenbar.studio.panels.controls import offer, put
 from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.curves import Over, panels
-from sevenbar.studio.svg.force_quantities import force_quantities
-from sevenbar.studio.svg.panel import Panel
-from sevenbar.studio.svg.quantities import Quantity, quantities
+from sevenbar.studio.svg.picture import Panel
+from sevenbar.studio.svg.quantities import Quantity, force_quantities, quantities
+from sevenbar.studio.worker import Worker
 
 #: How many curves there are, and the size of each [px].
 CURVES, WIDTH, HEIGHT = 3, 420, 172
@@ -25,7 +25,7 @@ class CurvesPanel:
     """Three curves, each of a quantity that is chosen above it."""
 
     def __init__(
-        self, gui: viser.GuiApi, worker: Asked, session: Session, width: int = WIDTH + MARGIN
+        self, gui: viser.GuiApi, worker: Worker, session: Session, width: int = WIDTH + MARGIN
     ) -> None:
         """`width` is that of the panel [px]."""
         self._session, self._width = session, width - MARGIN

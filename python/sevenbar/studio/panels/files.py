@@ -11,11 +11,12 @@ import viser
 from sevenbar.description.files import decoded, toml_text
 from sevenbar.description.gallery import names, title
 from sevenbar.errors import SevenbarError
-from sevenbar.studio.panels.controls import Alert, Asked, by_person, put
+from sevenbar.studio.panels.controls import Alert, on_change, put
 from sevenbar.studio.panels.downloads import DOWNLOADS, Scene
 from sevenbar.studio.panels.sketching import SketchPanel
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.shelf import ENDING, ChangedError, Shelf
+from sevenbar.studio.worker import Worker
 
 #: What the list of the gallery says before something is chosen.
 CHOOSE = "choose one"
@@ -25,7 +26,7 @@ class FilesPanel:
     """Everything that comes into the studio and goes out of it, through the browser."""
 
     def __init__(
-        self, client: viser.ClientHandle, worker: Asked, session: Session, shelf: Shelf | None
+        self, client: viser.ClientHandle, worker: Worker, session: Session, shelf: Shelf | None
     ) -> None:
         """`shelf` has the files that may be saved to; without one everything goes through the browser."""
         gui = client.gui
@@ -53,19 +54,19 @@ class FilesPanel:
             self._unsaved = Alert(gui)
         with gui.add_folder("New linkage", expand_by_default=False):
             SketchPanel(gui, worker, session)
-        self._gallery.on_update(self._chosen)
+        on_change(self._gallery, worker, "open", self._chosen)
         self._open.on_upload(self._uploaded)
         save.on_click(lambda _: worker.ask("save", lambda: self._download("linkage (TOML)")))
         keep.on_click(lambda _: worker.ask("keep", self._keep))
         self._replace.on_click(lambda _: worker.ask("keep", lambda: self._keep(replace=True)))
-        self._file.on_update(self._renamed)
+        on_change(self._file, worker, "file", lambda _: self._forget())
         self._named: object = None
         write.on_click(lambda _: worker.ask("export", lambda: self._download(self._kind.value)))
 
-    def _chosen(self, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event) and self._gallery.value != CHOOSE:
-            name = self._names[self._gallery.value]
-            self._worker.ask("open", lambda: self._opened(lambda: toml_text(name), name))
+    def _chosen(self, words: str) -> None:
+        if words != CHOOSE:
+            name = self._names[words]
+            self._opened(lambda: toml_text(name), name)
 
     def _uploaded(self, _: viser.GuiEvent[Any]) -> None:
         file = self._open.value
@@ -74,10 +75,6 @@ class FilesPanel:
 
     def _opened(self, read: Any, source: str) -> None:
         self._alert.tried(lambda: self._session.open(read(), source))
-
-    def _renamed(self, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            self._worker.ask("file", self._forget)
 
     def show(self) -> None:
         """Shows the file that `Save` writes: the one that was opened, or one named like the linkage."""

@@ -1,20 +1,114 @@
-"""What acts, each with a switch, and what the input has to give."""
+"""What acts, each with a switch; the arrows of the forces in the joints; and what the input has to give."""
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from html import escape
-from typing import Any
 
+import numpy as np
 import viser
 
+from sevenbar.arrays import Floats
+from sevenbar.drawing.force_panels import ROUNDING, greatest_of
+from sevenbar.drawing.style import REACTION
+from sevenbar.kinematics.circuits.poses import at_row
 from sevenbar.reporting.force_words import NOTHING_ACTS, drive_facts, open_facts
-from sevenbar.studio.panels.controls import Asked, by_person, put
-from sevenbar.studio.panels.force_arrows import ForceArrows
-from sevenbar.studio.pictures.stage import Stage
-from sevenbar.studio.state.acting import Switch, drive_sizing
+from sevenbar.reporting.shown import number
+from sevenbar.studio.panels.controls import offer, on_change, put
+from sevenbar.studio.panels.scenery import arrow_unit
+from sevenbar.studio.pictures.stage import Arrow, Stage
+from sevenbar.studio.state.acting import Switch, SwitchedLoading, drive_sizing, known_force
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import facts_block
+from sevenbar.studio.state.view import View
+from sevenbar.studio.worker import Worker
+
+#: The longest arrow, as a share of the linkage's extent.
+LONGEST = 0.25
+
+NO_ARROWS, EVERY_JOINT = "none", "all joints"
+
+_HINT = (
+    "What the link before a joint puts on the link after it, the ground after the last: "
+    "the part of the force that equilibrium determines. The peak of the cycle is the longest arrow."
+)
+
+
+class ForceArrows:
+    """An arrow with its value at each joint that is chosen; none at first."""
+
+    def __init__(self, gui: viser.GuiApi, worker: Worker, session: Session, stage: Stage) -> None:
+        self._session, self._stage = session, stage
+        self._choice = gui.add_dropdown("force arrows", (NO_ARROWS,), hint=_HINT)
+        self._choice.on_update(lambda _: worker.ask("forces", lambda: None))
+        self._names: tuple[str, ...] = ()
+        self._drawn: tuple[object, ...] = ()
+        self._of: tuple[object, ...] = ()
+        self._along: list[tuple[int, Floats]] = []
+        self._unit = 0.0
+
+    def show(self) -> None:
+        """Draws the arrows at the row on view, where something has changed."""
+        view, acting = self._session.view, self._session.acting
+        names = tuple(joint.name for joint in acting.linkage.joints) if not acting.is_empty else ()
+        if names != self._names:
+            self._offer(names)
+        chosen = self._choice.value
+        drawn = (view, acting, chosen, self._session.row, bool(self._session.problem))
+        if drawn == self._drawn:
+            return
+        self._drawn = drawn
+        wanted = self._wanted(chosen)
+        if view is None or not wanted:
+            self._of = ()
+            self._stage.arrows([], "joints")
+            return
+        if self._of != (view, acting, chosen):
+            self._of = (view, acting, chosen)
+            self._follow(view, acting, wanted)
+        self._stage.arrows(self._at(view, self._session.row), "joints")
+
+    def _offer(self, names: tuple[str, ...]) -> None:
+        """What can be chosen; a joint that there is no more goes back to none."""
+        self._names, was = names, self._choice.value
+        choices = (NO_ARROWS, EVERY_JOINT, *names) if names else (NO_ARROWS,)
+        offer(self._choice, choices)
+        put(self._choice, was if was in choices else NO_ARROWS)
+
+    def _wanted(self, chosen: str) -> list[int]:
+        if chosen == EVERY_JOINT:
+            return list(range(len(self._names)))
+        return [self._names.index(chosen)] if chosen in self._names else []
+
+    def _follow(self, view: View, acting: SwitchedLoading, wanted: list[int]) -> None:
+        """Computes the forces along the path, and the scale that all arrows share."""
+        forces = acting.forces(view)
+        self._along, self._unit = [], 0.0
+        if forces is None:
+            return
+        found = [known_force(reaction) for reaction in forces.reactions.values()]
+        least = ROUNDING * max(greatest_of(force) for force in found)
+        self._along = [
+            (joint, found[joint][view.path.rows]) for joint in wanted if greatest_of(found[joint]) > least
+        ]
+        if self._along:
+            sizes = np.linalg.norm(np.concatenate([force for _, force in self._along]), axis=1)
+            self._unit = arrow_unit(
+                view, sizes, percent=95 if view.circuit.turns_back else 100, longest=LONGEST
+            )
+
+    def _at(self, view: View, row: float) -> list[Arrow]:
+        places = view.frame.pose(row)
+        arrows: list[Arrow] = []
+        for joint, along in self._along:
+            force = at_row(along, row)
+            size = float(np.linalg.norm(force))
+            if math.isfinite(size) and self._unit > 0:
+                place = places[view.frame.joints[joint]]
+                arrows.append((place, force / self._unit, REACTION, f"{number(size)} N"))
+        return arrows
+
 
 #: The peaks are found so long [s] after the last change: finding them takes longer than a picture may.
 AT_REST = 0.25
@@ -23,7 +117,7 @@ AT_REST = 0.25
 class ForcesPanel:
     """Check boxes of gravity, loads and springs, the arrows in the joints, and the peaks of the drive."""
 
-    def __init__(self, gui: viser.GuiApi, worker: Asked, session: Session, stage: Stage) -> None:
+    def __init__(self, gui: viser.GuiApi, worker: Worker, session: Session, stage: Stage) -> None:
         self._gui, self._worker, self._session = gui, worker, session
         self._hint = gui.add_html("")
         self._home = gui.add_folder("What acts", visible=False)
@@ -88,13 +182,11 @@ class ForcesPanel:
         with self._home:
             for switch in switches:
                 box = self._gui.add_checkbox(switch.name, True, hint=switch.words)
-                box.on_update(partial(self._switched, switch.key))
+                on_change(box, self._worker, ("switch", switch.key), partial(self._turn, switch.key))
                 self._boxes.append(box)
 
-    def _switched(self, key: str, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            on = bool(event.target.value)
-            self._worker.ask(("switch", key), lambda: self._session.switch(key, on=on))
+    def _turn(self, key: str, on: bool) -> None:
+        self._session.switch(key, on=on)
 
 
 def _nothing() -> str:

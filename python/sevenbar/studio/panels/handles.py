@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from html import escape
-from typing import Any
 
 import numpy as np
 import viser
 
 from sevenbar.arrays import Floats
-from sevenbar.studio.panels.controls import Alert, Asked, by_person, put
+from sevenbar.studio.panels.controls import Alert, on_change, put
 from sevenbar.studio.pictures.stage import Stage
 from sevenbar.studio.state.grips import Grip, grips
 from sevenbar.studio.state.session import Session
+from sevenbar.studio.worker import Worker
 
 #: The length of a handle's arrows, and how thick they are [1, pixels].
 ARROWS, THICK = 0.17, 3.0
@@ -34,7 +34,7 @@ class Handles:
     def __init__(
         self,
         client: viser.ClientHandle,
-        worker: Asked,
+        worker: Worker,
         session: Session,
         stage: Stage,
         pause: Callable[[], None],
@@ -47,17 +47,12 @@ class Handles:
         )
         self._note = client.gui.add_html("", visible=False)
         self._alert = Alert(client.gui)
-        self._switch.on_update(self._switched)
+        on_change(self._switch, worker, "handles", lambda on: self._turn(on=on))
         self._on = False
         self._held = ""
         self._handles: dict[str, viser.TransformControlsHandle] = {}
         self._grips: dict[str, Grip] = {}
         self._shown: tuple[object, ...] = ()
-
-    def _switched(self, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            on = self._switch.value
-            self._worker.ask("handles", lambda: self._turn(on=on))
 
     def _turn(self, *, on: bool) -> None:
         self._on, self._shown = on, ()

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from html import escape
-from typing import Any
+from itertools import count
 
 import viser
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.studio.panels.controls import Alert, Asked, offer, put
+from sevenbar.studio.panels.controls import Alert, offer, put
 from sevenbar.studio.panels.shaping import DimensionList
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
+from sevenbar.studio.worker import Worker
 
 
 class PointsPanel:
     """The points of the description, and the form for one more."""
 
-    def __init__(self, gui: viser.GuiApi, worker: Asked, session: Session) -> None:
+    def __init__(self, gui: viser.GuiApi, worker: Worker, session: Session) -> None:
         self._worker, self._session = worker, session
         with gui.add_folder("New point"):
             self._name = gui.add_text("name", "P")
@@ -60,9 +62,8 @@ class PointsPanel:
             return
         self._shown = draft
         linkage = draft.linkage
-        count = len(linkage.joints)
-        links = (*(f"{number}" for number in range(1, count)), f"{count} the ground")
-        offer(self._link, links)
+        last = len(linkage.joints)
+        offer(self._link, (*(f"{number}" for number in range(1, last)), f"{last} the ground"))
         letters = "u, v, w" if draft.linkage.in_rows else "x, y, z"
         self._at.label = f"at {letters} [{linkage.length_unit}]"
         names = tuple(str(point["name"]) for point in draft.raw.get("point", ()))
@@ -96,10 +97,7 @@ _HINT = (
 )
 
 
-def _names() -> Any:
+def _names() -> Iterator[str]:
     """P, Q, R .. Z, then P1, P2, .."""
     yield from "PQRSTUVWXYZ"
-    number = 0
-    while True:
-        number += 1
-        yield f"P{number}"
+    yield from (f"P{number}" for number in count(1))

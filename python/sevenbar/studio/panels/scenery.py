@@ -9,13 +9,14 @@ import viser
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import places_of, skeleton_of
-from sevenbar.drawing.style import ACCELERATION, CIRCUIT_COLOURS, VELOCITY
+from sevenbar.drawing.style import ACCELERATION, VELOCITY, circuit_colour
 from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.kinematics.ranges.reach import within
-from sevenbar.studio.panels.controls import Asked, offer
+from sevenbar.studio.panels.controls import offer
 from sevenbar.studio.pictures.stage import FIELD, Stage
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
+from sevenbar.studio.worker import Worker
 
 #: Ghosts of one circuit, spread over its cycle.
 POSITIONS = 8
@@ -34,7 +35,7 @@ NO_GHOSTS, ALONG, MODES = "none", "positions along the motion", "all modes at th
 class Scenery:
     """Draws the session into the scene of a tab."""
 
-    def __init__(self, client: viser.ClientHandle, worker: Asked, session: Session) -> None:
+    def __init__(self, client: viser.ClientHandle, worker: Worker, session: Session) -> None:
         self._client, self._worker, self._session = client, worker, session
         self.stage = Stage(client.scene)
         gui = client.gui
@@ -57,10 +58,9 @@ class Scenery:
         )
         look = gui.add_button("Look at it all", color="gray", icon=viser.Icon.FOCUS_CENTERED)
         look.on_click(lambda _: worker.ask("look", self.look))
-        self._ghosts.on_update(lambda _: worker.ask("scenery", lambda: None))
-        self._axodes.on_update(lambda _: worker.ask("scenery", lambda: None))
-        for switch in self._switches.values():
-            switch.on_update(lambda _: worker.ask("scenery", lambda: None))
+        controls: tuple[Any, ...] = (self._ghosts, self._axodes, *self._switches.values())
+        for control in controls:
+            control.on_update(lambda _: worker.ask("scenery", lambda: None))
         self._framed: object = None
         self._aimed: tuple[Floats, float] | None = None
         self._arrived = False
@@ -210,19 +210,19 @@ class Scenery:
         self.stage.axodes(self._lines[2], self._lines[3] @ frame[:3, :3].T + frame[:3, 3])
 
     def _ghost(self, view: View) -> None:
-        match self._ghosts.value:
-            case word if word == ALONG:
-                self.stage.ghosts([(view.frame.pose(row), None) for row in self._spread(view)])
-            case word if word == MODES:
-                modes = self._session.modes()
-                shown = self._session.mode(modes)
-                others = [mode for i, mode in enumerate(modes) if i != shown]
-                q = np.array([each.joints(row) for each, row in others])
-                places = list(places_of(q, view.frame)) if others else []
-                colours = [CIRCUIT_COLOURS[each.circuit.index % len(CIRCUIT_COLOURS)] for each, _ in others]
-                self.stage.ghosts(list(zip(places, colours, strict=True)))
-            case _:
-                self.stage.ghosts([])
+        chosen = self._ghosts.value
+        shown: list[tuple[Floats, str | None]] = []
+        if chosen == ALONG:
+            shown = [(view.frame.pose(row), None) for row in self._spread(view)]
+        elif chosen == MODES:
+            modes = self._session.modes()
+            own = self._session.mode(modes)
+            others = [mode for i, mode in enumerate(modes) if i != own]
+            q = np.array([each.joints(row) for each, row in others])
+            places = list(places_of(q, view.frame)) if others else []
+            colours = [circuit_colour(each.circuit.index) for each, _ in others]
+            shown = list(zip(places, colours, strict=True))
+        self.stage.ghosts(shown)
 
     def _spread(self, view: View) -> list[float]:
         """Rows spread over the cycle, or from stop to stop."""
@@ -237,11 +237,9 @@ class Scenery:
         arrows = []
         for index, units in self._units.items():
             place, velocity, acceleration = view.rates(index, self._session.row)
-            for wanted, vector, unit, colour in (
-                ("velocity arrows", velocity, units[0], VELOCITY),
-                ("acceleration arrows", acceleration, units[1], ACCELERATION),
-            ):
-                if switches[wanted] and np.isfinite(vector).all() and unit > 0:
+            both = ("velocity", velocity, VELOCITY), ("acceleration", acceleration, ACCELERATION)
+            for (word, vector, colour), unit in zip(both, units, strict=True):
+                if switches[f"{word} arrows"] and np.isfinite(vector).all() and unit > 0:
                     arrows.append((place, vector / unit, colour, ""))
         self.stage.arrows(arrows)
 

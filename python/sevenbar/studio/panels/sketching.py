@@ -8,9 +8,10 @@ from typing import Any, cast
 import viser
 
 from sevenbar.description.gallery import names, title
-from sevenbar.studio.panels.controls import PAUSE, Alert, Asked, by_person
+from sevenbar.studio.panels.controls import PAUSE, Alert, on_change
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.sketch import DrawnJoint, Vector, beginning, drawn, kinds_of, of_kind
+from sevenbar.studio.worker import Worker
 from sevenbar.text.units import LENGTHS
 
 #: What the form begins with.
@@ -22,8 +23,8 @@ _Boxes = dict[str, Any]
 class SketchPanel:
     """The forms for a new linkage; what they make is opened as one more step, which `undo` takes back."""
 
-    def __init__(self, gui: viser.GuiApi, worker: Asked, session: Session) -> None:
-        self._gui, self._worker, self._session = gui, worker, session
+    def __init__(self, gui: viser.GuiApi, worker: Worker, session: Session) -> None:
+        self._gui, self._session = gui, session
         self._kinds = {f"{kind}: {title(kind)}": kind for kind in names()}
         self._name = gui.add_text("new name", FIRST_NAME)
         self._kind = gui.add_dropdown("kind", tuple(self._kinds), hint="with the dimensions of the gallery")
@@ -40,12 +41,10 @@ class SketchPanel:
         self._build(beginning(kinds_of(FIRST_JOINTS)))
         make.on_click(lambda _: worker.ask("new", lambda: self._open(self._of_kind)))
         draw.on_click(lambda _: worker.ask("new", lambda: self._open(self._drawn)))
-        self._joints.on_update(self._typed)
+        on_change(self._joints, worker, "joints", self._typed, delay=PAUSE)
 
-    def _typed(self, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            words = self._joints.value
-            self._worker.ask("joints", lambda: self._alert.tried(lambda: self._lay(words)), delay=PAUSE)
+    def _typed(self, words: str) -> None:
+        self._alert.tried(lambda: self._lay(words))
 
     def _lay(self, words: str) -> None:
         """Gives the form the rows of other joints."""

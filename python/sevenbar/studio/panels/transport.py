@@ -13,7 +13,7 @@ from sevenbar.kinematics.circuits.poses import at_row
 from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.kinematics.ranges.reach import Reach, stopped_by
 from sevenbar.reporting.shown import value_text
-from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, offer, put
+from sevenbar.studio.panels.controls import PAUSE, Alert, offer, on_change, put
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import heading
 from sevenbar.studio.state.view import View
@@ -54,10 +54,12 @@ class Transport:
         self._play.on_click(lambda _: worker.ask("play", self._toggle))
         self._next.on_click(lambda _: worker.ask("mode", session.next_mode))
         self._steps.on_click(self._stepped)
-        self._travel.on_update(self._scrubbed)
-        self._goto.on_update(self._typed)
-        self._circuit.on_update(self._chosen)
-        self._held.on_update(self._let_go)
+        on_change(self._travel, worker, "scrub", lambda to: self._halt_and(lambda: self._seek(float(to))))
+        on_change(
+            self._goto, worker, "goto", lambda text: self._halt_and(lambda: self._go(text)), delay=PAUSE
+        )
+        on_change(self._circuit, worker, "circuit", lambda text: session.choose(int(text.partition(":")[0])))
+        on_change(self._held, worker, "held", session.hold)
         self._shown: tuple[object, ...] = ()
 
     def tick(self, seconds: float) -> None:
@@ -68,10 +70,8 @@ class Transport:
 
     def _toggle(self) -> None:
         self._worker.playing = not self._worker.playing and self._session.view is not None
-        self._play.label = "Pause" if self._worker.playing else "Play"
-        self._play.icon = (
-            viser.Icon.PLAYER_PAUSE_FILLED if self._worker.playing else viser.Icon.PLAYER_PLAY_FILLED
-        )
+        pause, play = ("Pause", viser.Icon.PLAYER_PAUSE_FILLED), ("Play", viser.Icon.PLAYER_PLAY_FILLED)
+        self._play.label, self._play.icon = pause if self._worker.playing else play
 
     def pause(self) -> None:
         """Ends what plays."""
@@ -86,16 +86,6 @@ class Transport:
         self.pause()
         action()
 
-    def _scrubbed(self, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            travel = float(self._travel.value)
-            self._worker.ask("scrub", lambda: self._halt_and(lambda: self._seek(travel)))
-
-    def _let_go(self, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            held = self._held.value
-            self._worker.ask("held", lambda: self._session.hold(held))
-
     def _seek(self, travel: float) -> None:
         view, reach = self._session.view, self._session.reach
         if view is not None:
@@ -108,11 +98,6 @@ class Transport:
             last = len(view.path.rows) - 1
             self._session.seek(last if time >= view.period else view.row_at(max(time, 0.0)))
 
-    def _typed(self, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            text = self._goto.value
-            self._worker.ask("goto", lambda: self._halt_and(lambda: self._go(text)), delay=PAUSE)
-
     def _go(self, text: str) -> None:
         view = self._session.view
         if view is None or not text.strip():
@@ -120,11 +105,6 @@ class Transport:
             return
         linkage, column = view.linkage, view.circuit.input_column
         self._alert.tried(lambda: self._session.seek_input(joint_value(text, "input", linkage, column)))
-
-    def _chosen(self, event: viser.GuiEvent[Any]) -> None:
-        if by_person(event):
-            index = int(self._circuit.value.partition(":")[0])
-            self._worker.ask("circuit", lambda: self._session.choose(index))
 
     def show(self) -> None:
         """Shows the session as it is."""

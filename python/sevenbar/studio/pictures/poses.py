@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Booleans, Floats, Integers
+from sevenbar.arrays import Floats, Integers
 
 #: For each shape of `shapes.mesh`: orientations wxyz (N, 4), positions (N, 3), scales (N, 3).
 Poses = dict[str, tuple[Floats, Floats, Floats]]
@@ -16,6 +16,15 @@ Colours = npt.NDArray[np.uint8]
 
 #: What is shorter than this share of its width is nothing, and only rounding gives it a direction.
 POINT = 1e-6
+
+
+#: Of each solid the places that say where it stands, joins, guide, roll and slide, and what `SolidPlan` says.
+SOLID = np.dtype(
+    [
+        *(("places", np.int64, 8), ("share", float), ("shift", float), ("length", float), ("twist", float)),
+        *(("sides", float, 2), ("colour", np.uint8, 3), ("moves", bool)),
+    ]
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,20 +36,13 @@ class SolidPlan:
     the way, and `sides` wide. Its x axis is that of the way `roll`, if there is one, turned further by
     `twist` [rad per length] for each length of the way `slide` along it.
 
-    `shapes` are the rows of each shape; `places` (8, N) the places of each row: joins, guide, roll, slide;
-    places from `count` on are those of `fixed` (m, 3), which never move. `axes` (a, 2) are the ends of the
-    joints' axes; `labels` what is written at which place.
+    `shapes` are the rows of each shape in `solids` (N,), of `SOLID`; places from `count` on are those of
+    `fixed` (m, 3), which never move. `axes` (a, 2) are the ends of the joints' axes; `labels` what is written
+    at which place.
     """
 
     shapes: dict[str, slice]
-    places: Integers
-    share: Floats
-    shift: Floats
-    length: Floats
-    twist: Floats
-    sides: Floats
-    colours: Colours
-    moves: Booleans
+    solids: npt.NDArray[np.void]
     count: int
     fixed: Floats
     axes: Integers
@@ -53,20 +55,15 @@ class SolidPlan:
 
     def colours_of(self, shape: str) -> Colours:
         """The colours (N, 3) of a shape's solids."""
-        return self.colours[self.shapes[shape]]
+        colours: Colours = self.solids["colour"][self.shapes[shape]]
+        return colours
 
     def moving(self) -> SolidPlan:
         """The plan of the moving links and joints alone."""
-        kept = {shape: int(self.moves[rows].sum()) for shape, rows in self.shapes.items()}
-        each = ("share", "shift", "length", "twist", "sides", "colours", "moves")
-        return replace(
-            self,
-            shapes=slices({shape: count for shape, count in kept.items() if count}),
-            places=self.places[:, self.moves],
-            axes=self.axes[:0],
-            labels=(),
-            **{name: getattr(self, name)[self.moves] for name in each},
-        )
+        moves = self.solids["moves"]
+        kept = {shape: int(moves[rows].sum()) for shape, rows in self.shapes.items()}
+        shapes = slices({shape: count for shape, count in kept.items() if count})
+        return replace(self, shapes=shapes, solids=self.solids[moves], axes=self.axes[:0], labels=())
 
 
 def slices(counts: dict[str, int]) -> dict[str, slice]:
@@ -83,8 +80,8 @@ def poses(plan: SolidPlan, places: Floats) -> Poses:
 
     What stands on a place that is NaN gets the scale 0, and so do solids of no length.
     """
-    known = plan.known(places)
-    start, end, *others = np.moveaxis(known[..., plan.places, :], -3, 0)
+    known, solids = plan.known(places), plan.solids
+    start, end, *others = np.moveaxis(known[..., solids["places"].T, :], -3, 0)
     guide, roll, slide = (others[i + 1] - others[i] for i in (0, 2, 4))
     way = end - start
     length = np.sqrt(_dot(way, way))
@@ -92,11 +89,11 @@ def poses(plan: SolidPlan, places: Floats) -> Poses:
     along[length == 0] = (0.0, 0.0, 1.0)
     turned = np.where(_dot(along, guide) < 0, -1.0, 1.0)[..., None]
     along = turned * along
-    middle = start + plan.share[:, None] * way + plan.shift[:, None] * along
-    long = np.where(np.isnan(plan.length), length, plan.length)
-    scale = np.concatenate([np.broadcast_to(plan.sides, (*long.shape, 2)), long[..., None]], axis=-1)
-    turn = turns(along, roll, plan.twist * _dot(slide, along))
-    hidden = np.isnan(middle + turn[..., :3]).any(axis=-1) | ~(long > POINT * plan.sides[:, 0])
+    middle = start + solids["share"][:, None] * way + solids["shift"][:, None] * along
+    long = np.where(np.isnan(solids["length"]), length, solids["length"])
+    scale = np.concatenate([np.broadcast_to(solids["sides"], (*long.shape, 2)), long[..., None]], axis=-1)
+    turn = turns(along, roll, solids["twist"] * _dot(slide, along))
+    hidden = np.isnan(middle + turn[..., :3]).any(axis=-1) | ~(long > POINT * solids["sides"][:, 0])
     if hidden.any():
         middle, scale = np.where(hidden[..., None], 0.0, middle), np.where(hidden[..., None], 0.0, scale)
         turn = np.where(hidden[..., None], (1.0, 0.0, 0.0, 0.0), turn)

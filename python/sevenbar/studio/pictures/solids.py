@@ -11,12 +11,13 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.names import named_together
 from sevenbar.drawing.scene import link_colours, paths
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import GROUND, JOINT
 from sevenbar.kinematics.loop.rigid import rotation_of
 from sevenbar.studio.pictures.layout import NOWHERE, JointPlaces, Layout, Pair, layout
-from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, slices, turns
+from sevenbar.studio.pictures.poses import SOLID, Colours, Poses, SolidPlan, poses, slices, turns
 from sevenbar.studio.pictures.shapes import TURNS
 
 __all__ = ["Poses", "SolidPlan", "plan", "poses", "rgb"]
@@ -143,19 +144,10 @@ def _unit(where: Layout, pose: Floats, size: float) -> float:
 
 
 def _made(solids: _Solids, frame: Skeleton, pose: Floats, size: float) -> SolidPlan:
-    rows = [row for shape in solids.rows.values() for row in shape]
-    places, share, shift, length, twist, sides, colours, moves = zip(*rows, strict=True)
     where = solids.layout
     return SolidPlan(
         slices({shape: len(found) for shape, found in solids.rows.items()}),
-        np.array(places).T.copy(),
-        np.array(share),
-        np.array(shift),
-        np.array(length),
-        np.array(twist),
-        np.array([np.broadcast_to(side, 2) for side in sides]),
-        np.array(colours),
-        np.array(moves),
+        np.array([row for rows in solids.rows.values() for row in rows], SOLID),
         where.count,
         np.array(solids.fixed).reshape(-1, 3),
         np.array([pair for joint in where.joints for pair in joint.axes]).reshape(-1, 2),
@@ -165,12 +157,8 @@ def _made(solids: _Solids, frame: Skeleton, pose: Floats, size: float) -> SolidP
 
 def _labels(frame: Skeleton, pose: Floats, size: float) -> tuple[tuple[str, int], ...]:
     """The names of places; those in one place share a label."""
-    named: dict[int, list[str]] = {}
-    for place, name in enumerate(frame.names):
-        if name:
-            near = (other for other in named if np.abs(pose[other] - pose[place]).max() < 1e-6 * size)
-            named.setdefault(next(near, place), []).append(name)
-    return tuple((", ".join(dict.fromkeys(names)), place) for place, names in named.items())
+    named = named_together(frame.names, pose[None], 1e-6 * size)
+    return tuple((", ".join(names), place) for place, names in named.items())
 
 
 def _add_joint(

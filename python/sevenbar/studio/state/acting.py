@@ -64,14 +64,10 @@ class SwitchedLoading:
         if any(own.gravity):
             found.append(Switch(GRAVITY, GRAVITY, f"{triple_text(own.gravity)} m/s^2"))
         found += _named("load", own.loads, [load_text(load, shown) for load in own.loads])
-        slides = [
-            spring.joint is not None and not linkage.turns(linkage.column(spring.joint, "joint"))
-            for spring in own.springs
-        ]
-        words = [
-            spring_text(spring, linkage.length_unit, slides=slide)
-            for spring, slide in zip(own.springs, slides, strict=True)
-        ]
+        words = []
+        for spring in own.springs:
+            slides = spring.joint is not None and not linkage.turns(linkage.column(spring.joint, "joint"))
+            words.append(spring_text(spring, linkage.length_unit, slides=slides))
         return (*found, *_named("spring", own.springs, words))
 
     def switched(self, key: str, *, on: bool) -> SwitchedLoading:

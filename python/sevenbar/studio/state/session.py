@@ -112,15 +112,8 @@ class Session:
         """Has the linkage stop at its stops, or go through; a place beyond one goes to the nearest within."""
         self.held = held
         if self.reaches and self.reach is None:
-            view, last = self.reaches[0].way, len(self.reaches[0].way.path.rows) - 1
-
-            def apart(row: float) -> float:
-                gap = abs(row - self.row)
-                return min(gap, last - gap) if view.circuit.closed else gap
-
-            self.row = min(
-                (one.rolled(end) for one in self.reaches for end in (one.low, one.high)), key=apart
-            )
+            ends = (one.rolled(end) for one in self.reaches for end in (one.low, one.high))
+            self.row = min(ends, key=self._apart)
 
     def change(self, place: Place, value: object, stroke: object = None) -> None:
         """Gives a number of the description, or a place, another value.
@@ -198,17 +191,17 @@ class Session:
 
     def undo(self) -> None:
         """Takes back the last step, if there is one."""
-        if self.past:
-            self.future.append(self.draft)
-            self._last_change = ((), -math.inf)
-            self._take(self.past.pop())
+        self._go(self.past, self.future)
 
     def redo(self) -> None:
         """Takes the last step that was undone again, if there is one."""
-        if self.future:
-            self.past.append(self.draft)
+        self._go(self.future, self.past)
+
+    def _go(self, taken: list[Draft], kept: list[Draft]) -> None:
+        if taken:
+            kept.append(self.draft)
             self._last_change = ((), -math.inf)
-            self._take(self.future.pop())
+            self._take(taken.pop())
 
     def reset(self) -> None:
         """Goes back to the description as its file has it, as one more step."""
@@ -238,13 +231,14 @@ class Session:
     def mode(self, modes: list[tuple[View, float]]) -> int:
         """Which of the modes at the input on view is on view."""
         own = [i for i, (view, _) in enumerate(modes) if view is self.view]
-        last = len(self.view.path.rows) - 1 if self.view else 1
+        return min(own, key=lambda i: self._apart(modes[i][1]), default=0)
 
-        def apart(index: int) -> float:
-            gap = abs(modes[index][1] - self.row)
-            return min(gap, last - gap) if modes[index][0].circuit.closed else gap
-
-        return min(own, key=apart, default=0)
+    def _apart(self, row: float) -> float:
+        """How far a row of the path on view is from the one on view, on a closed circuit the shorter way."""
+        gap = abs(row - self.row)
+        if self.view is None or not self.view.circuit.closed:
+            return gap
+        return min(gap, len(self.view.path.rows) - 1 - gap)
 
     def seek(self, row: float) -> None:
         """Goes to a row of the path on view, no farther than a stop lets it."""

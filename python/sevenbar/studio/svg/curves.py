@@ -13,29 +13,14 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import input_label, range_drawn, shown_value, slides
 from sevenbar.drawing.output_curves import inputs_between, place_of
-from sevenbar.drawing.style import CIRCUIT_COLOURS
+from sevenbar.drawing.style import circuit_colour
 from sevenbar.drawing.ticks import FLAT
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.extents import Flags
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.ranges.reach import within
 from sevenbar.studio.state.view import View
-from sevenbar.studio.svg.panel import Panel
-from sevenbar.studio.svg.picture import (
-    GROUND,
-    INK,
-    LABELLED,
-    MARGINS,
-    QUIET,
-    ZERO,
-    Frame,
-    breadth,
-    fitted,
-    grid,
-    head,
-    stroke,
-    words,
-)
+from sevenbar.studio.svg import picture
 from sevenbar.studio.svg.quantities import Quantity
 from sevenbar.studio.svg.scale import Scale, scale
 
@@ -63,7 +48,7 @@ class ShownCurve:
     @property
     def colour(self) -> str:
         """The circuit's colour, as in all figures."""
-        return CIRCUIT_COLOURS[self.view.circuit.index % len(CIRCUIT_COLOURS)]
+        return circuit_colour(self.view.circuit.index)
 
     @property
     def passes(self) -> tuple[slice, ...]:
@@ -80,7 +65,7 @@ class ShownCurve:
         spans = (range_drawn(self.view.circuit, self.values[part], kind) for part in self.passes)
         return _union([span for span in spans if span is not None])
 
-    def lines(self, frame: Frame, x: Floats, y: Floats, most: int) -> str:
+    def lines(self, frame: picture.Frame, x: Floats, y: Floats, most: int) -> str:
         """The passes as SVG, in tenths of px from the plot area's corner, with at most about `most` rows."""
         left, top, _, _ = frame.box
         step = max(1, round(len(x) / most))
@@ -92,7 +77,7 @@ class ShownCurve:
             inputs = self.view.path.input[part]
             falls = len(self.passes) > 1 and inputs[-1] < inputs[0]
             look = ' stroke-dasharray="50 30"' if falls else ""
-            drawn.append(f'<path d="{stroke(x[rows] - left, y[rows] - top)}"{look}/>')
+            drawn.append(f'<path d="{picture.stroke(x[rows] - left, y[rows] - top)}"{look}/>')
         return "".join(drawn)
 
 
@@ -104,7 +89,7 @@ def panels(
     over: Over = "input",
     width: int = 420,
     height: int = 170,
-) -> tuple[Panel, ...]:
+) -> tuple[picture.Panel, ...]:
     """A panel for each quantity: every circuit over the input, or over the time of the chosen one's cycle.
 
     `views` are those of all circuits of a motion, `circuit` is the index of the one drawn strong; `width` and
@@ -112,7 +97,7 @@ def panels(
     """
     motion = views[circuit].motion
     labelled = over == "input" and motion.limits.size > 0
-    frame = Frame(width, height, LABELLED if labelled else MARGINS[1])
+    frame = picture.Frame(width, height, picture.LABELLED if labelled else picture.MARGINS[1])
     across = [each.shown_input if over == "input" else each.path.time for each in views]
     reach = _reach(motion, across if over == "input" else [across[circuit]], over)
     made = []
@@ -130,14 +115,14 @@ def panels(
 
 
 def _panel(
-    frame: Frame,
+    frame: picture.Frame,
     quantity: Quantity,
     curves: Sequence[ShownCurve],
     circuit: int,
     reach: Span,
     own_span: Span,
     over: Over,
-) -> Panel:
+) -> picture.Panel:
     own = curves[circuit]
     motion = own.view.motion
     left, top, right, bottom = frame.box
@@ -158,9 +143,9 @@ def _panel(
         if each is not own
     ]
     content = [
-        f'<rect width="{frame.width}" height="{frame.height}" fill="{GROUND}"/>',
-        head(frame, quantity.name, beside.unit(quantity.unit), _keys(quantity, own), own.colour),
-        grid(frame, below, beside, name, unit),
+        f'<rect width="{frame.width}" height="{frame.height}" fill="{picture.GROUND}"/>',
+        picture.head(frame, quantity.name, beside.unit(quantity.unit), _keys(quantity, own), own.colour),
+        picture.grid(frame, below, beside, name, unit),
         _limits(own.view, frame, below, unit) if over == "input" else "",
         f'<svg x="{left}" y="{top}" width="{wide}" height="{tall}" viewBox="0 0 {wide}0 {tall}0" '
         'fill="none" stroke-linejoin="round">',
@@ -170,10 +155,10 @@ def _panel(
         _marks(quantity, own, frame, below, beside) if own_span[1] - own_span[0] > least else "",
     ]
     svg = frame.svg("".join(content), name=f"{quantity.name}, circuit {circuit}")
-    return Panel(frame, svg, x, y, own.values, beside, quantity.unit, own.colour)
+    return picture.Panel(frame, svg, x, y, own.values, beside, quantity.unit, own.colour)
 
 
-def _strong(own: ShownCurve, frame: Frame, x: Floats, y: Floats) -> str:
+def _strong(own: ShownCurve, frame: picture.Frame, x: Floats, y: Floats) -> str:
     """The chosen circuit's line, pale where a stop of the linkage keeps it from going."""
     whole = own.lines(frame, x, y, len(x))
     if not own.view.motion.linkage.stops.stops:
@@ -185,24 +170,18 @@ def _strong(own: ShownCurve, frame: Frame, x: Floats, y: Floats) -> str:
     )
 
 
-def _empty(frame: Frame, quantity: Quantity, reason: str) -> Panel:
+def _empty(frame: picture.Frame, quantity: Quantity, reason: str) -> picture.Panel:
     left, top, right, bottom = frame.box
+    middle, text = ((left + right) / 2, (top + bottom) / 2 + 4), picture.fitted(reason, frame.width - 4)
     content = [
-        f'<rect width="{frame.width}" height="{frame.height}" fill="{GROUND}"/>',
+        f'<rect width="{frame.width}" height="{frame.height}" fill="{picture.GROUND}"/>',
         f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" fill="#f4f5f7"/>',
-        head(frame, quantity.name, quantity.unit, [], INK),
-        words(
-            frame,
-            (left + right) / 2,
-            (top + bottom) / 2 + 4,
-            fitted(reason, frame.width - 4),
-            anchor="middle",
-            look=f'fill="{QUIET}"',
-        ),
+        picture.head(frame, quantity.name, quantity.unit, [], picture.INK),
+        picture.words(frame, *middle, text, anchor="middle", look=f'fill="{picture.QUIET}"'),
     ]
     nothing = np.empty(0)
     svg = frame.svg("".join(content), name=f"{quantity.name}: {reason}")
-    return Panel(frame, svg, nothing, nothing, nothing)
+    return picture.Panel(frame, svg, nothing, nothing, nothing)
 
 
 def _bounded(values: Floats) -> Floats:
@@ -252,7 +231,7 @@ def _keys(quantity: Quantity, own: ShownCurve) -> list[tuple[str, str]]:
     return keys
 
 
-def _limits(view: View, frame: Frame, below: Scale, unit: str) -> str:
+def _limits(view: View, frame: picture.Frame, below: Scale, unit: str) -> str:
     """Dashed lines with values at input limits, paler for other circuits; dotted ones at change points."""
     motion = view.motion
     left, top, _, bottom = frame.box
@@ -266,16 +245,16 @@ def _limits(view: View, frame: Frame, below: Scale, unit: str) -> str:
         values = np.sort(inputs_between(motion, inputs, below.low, below.high))
         for value, x in zip(values.tolist(), frame.x(below, values).tolist(), strict=True):
             label = below.reading(value, unit)
-            colour = QUIET if (np.abs(own - value) < 1e-6 * (1 + abs(value))).any() else ZERO
+            colour = picture.QUIET if (np.abs(own - value) < 1e-6 * (1 + abs(value))).any() else picture.ZERO
             parts.append(
                 f'<path d="M{x:.1f} {top}V{bottom}" stroke="{colour}" stroke-dasharray="{dashes}">'
                 f"<title>{escape(f'{name} {label}')}</title></path>"
             )
             # a number without room beside its neighbour is left to the tooltip
-            wide = breadth(label)
+            wide = picture.breadth(label)
             start = max(x - wide / 2, left)
             if name == "input limit" and start >= free:
-                parts.append(words(frame, start, top - 3, label, look=f'fill="{QUIET}"'))
+                parts.append(picture.words(frame, start, top - 3, label, look=f'fill="{picture.QUIET}"'))
                 free = start + wide + 4
     return "".join(parts)
 
@@ -285,7 +264,7 @@ def _pale(colour: str) -> str:
     return "#" + "".join(f"{round(255 - 0.4 * (255 - int(colour[i : i + 2], 16))):02x}" for i in (1, 3, 5))
 
 
-def _marks(quantity: Quantity, own: ShownCurve, frame: Frame, below: Scale, beside: Scale) -> str:
+def _marks(quantity: Quantity, own: ShownCurve, frame: picture.Frame, below: Scale, beside: Scale) -> str:
     """Small circles at the extremes of the output's angle or rates, each with its value as a tooltip."""
     motion, circuit = own.view.motion, own.view.circuit
     extremes: Extremes | None = getattr(circuit, quantity.kind)
@@ -295,10 +274,8 @@ def _marks(quantity: Quantity, own: ShownCurve, frame: Frame, below: Scale, besi
     inputs = own.view.shown_input
     lines = [(inputs[part], own.across[part], own.values[part]) for part in own.passes]
     parts: list[str] = []
-    for word, value, at in (
-        ("lowest", extremes.lowest, extremes.lowest_at),
-        ("highest", extremes.highest, extremes.highest_at),
-    ):
+    for word in ("lowest", "highest"):
+        value, at = getattr(extremes, word), getattr(extremes, f"{word}_at")
         if quantity.order == 0:
             value = shown_value(motion, motion.output, value) + quantity.shift(own.view)
         across = place_of(lines, value, shown_value(motion, motion.input, at), period)
@@ -306,6 +283,6 @@ def _marks(quantity: Quantity, own: ShownCurve, frame: Frame, below: Scale, besi
         _, top, _, bottom = frame.box
         if math.isfinite(x) and top <= y <= bottom:
             label = escape(f"{word} {beside.reading(value, quantity.unit)}")
-            look = f'fill="{GROUND}" stroke="{own.colour}" stroke-width="1.5"'
+            look = f'fill="{picture.GROUND}" stroke="{own.colour}" stroke-width="1.5"'
             parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.2" {look}><title>{label}</title></circle>')
     return "".join(parts)
