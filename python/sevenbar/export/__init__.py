@@ -10,10 +10,10 @@ overlap little (`layout`), and one module for each kind of file.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sevenbar.errors import RequestError, check_word, shown, suggestion
 from sevenbar.export.pose import take
@@ -30,118 +30,58 @@ __all__ = ["FORMATS", "Bodies", "Format", "Table", "ending_of", "export", "forma
 
 
 @dataclass(frozen=True)
-class Table:
-    """A kind of file that holds all rows of every circuit: its endings, and what writes it."""
+class _Kind:
+    """A kind of file: its endings, and the function of a module here that writes it."""
 
     endings: tuple[str, ...]
-    write: Callable[[Motion, Path, Units, Progress], None]
+    writer: str
+
+    def _call(self, *given: Any) -> None:
+        """Calls the writer, which is imported when it is used: behind it are large libraries."""
+        module, _, name = self.writer.partition(".")
+        getattr(import_module(f"sevenbar.export.{module}"), name)(*given)
 
 
 @dataclass(frozen=True)
-class Bodies:
-    """A kind of file that holds the linkage's bodies in one pose: its endings, and what writes it."""
+class Table(_Kind):
+    """A kind of file that holds all rows of every circuit."""
 
-    endings: tuple[str, ...]
-    write: Callable[[Assembly, Path, Progress], None]
+    def write(self, motion: Motion, path: Path, units: Units, progress: Progress) -> None:
+        """Writes the rows of a motion."""
+        self._call(motion, path, units, progress)
+
+
+@dataclass(frozen=True)
+class Bodies(_Kind):
+    """A kind of file that holds the linkage's bodies in one pose."""
+
     #: Whose masses it holds where the linkage has none.
     masses: str = ""
 
+    def write(self, assembly: Assembly, path: Path, progress: Progress) -> None:
+        """Writes the parts of an assembly."""
+        self._call(assembly, path, progress)
+
 
 Format = Table | Bodies
-
-
-# each writer is imported when it is used: behind them stand large libraries
-
-
-def _csv(motion: Motion, path: Path, units: Units, progress: Progress) -> None:
-    from sevenbar.export import tables
-
-    tables.write_csv(motion, path, units, progress)
-
-
-def _xlsx(motion: Motion, path: Path, units: Units, _: Progress) -> None:
-    from sevenbar.export import workbook
-
-    workbook.write_xlsx(motion, path, units)
-
-
-def _parquet(motion: Motion, path: Path, units: Units, _: Progress) -> None:
-    from sevenbar.export import tables
-
-    tables.write_parquet(motion, path, units)
-
-
-def _npz(motion: Motion, path: Path, units: Units, _: Progress) -> None:
-    from sevenbar.export import tables
-
-    tables.write_npz(motion, path, units)
-
-
-def _mat(motion: Motion, path: Path, units: Units, _: Progress) -> None:
-    from sevenbar.export import tables
-
-    tables.write_mat(motion, path, units)
-
-
-def _json(motion: Motion, path: Path, units: Units, _: Progress) -> None:
-    from sevenbar.export import tables
-
-    tables.write_json(motion, path, units)
-
-
-def _glb(assembly: Assembly, path: Path, progress: Progress) -> None:
-    from sevenbar.export import meshes
-
-    meshes.write_glb(assembly, path, progress)
-
-
-def _stl(assembly: Assembly, path: Path, progress: Progress) -> None:
-    from sevenbar.export import meshes
-
-    meshes.write_stl(assembly, path, progress)
-
-
-def _step(assembly: Assembly, path: Path, progress: Progress) -> None:
-    from sevenbar.export import cad
-
-    cad.write_step(assembly, path, progress)
-
-
-def _urdf(assembly: Assembly, path: Path, _: Progress) -> None:
-    from sevenbar.export import urdf
-
-    urdf.write_urdf(assembly, path)
-
-
-def _mjcf(assembly: Assembly, path: Path, _: Progress) -> None:
-    from sevenbar.export import model
-
-    model.write_mjcf(assembly, path)
-
-
-def _cmd(assembly: Assembly, path: Path, _: Progress) -> None:
-    from sevenbar.export import adams
-
-    adams.write_cmd(assembly, path)
-
 
 #: Masses of bodies as they are drawn (`mass.DENSITY`).
 OF_STEEL = "those of the drawn bodies in steel, 7850 kg/m^3"
 
 #: All kinds of file, by the word that asks for them.
 FORMATS: dict[str, Format] = {
-    "csv": Table((".csv",), _csv),
-    "xlsx": Table((".xlsx",), _xlsx),
-    "parquet": Table((".parquet",), _parquet),
-    "npz": Table((".npz",), _npz),
-    "mat": Table((".mat",), _mat),
-    "json": Table((".json",), _json),
-    "glb": Bodies((".glb",), _glb),
-    "stl": Bodies((".stl",), _stl),
-    "step": Bodies((".step", ".stp"), _step),
-    "urdf": Bodies((".urdf",), _urdf, OF_STEEL),
-    "mjcf": Bodies((".xml", ".mjcf"), _mjcf, "1 kg for every body"),
-    "cmd": Bodies((".cmd",), _cmd, OF_STEEL),
+    "csv": Table((".csv",), "tables.write_csv"),
+    "xlsx": Table((".xlsx",), "workbook.write_xlsx"),
+    "parquet": Table((".parquet",), "tables.write_parquet"),
+    "npz": Table((".npz",), "tables.write_npz"),
+    "mat": Table((".mat",), "tables.write_mat"),
+    "json": Table((".json",), "tables.write_json"),
+    "glb": Bodies((".glb",), "meshes.write_glb"),
+    "stl": Bodies((".stl",), "meshes.write_stl"),
+    "step": Bodies((".step", ".stp"), "cad.write_step"),
+    "urdf": Bodies((".urdf",), "urdf.write_urdf", OF_STEEL),
+    "mjcf": Bodies((".xml", ".mjcf"), "model.write_mjcf", "1 kg for every body"),
+    "cmd": Bodies((".cmd",), "adams.write_cmd", OF_STEEL),
 }
 
 #: What people call a kind of file by the program that reads it.

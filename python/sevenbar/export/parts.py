@@ -78,12 +78,24 @@ def length_of(solid: Rod | Bar) -> float:
     return float(np.linalg.norm(solid.end - solid.start))
 
 
-def frame_of(solid: Rod | Bar) -> Floats:
-    """The frame (4, 4) in the middle of a rod or a bar: z along it, x along a bar's side."""
+def frame_of(solid: Solid) -> Floats:
+    """A frame (4, 4) in the middle of a solid: z along it, x along a bar's side; of a ball as the body's."""
+    if isinstance(solid, Ball):
+        return matrix(np.eye(3), solid.centre)
     along = (solid.end - solid.start) / length_of(solid)
     side = solid.side if isinstance(solid, Bar) else perpendicular(along)
     turn = np.stack([side, np.cross(along, side), along], axis=1)
     return matrix(turn, (solid.start + solid.end) / 2)
+
+
+def foot_of(solid: Solid) -> Floats:
+    """The frame (4, 4) from which programs build a solid: in a ball's middle, a rod's end, a bar's corner."""
+    frame = frame_of(solid)
+    if not isinstance(solid, Ball):
+        frame[:3, 3] = solid.start
+    if isinstance(solid, Bar):
+        frame[:3, 3] -= solid.width / 2 * (frame[:3, 0] + frame[:3, 1])
+    return frame
 
 
 @dataclass(frozen=True, eq=False)

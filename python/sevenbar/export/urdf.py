@@ -13,7 +13,8 @@ from sevenbar.arrays import Floats
 from sevenbar.export.left_out import left_out
 from sevenbar.export.mass import BodyMass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
-from sevenbar.kinematics.loop.rigid import half_turn, zyx_turns
+from sevenbar.kinematics.loop.rigid import half_turn, pose, zyx_turns
+from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS
 
 #: The mass of a link that only joins the freedoms of one joint, as a share of the heaviest link's.
@@ -22,7 +23,7 @@ JOINING = 1e-6
 EFFORT, VELOCITY = 1e6, 1e3
 
 
-def write_urdf(assembly: Assembly, path: Path) -> None:
+def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> None:
     """Writes the tree to `path` and the loop joint to `loop_file(path)`; metres and radians.
 
     The tree begins with `ground`, whose frame is the report frame, and ends with the last moving link. Each
@@ -144,9 +145,7 @@ def _add_link(
     link = Xml.SubElement(robot, "link", name=name)
     if mass is not None:
         inertial = Xml.SubElement(link, "inertial")
-        frame = np.eye(4)
-        frame[:3, 3] = mass.centre
-        _origin(inertial, frame, scale)
+        _origin(inertial, pose(np.eye(3), mass.centre), scale)
         Xml.SubElement(inertial, "mass", value=_number(mass.mass))
         moments = scale**2 * mass.inertia
         names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
@@ -166,22 +165,16 @@ def _material(colour: str) -> str:
 
 
 def _geometry(visual: Xml.Element, solid: Solid, scale: float) -> None:
-    frame = np.eye(4)
     if isinstance(solid, Ball):
-        frame[:3, 3] = solid.centre
-        attributes = {"radius": _number(scale * solid.radius)}
-        kind = "sphere"
+        kind, sizes = "sphere", {"radius": _number(scale * solid.radius)}
     elif isinstance(solid, Rod):
-        frame = frame_of(solid)
-        attributes = {"radius": _number(scale * solid.radius), "length": _number(scale * length_of(solid))}
-        kind = "cylinder"
+        length = _number(scale * length_of(solid))
+        kind, sizes = "cylinder", {"radius": _number(scale * solid.radius), "length": length}
     else:
-        frame = frame_of(solid)
         width = _number(scale * solid.width)
-        attributes = {"size": f"{width} {width} {_number(scale * length_of(solid))}"}
-        kind = "box"
-    _origin(visual, frame, scale)
-    Xml.SubElement(Xml.SubElement(visual, "geometry"), kind, attributes)
+        kind, sizes = "box", {"size": f"{width} {width} {_number(scale * length_of(solid))}"}
+    _origin(visual, frame_of(solid), scale)
+    Xml.SubElement(Xml.SubElement(visual, "geometry"), kind, sizes)
 
 
 def _origin(element: Xml.Element, frame: Floats, scale: float) -> None:

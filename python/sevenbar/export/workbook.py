@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from sevenbar.description.table_writer import linkage_table, points_table
 from sevenbar.description.tables import SHEET
 from sevenbar.errors import RequestError, of_extra
+from sevenbar.export.tables import Units
 from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.text.progress import Progress, silent
 
 #: Rows that a sheet of Excel holds, the head not counted.
 MOST_ROWS = 1_048_575
@@ -20,7 +22,7 @@ MOST_ROWS = 1_048_575
 WIDTH, WIDEST = 11, 32
 
 
-def write_xlsx(motion: Motion, path: Path, units: Literal["file", "si"]) -> None:
+def write_xlsx(motion: Motion, path: Path, units: Units, _progress: Progress = silent) -> None:
     """Writes a workbook: sheets `circuit 0`, `circuit 1` .., `linkage` as tables are read, `points`.
 
     A value that does not exist is an empty cell. The sheet `linkage` is in the file's units whatever `units`
