@@ -127,7 +127,7 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
         returned = (float(apart), float(askew))
     forces = compared_forces(course, model, record)
     found = Simulation(course, model, record, values, theory, points, returned, forces)
-    return replace(found, differences=(*_differences(found), *_force_differences(found)))
+    return replace(found, differences=tuple(_differences(found)))
 
 
 def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> BodyStates:
@@ -159,6 +159,7 @@ def _unwind(values: JointValues, theory: JointValues, turns: Booleans) -> None:
 
 
 def _differences(run: Simulation) -> Iterator[Difference]:
+    """Those of the output and its rates, of all other joints, of points, and of forces."""
     linkage, circuit = run.linkage, run.course.circuit
     unit = linkage.length_unit
     output = circuit.output_column
@@ -174,40 +175,24 @@ def _differences(run: Simulation) -> Iterator[Difference]:
             ("acceleration", f"{own}/s²", run.engine.ddq, run.theory.ddq),
         )
         for what, units, engine, theory in rows if column == output else rows[:1]:
-            yield _difference(run, f"{name} {what}", units, engine[:, column], theory[:, column])
+            own, apart = theory[:, column], np.abs(engine[:, column] - theory[:, column])
+            yield _difference(run, f"{name} {what}", units, apart, np.nanmax(np.abs(own), initial=0.0))
     for name, (engine_point, theory_point) in run.points.items():
         for what, units in (("position", unit), ("velocity", f"{unit}/s"), ("acceleration", f"{unit}/s²")):
-            apart = getattr(engine_point, what) - getattr(theory_point, what)
-            yield _difference(
-                run,
-                f"{name} {what}",
-                units,
-                np.linalg.norm(apart, axis=1),
-                np.zeros(len(apart)),
-                float(np.nanmax(np.linalg.norm(getattr(theory_point, what), axis=1), initial=0.0)),
+            theory = getattr(theory_point, what)
+            apart, size = (
+                np.linalg.norm(own, axis=1) for own in (getattr(engine_point, what) - theory, theory)
             )
+            yield _difference(run, f"{name} {what}", units, apart, np.nanmax(size, initial=0.0))
+    for force in run.forces:
+        scale = np.nanmax(force.size, initial=0.0)
+        yield _difference(run, f"{force.name} {force.what}", force.unit, force.apart, scale)
 
 
-def _force_differences(run: Simulation) -> Iterator[Difference]:
-    """The input's torque, and in each joint what its constraints bear as far as equilibrium determines it."""
-    for found in run.forces:
-        name = f"{found.name} {found.what}"
-        scale = float(np.nanmax(found.size, initial=0.0))
-        yield _difference(run, name, found.unit, found.apart, np.zeros(len(found.apart)), scale)
-
-
-def _difference(
-    run: Simulation, name: str, unit: str, engine: Floats, theory: Floats, scale: float | None = None
-) -> Difference:
-    apart = np.abs(engine - theory)
+def _difference(run: Simulation, name: str, unit: str, apart: Floats, scale: float) -> Difference:
+    """How far apart (n,) the two are in a quantity, which is up to `scale`."""
     if np.isnan(apart).all():
         return Difference(name, unit, math.nan, math.nan, math.nan, math.nan)
     worst = int(np.nanargmax(apart))
-    return Difference(
-        quantity=name,
-        unit=unit,
-        greatest=float(apart[worst]),
-        at=float(run.input[worst]),
-        median=float(np.nanmedian(apart)),
-        scale=float(np.nanmax(np.abs(theory))) if scale is None else scale,
-    )
+    median = float(np.nanmedian(apart))
+    return Difference(name, unit, float(apart[worst]), float(run.input[worst]), median, float(scale))

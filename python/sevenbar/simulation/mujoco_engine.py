@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sevenbar.errors import EngineError
-from sevenbar.simulation.engine import Record, imported
+from sevenbar.simulation.engine import Record, imported, tell
 from sevenbar.simulation.mjcf import IMPEDANCE, TIME_CONSTANT, cut, mjcf
 from sevenbar.simulation.mujoco_forces import MujocoForces, acting_notes
 from sevenbar.simulation.prototype import Prototype
@@ -14,9 +14,6 @@ from sevenbar.text.units import LENGTHS
 
 #: Linkages below this size [m] have forces and inertias that MuJoCo takes for none.
 SMALLEST = 1e-4
-
-#: A bar is moved at most so often.
-TICKS = 200
 
 
 def run(model: Prototype, steps: int, step: float, *, progress: Progress | None = None) -> Record:
@@ -43,7 +40,6 @@ def run(model: Prototype, steps: int, step: float, *, progress: Progress | None 
     frames = np.tile(np.eye(4), (rows, count, 1, 1))
     rates = np.zeros((2, 2, rows, count, 3))
     six = np.zeros(6)
-    every = max(1, steps // TICKS)
     kind = mujoco.mjtObj.mjOBJ_XBODY
     forces = MujocoForces(model, own, rows)
     for row in range(rows):
@@ -67,10 +63,7 @@ def run(model: Prototype, steps: int, step: float, *, progress: Progress | None 
             )
         if row < steps:
             mujoco.mj_step(own, data)
-        if progress is not None and row % every == 0:
-            progress(row, steps)
-    if progress is not None:
-        progress(steps, steps)
+        tell(progress, row, steps)
     return Record(
         engine="MuJoCo",
         version=str(mujoco.__version__),
@@ -104,9 +97,5 @@ def _notes(model: Prototype, step: float) -> tuple[str, ...]:
     ]
     notes += acting_notes(model)
     if model.redundant:
-        count = len(model.redundant)
-        notes.append(
-            f"{count} redundant constraint{'s' * (count > 1)} ({'; '.join(model.redundant)}): soft "
-            "constraints need not be independent, so all are kept"
-        )
+        notes.append(f"{model.redundant_text}: soft constraints need not be independent, so all are kept")
     return tuple(notes)

@@ -127,6 +127,12 @@ class Prototype:
     #: The connection that has the constraints of each joint of the linkage next to the link before it.
     seats: tuple[int, ...] = ()
 
+    @property
+    def redundant_text(self) -> str:
+        """How many constraints the others imply, and which."""
+        count = len(self.redundant)
+        return f"{count} redundant constraint{'s' * (count > 1)} ({'; '.join(self.redundant)})"
+
     def frames(self, number: int) -> tuple[Floats, Floats]:
         """Both frames (4, 4) of a joint at the start, in the report frame."""
         joint = self.connections[number]
