@@ -39,7 +39,7 @@ from sevenbar.errors import RequestError, check_word, of_extra, shown, suggestio
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.measuring.compare import Comparison, causes, compare, ends_of, inputs_of, name_of, per_cent
-from sevenbar.measuring.doubtful import EXACT, far_off, left_by_most, sentence
+from sevenbar.measuring.doubtful import EXACT, far_off_notes, left_by_most
 from sevenbar.measuring.fit import CurveFit
 from sevenbar.measuring.measured import Ends, Measured
 from sevenbar.measuring.model import OFFSETS, CurveModel
@@ -169,7 +169,9 @@ def calibrate(
         >>> [(p.name, round(p.value, 6)) for p in found.calibrated]
         [('L1', 251.0), ('L2', 998.0)]
     """
-    _need_scipy()
+    with of_extra("calibrate", "calibrate needs scipy and tomlkit"):
+        # its parts take a while to load, and are not needed before the end
+        import scipy  # noqa: F401
     if not 0 < confidence < 1:
         raise RequestError(f"confidence: {shown(confidence)} is not a probability; give one like 0.95")
     for word in offsets:
@@ -261,12 +263,6 @@ def _refuse_unexplained(before: Comparison, fit: CurveFit) -> None:
             f"{name_of(before.chosen)} leave a residual of {per_cent(share)} of the measured range; "
             f"{causes(before, '--offset input,output')}"
         )
-
-
-def _need_scipy() -> None:
-    with of_extra("calibrate", "calibrate needs scipy and tomlkit"):
-        # its parts take a while to load, and are not needed before the end
-        import scipy  # noqa: F401
 
 
 def _calibration(
@@ -370,14 +366,11 @@ def _far_off(fit: CurveFit, computed: Mapping[str, Floats]) -> list[str]:
     """Rows that are far from where most of the others put the curve."""
     model, before = fit.model, fit.model.before
     left = left_by_most(fit.found(), fit.jacobian(fit.free))
-    slopes = model.slopes(fit.z)
+    lines, slopes = before.line[model.rows], model.slopes(fit.z)
     notes = []
     for part, quantity in zip(np.split(left, len(computed)), computed, strict=True):
-        apart = -part * fit.noise[quantity]
-        rows = far_off(apart, slopes[quantity][:, -2], model.extents[quantity])
-        if rows:
-            word, unit = before.ends.word(quantity), before.ends.unit(quantity)
-            notes.append(sentence(before.source, before.line[model.rows], rows, apart, word, unit))
+        apart, steep, extent = -part * fit.noise[quantity], slopes[quantity][:, -2], model.extents[quantity]
+        notes += far_off_notes(before.ends, quantity, lines, before.source, apart, steep, extent)
     return notes
 
 

@@ -21,7 +21,7 @@ from sevenbar.errors import RequestError, check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.measuring.candidates import SAME_RESIDUAL, Candidates
-from sevenbar.measuring.doubtful import far_off, sentence
+from sevenbar.measuring.doubtful import far_off_notes
 from sevenbar.measuring.extremes import Extent
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
 from sevenbar.measuring.passes import PassFit
@@ -241,7 +241,7 @@ def _about_differences(compared: Comparison, measured: Measured) -> list[str]:
             f"these data; {causes(compared, '--align')}"
         )
     else:
-        notes += far_off_notes(compared)
+        notes += _far_off(compared)
     if best.open_rows:
         notes.append(
             f"{best.open_rows} of {len(measured)} rows have inputs at which the loop does not close on this "
@@ -268,22 +268,15 @@ def causes(compared: Comparison, zeros: str) -> str:
     return f"{rows}check units, zeros ({zeros}), speed and which joint was measured"
 
 
-def far_off_notes(compared: Comparison) -> list[str]:
+def _far_off(compared: Comparison) -> list[str]:
     """The rows whose differences are far from all others, with their lines."""
     rates = compared._candidates.at(compared.chosen.key, compared.chosen.phase)
     notes = []
-    for quantity in compared.outputs:
+    for quantity, measured in compared.measured.items():
         order = OUTPUTS.index(quantity)
-        apart = compared.difference(quantity)
-        slopes = rates[order + 1] * compared.speeds**order
-        rows = far_off(apart, slopes, float(np.ptp(compared.measured[quantity])))
-        if rows:
-            ends = compared.ends
-            notes.append(
-                sentence(
-                    compared.source, compared.line, rows, apart, ends.word(quantity), ends.unit(quantity)
-                )
-            )
+        apart, slopes = compared.difference(quantity), rates[order + 1] * compared.speeds**order
+        extent = float(np.ptp(measured))
+        notes += far_off_notes(compared.ends, quantity, compared.line, compared.source, apart, slopes, extent)
     return notes
 
 

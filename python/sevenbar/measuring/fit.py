@@ -93,15 +93,10 @@ class CurveFit:
         computed = self.model.computed(z)
         if computed is None:
             return None
-        values = self.model.values
-        self._see(computed)
-        return np.concatenate([(computed[q] - values[q]) / self.noise[q] for q in values])
-
-    def _see(self, computed: Mapping[str, Floats]) -> None:
-        share = self.share(computed)
-        if share < self._least:
+        if (share := self.share(computed)) < self._least:
             self._least = share
             self.seen(share)
+        return np.concatenate([(computed[q] - v) / self.noise[q] for q, v in self.model.values.items()])
 
     def share(self, computed: Mapping[str, Floats]) -> float:
         """Root mean square of the differences relative to the range, of the quantity that fits worst."""

@@ -13,6 +13,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -84,8 +85,19 @@ class Ends:
         return {"time": "s", "turn": "deg", "slide": "mm"}[kind] + ("", "/s", "/s^2")[order]
 
 
+class _Values(Printed):
+    """What was measured, by quantity."""
+
+    values: Mapping[str, Any]
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The quantities of the output that were measured."""
+        return tuple(quantity for quantity in OUTPUTS if quantity in self.values)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Measured(Printed):
+class Measured(_Values):
     """Measured rows: `values` (n,) by quantity, in s, rad (or the length unit) and their derivatives.
 
     `line` (n,) is the line of the file of each row; `labels` name the column of each quantity.
@@ -101,23 +113,13 @@ class Measured(Printed):
     def __len__(self) -> int:
         return len(self.line)
 
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """The quantities of the output that were measured."""
-        return tuple(quantity for quantity in OUTPUTS if quantity in self.values)
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MeasuredExtremes(Printed):
+class MeasuredExtremes(_Values):
     """The lowest and the highest measured value of each quantity, as the paper's Table 1 has them."""
 
     source: str
     values: Mapping[str, tuple[float, float]]
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """The quantities of the output that were measured."""
-        return tuple(quantity for quantity in OUTPUTS if quantity in self.values)
 
 
 def read_measured(
