@@ -150,6 +150,11 @@ class EnergyCourse:
         off = np.abs(starts - before - edges[piece]) + np.abs(ends - before - edges[piece + 1])
         return piece, off <= 1e-13 * np.maximum(self.length, np.abs(middle))
 
+    def slope_on(self, lap: float) -> Along:
+        """U' on a lap, by places on the first one."""
+        series = self.quantities.series
+        return Along(self.quantities.edges, series[:, :, [SLOPE]] + lap * series[:, :, [WINDING]])
+
     @cached_property
     def _slopes(self) -> Along:
         return self.quantities.part(*((SLOPE, WINDING) if self.winds else (SLOPE,)))
@@ -231,17 +236,11 @@ class EnergyCourse:
         return self._marked(0.0)
 
     def _marked(self, lap: float) -> Floats:
-        series = self.quantities.series[:, :, [SLOPE]] + lap * self.quantities.series[:, :, [WINDING]]
-        own = Along(self.quantities.edges, series)
-        edges = own.edges
-        heights = np.abs(series).max(initial=0.0)
-        if not heights:
-            return edges
-        found = [edges]
-        turning = own.stationary(0)
-        places = np.union1d(edges, turning)
-        zeros = own.crossings(0, 0.0, places)
-        return np.unique(np.concatenate([*found, zeros]))
+        own = self.slope_on(lap)
+        if not own.series.any():
+            return own.edges
+        zeros = own.crossings(0, 0.0, np.union1d(own.edges, own.stationary(0)))
+        return np.unique(np.concatenate([own.edges, zeros]))
 
     def marks(self, laps: Floats) -> Floats:
         """Places on laps (j,), edges among them, between which U rises or falls all the way, in order."""

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
-from sevenbar.forces.free_motion.course import MASS, SAME, SLOPE, WINDING, EnergyCourse
+from sevenbar.forces.free_motion.course import MASS, SAME, EnergyCourse
 from sevenbar.text.printing import Printed
 
 #: A curvature of U below this part of its greatest is zero: neither stable nor unstable to the first order.
@@ -71,17 +71,11 @@ def resting_places(course: EnergyCourse, first: float = 0.0) -> list[Resting]:
     return [one for one in found if begin <= one[0] < begin + length]
 
 
-def _slope_on(course: EnergyCourse, lap: int) -> Along:
-    """U' on a lap, by places on the first one."""
-    series = course.quantities.series
-    return Along(course.quantities.edges, series[:, :, [SLOPE]] + lap * series[:, :, [WINDING]])
-
-
 def _on_lap(course: EnergyCourse, lap: int) -> list[Resting]:
     """The equilibria on a lap, by places on the first one."""
     quantities = course.quantities
     edges = quantities.edges
-    own = _slope_on(course, lap)
+    own = course.slope_on(lap)
     if not own.series.any():
         return []
     turning = own.stationary(0)
@@ -97,7 +91,7 @@ def _on_lap(course: EnergyCourse, lap: int) -> list[Resting]:
         before = i - 1 if i else last
         if i or course.closed:
             # the first piece goes on from the lap before, on which a spring is wound up less
-            there = own if i else _slope_on(course, lap - 1)
+            there = own if i else course.slope_on(lap - 1)
             left = float(there.on(np.array([before]), edges[before + 1 : before + 2])[0, 0])
             if left * heights[0] < 0:
                 jumps[float(a)] = left
