@@ -116,7 +116,8 @@ def loop(assembly: Assembly, path: Path) -> dict[str, Any]:
         turned = half_turn(joint.row.half_turn)
         frames = {link: frame @ turned for link, frame in reversed(frames.items())}
         columns, angle = columns[:: -1 if joint.row.has_cross or joint.row.numbered_back else 1], -angle
-    sides = [{"link": link, "frame": _scaled(frame, scale).tolist()} for link, frame in frames.items()]
+    scaled = {link: pose(frame[:3, :3], scale * frame[:3, 3]) for link, frame in frames.items()}
+    sides = [{"link": link, "frame": frame.tolist()} for link, frame in scaled.items()]
     own: dict[str, Any] = {"name": joint.name, "kind": joint.kind, "columns": list(columns)}
     if joint.row.is_screw:
         own["pitch"] = scale * joint.pitch
@@ -187,9 +188,3 @@ def _origin(element: Xml.Element, frame: Floats, scale: float) -> None:
 def _number(value: float) -> str:
     """A number to its last digit."""
     return repr(float(value) + 0.0)
-
-
-def _scaled(frame: Floats, scale: float) -> Floats:
-    scaled = frame.copy()
-    scaled[:3, 3] *= scale
-    return scaled

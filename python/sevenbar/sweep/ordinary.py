@@ -30,7 +30,8 @@ def analysed(plan: SweepPlan, values: Floats, first: int, which: Integers) -> Bl
     status: list[str] = []
     rows: list[Row] = []
     for index in which:
-        outcome, found = OK, _nothing(measures)
+        outcome: str = OK
+        found: list[Row] = [{"circuit": None, **{measure.name: None for measure in measures}}]
         try:
             linkage_there = plan.draft_of(values[:, index]).linkage
             motion = linkage_there.motion(plan.samples, input=plan.input, output=plan.output)
@@ -56,11 +57,6 @@ def analysed(plan: SweepPlan, values: Floats, first: int, which: Integers) -> Bl
         np.array(status, dtype=object),
         columns,
     )
-
-
-def _nothing(measures: tuple[Measure, ...]) -> list[Row]:
-    row: Row = {"circuit": None, **{measure.name: None for measure in measures}}
-    return [row]
 
 
 def _measured(motion: Motion, measures: tuple[Measure, ...], linkage: int) -> Iterator[Row]:
