@@ -100,22 +100,20 @@ ALIASES = {
 
 #: What to give in place of a kind of file that is not written, and that people ask for.
 INSTEAD = {
-    "dxf": "no flat drawings are written; give step for CAD, or use: sevenbar plot --figures svg",
-    "dwg": "no flat drawings are written; give step for CAD, or use: sevenbar plot --figures svg",
-    "svg": "pictures are drawn with: sevenbar plot --figures svg",
-    "png": "pictures are drawn with: sevenbar plot --figures png",
-    "gif": "films are made with: sevenbar analyze --animate move.gif",
-    "mp4": "films are made with: sevenbar analyze --animate move.mp4",
-    "obj": "give glb or stl for meshes",
-    "3mf": "give stl for printing",
-    "iges": "give step, which every CAD program reads",
-    "igs": "give step, which every CAD program reads",
-    "parasolid": "give step, which every CAD program reads",
-    "solidworks": "give step, which every CAD program reads",
-    "inventor": "give step, which every CAD program reads",
-    "simscape": "give urdf, which smimport reads, and close the loop by the .loop.json file",
-    "simulink": "give urdf, which smimport reads, and close the loop by the .loop.json file",
-    "xls": "give xlsx",
+    word: advice
+    for words, advice in {
+        "dxf dwg": "no flat drawings are written; give step for CAD, or use: sevenbar plot --figures svg",
+        "svg": "pictures are drawn with: sevenbar plot --figures svg",
+        "png": "pictures are drawn with: sevenbar plot --figures png",
+        "gif": "films are made with: sevenbar analyze --animate move.gif",
+        "mp4": "films are made with: sevenbar analyze --animate move.mp4",
+        "obj": "give glb or stl for meshes",
+        "3mf": "give stl for printing",
+        "iges igs parasolid solidworks inventor": "give step, which every CAD program reads",
+        "simscape simulink": "give urdf, which smimport reads, and close the loop by the .loop.json file",
+        "xls": "give xlsx",
+    }.items()
+    for word in words.split()
 }
 
 
