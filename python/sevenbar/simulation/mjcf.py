@@ -29,7 +29,7 @@ from sevenbar.simulation.mjcf_acting import (
     numbers,
     placed,
 )
-from sevenbar.simulation.prototype import GROUND, Connection, Prototype, SpinRule
+from sevenbar.simulation.prototype import GROUND, STILL, Connection, Prototype, SpinRule
 from sevenbar.text.units import LENGTHS
 
 #: The flywheel's inertia, in those of a body: constraints change its speed by about the inverse of this.
@@ -219,7 +219,7 @@ class _Tree:
         return body
 
     def _spin(self, body: int) -> Floats:
-        return np.zeros(3) if body == GROUND else self._model.bodies[body].spin
+        return (STILL if body == GROUND else self._model.bodies[body]).spin
 
     def _flywheel(self, number: int, freedom: int) -> dict[str, str]:
         """The inertia that keeps the driven joint at its speed."""

@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.curves.along import Along
+from sevenbar.curves.along import Along, zero_between
 from sevenbar.forces.free_motion.course import MASS, SAME, EnergyCourse
 from sevenbar.text.printing import Printed
 
@@ -123,20 +123,9 @@ def _zeros(own: Along, piece: int, marks: Floats, heights: Floats) -> list[float
     """Zeros of a piece's polynomial between its marks, those that only touch zero among them."""
     touch = 1e-13 * float(own.reach[0])
     found = [float(s) for s, h in zip(marks, heights, strict=True) if abs(h) <= touch]
-    whole: npt.NDArray[np.int64] = np.array([piece])
-    for k in range(len(marks) - 1):
-        if heights[k] * heights[k + 1] >= 0 or min(abs(heights[k]), abs(heights[k + 1])) <= touch:
-            continue
-        low, high, rising = marks[k], marks[k + 1], heights[k + 1] > 0
-        at = (low + high) / 2
-        for _ in range(100):
-            here = np.array([at])
-            height, slope = own.on(whole, here)[0, 0], own.slope.on(whole, here)[0, 0]
-            low, high = (low, at) if (height > 0) == rising else (at, high)
-            step = at - height / slope if slope else math.inf
-            after = step if low < step < high else (low + high) / 2
-            if abs(after - at) <= 2 * np.spacing(abs(at)):
-                break
-            at = after
-        found.append(float(at))
+    # alone, so that no neighbour has a say at its ends
+    alone = Along(own.edges[piece : piece + 2], own.series[piece : piece + 1])
+    for (low, high), (first, last) in zip(pairwise(marks), pairwise(heights), strict=True):
+        if first * last < 0 and min(abs(first), abs(last)) > touch:
+            found.append(zero_between(alone, 0.0, low, high))
     return found
