@@ -179,21 +179,18 @@ def export(
 
 def format_of(path: Path, to: str | None) -> str:
     """The word for the kind of a file: the one given, else that of the path's ending."""
-    if to is not None:
-        word = _word(to)
-        if path.suffix and path.suffix.lower() not in FORMATS[word].endings:
-            raise RequestError(
-                f"{path}: its ending {shown(path.suffix)} is not that of {word}; "
-                f"give {' or '.join(FORMATS[word].endings)}"
-            )
-        if not path.suffix and word != "stl":
-            raise RequestError(f"{path}: has no ending; give {' or '.join(FORMATS[word].endings)}")
-        return word
-    for word, form in FORMATS.items():
-        if path.suffix.lower() in form.endings:
-            return word
-    endings = ", ".join(ending for form in FORMATS.values() for ending in form.endings)
-    raise RequestError(f"{path}: {shown(path.suffix)} is the ending of no format; give one of {endings}")
+    known = {ending: word for word, form in FORMATS.items() for ending in form.endings}
+    found = known.get(path.suffix.lower())
+    word = found if to is None else _word(to)
+    if word is None:
+        endings = ", ".join(known)
+        raise RequestError(f"{path}: {shown(path.suffix)} is the ending of no format; give one of {endings}")
+    allowed = " or ".join(FORMATS[word].endings)
+    if path.suffix and found != word:
+        raise RequestError(f"{path}: its ending {shown(path.suffix)} is not that of {word}; give {allowed}")
+    if not path.suffix and word != "stl":
+        raise RequestError(f"{path}: has no ending; give {allowed}")
+    return word
 
 
 def ending_of(to: str) -> str:

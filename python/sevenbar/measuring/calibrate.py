@@ -120,10 +120,7 @@ class Calibration(Printed):
 
     def parameter(self, name: str) -> Parameter:
         """The parameter of a name; `KeyError` where there is none."""
-        for parameter in self.parameters:
-            if parameter.name == name:
-                return parameter
-        raise KeyError(name)
+        return {parameter.name: parameter for parameter in self.parameters}[name]
 
     @property
     def calibrated(self) -> tuple[Parameter, ...]:
@@ -212,24 +209,22 @@ def calibrate(
 def _named(numbers: Numbers, free: Sequence[str], hold: Sequence[str], follow: Sequence[str]) -> list[str]:
     """The dimensions that are to be found, in the order of the file."""
     dimensions = [d.name for d in numbers.dimensions if d.place[0] != "point"]
+    named: dict[str, set[str]] = {}
     for option, patterns in (("free", free), ("hold", hold)):
-        for pattern in patterns:
-            if not fnmatch.filter(dimensions, pattern):
+        matched = {pattern: fnmatch.filter(dimensions, pattern) for pattern in patterns}
+        for pattern, found in matched.items():
+            if not found:
                 raise RequestError(
                     f"{option}: no dimension {shown(pattern)}; {suggestion(pattern, dimensions)}"
                     f"this linkage has {', '.join(dimensions)}"
                 )
+        named[option] = {name for found in matched.values() for name in found}
     for name in follow:
         for option, patterns in (("free", free), ("hold", hold)):
             if name in patterns:
                 raise RequestError(f"follow: {name} is in --{option} too; give it in one of them")
-    return [
-        name
-        for name in dimensions
-        if any(fnmatch.fnmatchcase(name, pattern) for pattern in free)
-        and not any(fnmatch.fnmatchcase(name, pattern) for pattern in hold)
-        and name not in follow
-    ]
+    kept = named["free"] - named["hold"] - set(follow)
+    return [name for name in dimensions if name in kept]
 
 
 def _refuse_what_stays(measured: Measured, ends: Ends) -> None:
@@ -300,10 +295,9 @@ def _calibration(
         elif k in unidentified:
             undone = tuple(model.names[other] for other in unidentified[k])
             parameters.append(Parameter(name, kind, "unidentified", nominal, value, undone_by=undone))
-        elif name in model.opening:
-            parameters.append(Parameter(name, kind, "opens the loop", nominal, value))
         elif k < len(model.names) - 2:
-            parameters.append(Parameter(name, kind, "fixed", nominal, value))
+            why: Status = "opens the loop" if name in model.opening else "fixed"
+            parameters.append(Parameter(name, kind, why, nominal, value))
     return Calibration(
         linkage=before.linkage,
         ends=before.ends,

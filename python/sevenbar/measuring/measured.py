@@ -161,18 +161,10 @@ def read_measured(
     table = read_table(file, HELD)
     places = _places(table, ends, columns)
     _refuse_what_is_missing(table, ends, places)
-    sizes = {
-        q: table.size(
-            place,
-            ends.kind(q),
-            ends.length_unit,
-            what=q,
-            example=ends.example(q),
-            asked=units.get(q, ""),
-            option="--unit",
-        )
-        for q, place in places.items()
-    }
+    sizes = {}
+    for q, place in places.items():
+        words = {"what": q, "example": ends.example(q), "asked": units.get(q, ""), "option": "--unit"}
+        sizes[q] = table.size(place, ends.kind(q), ends.length_unit, **words)
     raw = {quantity: table.numbers(place) for quantity, place in places.items()}
     if not skip_nan:
         table.refuse_gaps({places[q]: raw[q] for q in places}, "leave such rows out with --skip-nan")
@@ -310,9 +302,9 @@ def _read_extremes(path: Path, ends: Ends, units: Mapping[str, str]) -> Measured
         example = ends.example(name)
         size = unit_size(where, unit, ends.kind(name), ends.length_unit, what=name, example=example)
         try:
-            low, high = float(row["lowest"]) * size, float(row["highest"]) * size
-        except (KeyError, ValueError):
-            low = high = float("nan")
+            low, high = (float(row[end]) * size for end in ("lowest", "highest"))
+        except ValueError:
+            low = high = math.nan
         if not low <= high:
             raise TableError(f"{where}: lowest and highest are not two rising numbers; mend the line")
         values[name] = (low, high)

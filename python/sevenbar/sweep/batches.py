@@ -23,7 +23,7 @@ from sevenbar.kinematics.solvers.batches import (
     rssr_types,
 )
 from sevenbar.kinematics.transmission import coupling_of
-from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
+from sevenbar.sweep.block import NO_CIRCUIT, OK, Block
 from sevenbar.sweep.plan import OF_TYPES, SweepPlan
 
 #: Measures that the core's batches of general loops have not.
@@ -141,7 +141,7 @@ def _of_linkages(
         columns["motion_type"] = types[linkage]
     if "limits" in plan.measures:
         columns["limits"] = np.isfinite(limits).sum(axis=1)[linkage].astype(np.float64)
-    for place, name in enumerate(limit_names(plan)):
+    for place, name in enumerate(plan.limit_names):
         columns[name] = np.degrees(limits[linkage, place])
     return columns
 

@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.measures import Measure, rows_of
-from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
+from sevenbar.sweep.block import NO_CIRCUIT, OK, Block
 from sevenbar.sweep.plan import SweepPlan
 
 #: Measures of a linkage or circuit, by name.
@@ -25,7 +25,7 @@ def analysed(plan: SweepPlan, values: Floats, first: int, which: Integers) -> Bl
     Raises `RequestError` for a function of the caller that does not take a motion.
     """
     measures = plan.measured
-    limits = limit_names(plan)
+    limits = plan.limit_names
     linkage: list[int] = []
     status: list[str] = []
     rows: list[Row] = []
