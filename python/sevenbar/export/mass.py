@@ -12,6 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.export.layout import arrange
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid
 from sevenbar.export.pose import take
+from sevenbar.forces.bodies import inertia_at
 from sevenbar.kinematics.dynamics.link_bodies import resolved
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Loop
@@ -85,8 +86,7 @@ def _sum(solids: Sequence[Solid], density: float) -> BodyMass:
     centre: Floats = np.sum([one.mass * one.centre for one in single], axis=0) / mass
     inertia = np.zeros((3, 3))
     for one in single:
-        arm = one.centre - centre
-        inertia += one.inertia + one.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        inertia += one.inertia + inertia_at(one.mass, one.centre - centre)
     return BodyMass(float(mass), centre, inertia)
 
 

@@ -47,9 +47,8 @@ def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> 
         robot.append(Xml.Comment(f" Left out, for URDF has no place for it: {missing}. "))
     for colour in dict.fromkeys(part.colour for part in assembly.parts):
         channels = " ".join(f"{c / 255:.6g}" for c in bytes.fromhex(colour[1:]))
-        Xml.SubElement(
-            Xml.SubElement(robot, "material", name=_material(colour)), "color", rgba=f"{channels} 1"
-        )
+        material = Xml.SubElement(robot, "material", name=_material(colour))
+        Xml.SubElement(material, "color", rgba=f"{channels} 1")
     weights = masses(assembly)
     heaviest = max(weights[: count - 1], key=lambda one: one.mass)
     _add_link(robot, assembly, assembly.bodies.index("ground"), "ground", None, scale)
@@ -59,9 +58,8 @@ def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> 
         name = assembly.bodies[i]
         q = np.vstack([assembly.pose.circuit.q, assembly.pose.q])[:, linkage.places[i]]
         steps = joint.steps(q)
-        for k, ((step, values), (column, _)) in enumerate(
-            zip(steps, joint.row.named(joint.name), strict=True)
-        ):
+        names = [column for column, _ in joint.row.named(joint.name)]
+        for k, ((step, values), column) in enumerate(zip(steps, names, strict=True)):
             last = k == len(steps) - 1
             child = name if last else f"{name}_{k + 1}"
             kind = "prismatic" if step.freedom == "slide" else "continuous"
@@ -90,10 +88,8 @@ def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> 
         if i < count - 2:
             mount = linkage.links[i]
     Xml.indent(robot)
-    path.write_text(
-        '<?xml version="1.0" encoding="utf-8"?>\n' + Xml.tostring(robot, encoding="unicode") + "\n",
-        encoding="utf-8",
-    )
+    text = '<?xml version="1.0" encoding="utf-8"?>\n' + Xml.tostring(robot, encoding="unicode") + "\n"
+    path.write_text(text, encoding="utf-8")
     loop_file(path).write_text(json.dumps(loop(assembly, path), indent=2) + "\n", encoding="utf-8")
 
 

@@ -63,28 +63,22 @@ def _add_sheet(
         sheet.column_dimensions[get_column_letter(place)].width = min(max(WIDTH, len(label) + 2), WIDEST)
     sheet.freeze_panes = f"A{2 + bool(title)}"
 
-    def bold(text: str) -> Any:
-        cell = WriteOnlyCell(sheet, value=text)
-        cell.font = Font(bold=True)
+    def text(value: str, *, bold: bool = False) -> Any:
+        cell = WriteOnlyCell(sheet, value=value)
+        if bold:
+            cell.font = Font(bold=True)
         # a name that begins with '=' is no formula
         cell.data_type = "s"
         return cell
 
+    def plain(value: Any) -> Any:
+        """A value as a sheet takes it: nothing for NaN, text as text."""
+        if value is None or value != value:
+            return None
+        return text(value) if isinstance(value, str) and value.startswith("=") else value
+
     if title:
-        sheet.append([bold(title)])
-    sheet.append([bold(label) for label in head])
+        sheet.append([text(title, bold=True)])
+    sheet.append([text(label, bold=True) for label in head])
     for row in rows:
-        sheet.append([_cell(sheet, value) for value in row])
-
-
-def _cell(sheet: Any, value: Any) -> Any:
-    """A value as a sheet takes it: nothing for NaN, text as text."""
-    if value is None or value != value:
-        return None
-    if isinstance(value, str) and value.startswith("="):
-        from openpyxl.cell import WriteOnlyCell
-
-        cell = WriteOnlyCell(sheet, value=value)
-        cell.data_type = "s"
-        return cell
-    return value
+        sheet.append(list(map(plain, row)))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.forces.bodies import inertia_at
 from sevenbar.kinematics.loop.rigid import perpendicular, pose
 from sevenbar.simulation.engine import imported
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
@@ -69,7 +70,7 @@ class ExudynAssembly:
             mass, centre = own.mass / self.kilogram, own.centre / self.model.size
             # Exudyn counts inertia about the frame's origin
             about = own.inertia / (self.kilogram * self.metres**2)
-            moments = about + mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+            moments = about + inertia_at(mass, centre)
         inertia = [moments[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))]
         return self.add(
             "ObjectRigidBody", nodeNumber=node, mass=mass, inertia=inertia, centerOfMass=list(centre)

@@ -178,12 +178,12 @@ class EnergyCourse:
         """Whether a break lies between places (j,), where no polynomial leads across."""
         if not self.breaks.size:
             return np.zeros(a.shape, dtype=bool)
-        sides = [
-            np.searchsorted(self.breaks, s - lap * self.length) + len(self.breaks) * lap
-            for s in (a, b)
-            for lap in (self.laps(s),)
-        ]
-        return np.asarray(sides[0] != sides[1])
+        count, laps = len(self.breaks), (self.laps(a), self.laps(b))
+        first, second = (
+            np.searchsorted(self.breaks, s - lap * self.length) + count * lap
+            for s, lap in zip((a, b), laps, strict=True)
+        )
+        return np.asarray(first != second)
 
     def mean_slope(self, a: Floats, b: Floats) -> Floats:
         """The mean of U' (j,) over short ways from a to b, (j,) each."""
