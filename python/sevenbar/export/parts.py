@@ -20,7 +20,7 @@ from sevenbar.drawing.scene import link_colours
 from sevenbar.drawing.skeleton import CYLINDER
 from sevenbar.drawing.style import GROUND, JOINT
 from sevenbar.export.pose import Pose, extent_of, shortest_link
-from sevenbar.kinematics.loop.rigid import inverse, perpendicular
+from sevenbar.kinematics.loop.rigid import inverse, perpendicular, placed
 from sevenbar.kinematics.loop.rigid import pose as matrix
 from sevenbar.kinematics.loop.rigid import unit as unit_vector
 
@@ -151,10 +151,8 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
     count = len(linkage.joints)
     colours = _link_colours(pose)
     lines = pose.polylines()
-    builds = [
-        _Build(f"link_{k + 1}" if k < count - 1 else "ground", k, colours[k] if k < count - 1 else GROUND)
-        for k in range(count)
-    ]
+    builds = [_Build(f"link_{k}", k - 1, colour) for k, colour in enumerate(colours, 1)]
+    builds.append(_Build("ground", count - 1, GROUND))
     frames, bodies = list(pose.frames), [build.name for build in builds]
     extra: list[Part] = []
     feet = [(lines[i - 1][-1], lines[i][0]) for i in range(count)]
@@ -182,8 +180,9 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
         np.vstack([first, _bent(line, first, last, linkage.base[:3, 3]), last])
         for line, (first, last) in zip(lines, ends, strict=True)
     ]
-    for i in (i for i, joint in enumerate(linkage.joints) if joint.row.is_ball):
-        _ball_joint(builds[i - 1], builds[i], pose, i, (arms[i - 1], arms[i]), unit)
+    for i, joint in enumerate(linkage.joints):
+        if joint.row.is_ball:
+            _ball_joint(builds[i - 1], builds[i], pose, i, (arms[i - 1], arms[i]), unit)
     for build, arm in zip(builds, arms, strict=True):
         build.arm(arm, unit)
     parts = [build.part() for build in builds]
@@ -359,10 +358,10 @@ def _ball_joint(
     own = own / max(float(np.linalg.norm(own)), 1e-300)
     # the socket's own arm must hold on to it
     held = min(float(mouth @ own), AWAY)
-    mouth = mouth - (mouth @ own) * own
-    if np.linalg.norm(mouth) > 1e-6:
-        mouth = mouth / np.linalg.norm(mouth) * np.sqrt(1 - held * held)
-    mouth = mouth + held * own
+    across = mouth - (mouth @ own) * own
+    if np.linalg.norm(across) > 1e-6:
+        across = across / np.linalg.norm(across) * np.sqrt(1 - held * held)
+    mouth = across + held * own
     mouth = mouth / np.linalg.norm(mouth)
     after.add.append(Ball(centre, SOCKET * radius))
     # a little wider than the ball, so that the two do not touch
@@ -386,15 +385,13 @@ def _mean_arm(pose: Pose, i: int, arm: Floats) -> Floats:
 
 def _moved(part: Part, frame: Floats) -> Part:
     """A part with all its places taken through a rigid motion."""
-    turn, shift = frame[:3, :3], frame[:3, 3]
 
     def moved(solid: Solid) -> Solid:
-        match solid:
-            case Ball():
-                return Ball(turn @ solid.centre + shift, solid.radius)
-            case Rod():
-                return Rod(turn @ solid.start + shift, turn @ solid.end + shift, solid.radius)
-        return Bar(turn @ solid.start + shift, turn @ solid.end + shift, solid.width, turn @ solid.side)
+        if isinstance(solid, Ball):
+            return replace(solid, centre=placed(frame, solid.centre))
+        if isinstance(solid, Bar):
+            solid = replace(solid, side=frame[:3, :3] @ solid.side)
+        return replace(solid, start=placed(frame, solid.start), end=placed(frame, solid.end))
 
     return replace(part, add=tuple(map(moved, part.add)), cut=tuple(map(moved, part.cut)))
 

@@ -28,6 +28,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import count
 from typing import Literal
 
 import numpy as np
@@ -179,7 +180,7 @@ def calibrate(
     if follow:
         Draft.of_linkage(linkage).holding(follow)
     _refuse_what_stays(measured, ends)
-    evaluations, seen = 0, progress or silent
+    seen, evaluations = progress or silent, count(1)
     seen(0, 0, "")
     align = [word for word, side in (("phase", "input"), ("offset", "output")) if side in offsets]
     before = compare(
@@ -192,13 +193,7 @@ def calibrate(
     wanted += [model.names.index(f"{side}_offset") for side in OFFSETS if side in offsets]
     if not wanted:
         raise RequestError("free: nothing is left to be found; free a dimension or an offset")
-
-    def best(share: float) -> None:
-        nonlocal evaluations
-        evaluations += 1
-        seen(evaluations, 0, f"residual {per_cent(share)}")
-
-    fit = CurveFit(model, wanted, best)
+    fit = CurveFit(model, wanted, lambda share: seen(next(evaluations), 0, f"residual {per_cent(share)}"))
     unidentified = fit.run()
     _refuse_unexplained(before, fit)
     if fit.unfinished is not None:

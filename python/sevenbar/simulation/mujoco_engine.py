@@ -81,13 +81,12 @@ class MujocoForces:
             data.xfrc_applied[body] += factor * np.concatenate([force, moment])
 
     def read(self, data: Any, row: int) -> None:
-        """Reads a row, after `mj_forward`."""
+        """Reads a row, after `mj_rnePostConstraint`."""
         if self.drive is None:
             return
         self.drive[row] = -self._own.dof_armature[self._wheel] * data.qacc[self._wheel]
         if self.reactions is None:
             return
-        self._engine.mj_rnePostConstraint(self._own, data)
         for number in range(len(self._model.connections)):
             self.reactions[row, number] = self._borne(data, number)
 

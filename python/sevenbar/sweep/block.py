@@ -31,6 +31,11 @@ class Block:
     columns: dict[str, npt.NDArray[Any]]
 
     @staticmethod
+    def measured(linkage: Integers, circuit: Integers, columns: dict[str, npt.NDArray[Any]]) -> Block:
+        """Rows of linkages all of which were measured."""
+        return Block(linkage, circuit, np.full(len(linkage), OK, dtype=object), columns)
+
+    @staticmethod
     def joined(blocks: Sequence[Block]) -> Block:
         """The rows of several blocks with the same columns, by linkage and circuit."""
         linkage, circuit, status = (
