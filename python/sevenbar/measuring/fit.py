@@ -56,7 +56,7 @@ MOST_LINES = 8
 class CurveFit:
     """The parameters of a model that explain its rows best; `seen(best residual)` is called on the way."""
 
-    def __init__(self, model: CurveModel, wanted: list[int], seen: Callable[[float], None]) -> None:
+    def __init__(self, model: CurveModel, wanted: list[int], seen: Callable[[float], object]) -> None:
         self.model, self.wanted, self.seen = model, wanted, seen
         self.z = model.first.copy()
         self.noise = {q: float(np.ptp(v)) or 1.0 for q, v in model.values.items()}

@@ -58,7 +58,6 @@ class Run:
     first: Floats
     last: Floats
     rates: Floats
-    tail: float
 
     @property
     def time(self) -> float:
@@ -148,7 +147,6 @@ def run_between(
     # what each does, its places, and from which w to which
     own = np.array([(*panel, 0.0, 1.0) for panel in panels]).T
     done = []
-    tail = 0.0
     # far laps have fewer digits left for the place on them
     resolved = max(RESOLVED, ROUNDING * max(abs(low), abs(high)) / course.shortest)
     for halving in range(HALVINGS + 1):
@@ -162,7 +160,6 @@ def run_between(
         )
         # no finer than places are known
         rough &= (last - first) * (ends - starts) > 1e-14 * course.length
-        tail = max(tail, float(worst[~rough].max(initial=0.0)))
         done.append(np.vstack([own, rates.T])[:, ~rough])
         if not rough.any():
             break
@@ -172,7 +169,7 @@ def run_between(
     whole = whole[:, np.lexsort((whole[3], whole[1]))]
     kind, starts, ends, first, last = whole[:5]
     rates = np.ascontiguousarray(whole[5:].T)
-    return Run(low, high, kind, starts, ends, first, last, rates, tail)
+    return Run(low, high, kind, starts, ends, first, last, rates)
 
 
 def _rates(
