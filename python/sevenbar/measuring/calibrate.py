@@ -256,10 +256,7 @@ def _refuse_unexplained(before: Comparison, fit: CurveFit) -> None:
 
 
 def _calibration(
-    measured: Measured,
-    fit: CurveFit,
-    unidentified: Mapping[int, tuple[int, ...]],
-    confidence: float,
+    measured: Measured, fit: CurveFit, unidentified: Mapping[int, tuple[int, ...]], confidence: float
 ) -> Calibration:
     """The calibration of a finished fit."""
     from scipy.special import stdtrit

@@ -23,14 +23,7 @@ from sevenbar.text.words import say
 
 COMPUTED: dict[str, Any] = {"color": COMPUTED_COLOUR, "lw": 1.6, "zorder": 2}
 NOMINAL: dict[str, Any] = {"color": "#8a8a8a", "lw": 1.3, "ls": (0, (4, 2)), "zorder": 1}
-MEASURED: dict[str, Any] = {
-    "color": OTHER,
-    "ls": "",
-    "marker": "o",
-    "mfc": "none",
-    "mew": 0.9,
-    "zorder": 3,
-}
+MEASURED: dict[str, Any] = {"color": OTHER, "ls": "", "marker": "o", "mfc": "none", "mew": 0.9, "zorder": 3}
 
 #: A curve: input and values (n,) as they are drawn, its name in the key, and its look.
 Drawn = tuple[Floats, Floats, str, dict[str, Any]]

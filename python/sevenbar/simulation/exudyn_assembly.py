@@ -93,10 +93,7 @@ class ExudynAssembly:
     def _add_constraints(
         self, joint: Connection, held: list[int], *, from_after: bool = False, **more: Any
     ) -> None:
-        markers = [
-            self.marker(joint.before, joint.frame_before),
-            self.marker(joint.after, joint.frame_after),
-        ]
+        markers = [self.marker(joint.before, joint.frame_before), self.marker(joint.after, joint.frame_after)]
         markers = markers[::-1] if from_after else markers
         self.joints.append(
             self.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=held, **more)

@@ -126,11 +126,7 @@ def _figure(stem: str, run: Simulation) -> Figure | None:
 
 
 def write(
-    run: Simulation,
-    folder: str | os.PathLike[str],
-    figures: Sequence[str] = ("png",),
-    *,
-    force: bool = False,
+    run: Simulation, folder: str | os.PathLike[str], figures: Sequence[str] = ("png",), *, force: bool = False
 ) -> list[Path]:
     """Writes the report as JSON, every row as CSV and the figures into a folder: all of them, or none.
 
