@@ -21,7 +21,7 @@ from sevenbar.errors import RequestError, check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.measuring.candidates import SAME_RESIDUAL, Candidates
-from sevenbar.measuring.doubtful import far_off_notes
+from sevenbar.measuring.doubtful import far_off_notes, first_of
 from sevenbar.measuring.extremes import Extent
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
 from sevenbar.measuring.passes import PassFit
@@ -210,8 +210,10 @@ def _about_rows(compared: Comparison) -> list[str]:
     """What the rows show besides their differences."""
     notes, best = [], compared.chosen
     if best.branches:
+        behind = [int(compared.line[row]) for row in compared._candidates.stretches.turns]
+        lines = f"line{'s' * (len(behind) > 1)} {first_of(behind, MOST_LINES)}"
         notes.append(
-            f"the input turns back at its limit in {_lines(compared)}: the rows are taken pass by pass, "
+            f"the input turns back at its limit in {lines}: the rows are taken pass by pass, "
             f"on {name_of(best).partition(', ')[2]}"
         )
     for quantity, values in compared.measured.items():
@@ -287,14 +289,6 @@ def name_of(fit: PassFit) -> str:
     shown_ways = ", ".join(map(str, fit.branches[:MOST_LINES]))
     more = ", .." if len(fit.branches) > MOST_LINES else ""
     return f"circuit {fit.circuit}, branches {shown_ways}{more} one after the other"
-
-
-def _lines(compared: Comparison) -> str:
-    """The lines of the file behind which the input turns back."""
-    rows = compared._candidates.stretches.turns
-    lines = ", ".join(str(compared.line[row]) for row in rows[:MOST_LINES])
-    more = f" and {len(rows) - MOST_LINES} more" if len(rows) > MOST_LINES else ""
-    return f"line{'s' * (len(rows) > 1)} {lines}{more}"
 
 
 def inputs_of(measured: Measured, speed: float, start: float) -> Floats:

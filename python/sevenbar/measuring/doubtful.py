@@ -11,6 +11,8 @@ power series", Technometrics 16 (1974).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
@@ -75,6 +77,12 @@ def left_by_most(residual: Floats, jacobian: Floats) -> Floats:
         step = np.linalg.lstsq(jacobian * root[:, None], -residual * root, rcond=None)[0]
         left = residual + jacobian @ step
     return left
+
+
+def first_of(lines: Sequence[int], most: int) -> str:
+    """Lines of a file as a message names them: the first ones, and how many more there are."""
+    more = f" and {len(lines) - most} more" if len(lines) > most else ""
+    return ", ".join(map(str, lines[:most])) + more
 
 
 def far_off_notes(

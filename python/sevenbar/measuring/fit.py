@@ -20,7 +20,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
-from sevenbar.measuring.doubtful import EXACT
+from sevenbar.measuring.doubtful import EXACT, first_of
 from sevenbar.measuring.least_squares import least_squares
 from sevenbar.measuring.model import CurveModel
 
@@ -155,12 +155,10 @@ class CurveFit:
                 f"{source}: the least residual is where {short} is no length any more; "
                 f"hold it with --hold {short}, or check which joint was measured, units and zeros"
             )
-        lines = model.before.line[model.rows[model.lost]]
-        shown = ", ".join(map(str, lines[:MOST_LINES].tolist()))
-        more = f" and {len(lines) - MOST_LINES} more" if len(lines) > MOST_LINES else ""
+        lines = first_of(model.before.line[model.rows[model.lost]].tolist(), MOST_LINES)
         return RequestError(
             f"{source}: the dimensions that would explain these data do not let the loop close at the inputs "
-            f"of lines {shown}{more}; check the circuit, units and zeros, or hold more dimensions"
+            f"of lines {lines}; check the circuit, units and zeros, or hold more dimensions"
         )
 
     def _weigh(self, *, exactly: bool) -> str:

@@ -142,34 +142,30 @@ class Cluster:
                 return list(known.done)
 
     def _result(self, future: Any, part: int) -> tuple[bytes, Mapping[str, str]]:
+        """What a worker made; it is made again where its worker left before this was fetched."""
         from distributed.scheduler import KilledWorker
 
-        try:
-            content, by = self._fetched(future)
-        except SevenbarError:
-            raise
-        except KilledWorker:
-            first = self._plan.linkages(part)
-            raise EngineError(
-                f"scheduler: part {part} (linkages {first.start} to {first.stop - 1}) ended every worker "
-                "that took it; check their memory and their logs, and go on with --resume"
-            ) from None
-        except (CancelledError, OSError) as error:
-            self._lost(error)
-        except Exception as error:
-            raise EngineError(
-                f"scheduler: a worker cannot make part {part}: {_reason(error)}; "
-                "give workers the same modules and versions as here, and go on with --resume"
-            ) from None
-        return content, by
-
-    def _fetched(self, future: Any) -> Any:
-        """What a worker made; it is made again where its worker left before this was fetched."""
         while True:
             try:
-                return future.result(timeout=ANSWER_TIME)
+                content, by = future.result(timeout=ANSWER_TIME)
+                return content, by
             except TimeoutError:
                 self._wait_for_workers()
+            except SevenbarError:
+                raise
+            except KilledWorker:
+                first = self._plan.linkages(part)
+                raise EngineError(
+                    f"scheduler: part {part} (linkages {first.start} to {first.stop - 1}) ended every worker "
+                    "that took it; check their memory and their logs, and go on with --resume"
+                ) from None
+            except (CancelledError, OSError) as error:
+                self._lost(error)
+            except Exception as error:
+                raise EngineError(
+                    f"scheduler: a worker cannot make part {part}: {_reason(error)}; "
+                    "give workers the same modules and versions as here, and go on with --resume"
+                ) from None
 
     def _lost(self, error: BaseException) -> NoReturn:
         raise EngineError(
