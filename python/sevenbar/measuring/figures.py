@@ -45,6 +45,7 @@ def unit(ends: Ends, quantity: str) -> str:
     return "deg" if quantity in ("input", "angle") and ends.turns(quantity) else ends.unit(quantity)
 
 
+@styled()
 def comparison_figure(comparison: Comparison) -> Figure:
     """The computed curve with the measured points, and their differences, a column for each quantity."""
     ends, curve = comparison.ends, comparison.curve
@@ -61,6 +62,7 @@ def comparison_figure(comparison: Comparison) -> Figure:
     return _figure(comparison, what, curves, below, differences)
 
 
+@styled()
 def calibration_figure(calibration: Calibration) -> Figure:
     """Measured points on the calibrated and the nominal curve; below, the differences before and after."""
     ends, sides = calibration.ends, (calibration.nominal, calibration.computed)
@@ -96,32 +98,31 @@ def _figure(
 ) -> Figure:
     """Curves with measured points, and differences in panels `below`: their heights by their labels."""
     ends, columns = found.ends, len(found.outputs)
-    with styled():
-        figure = page_figure(WIDE if columns == 1 else NARROW * columns, TALL, pads=(0.04, 0.06))
-        heights = {"height_ratios": (3.0, *below.values())}
-        grid = figure.subplots(1 + len(below), columns, sharex=True, squeeze=False, gridspec_kw=heights)
-        x = shown(ends, "input", found.input)
-        for quantity, column in zip(found.outputs, grid.T, strict=True):
-            top, *panels = column
-            for across, values, label, look in curves(quantity):
-                top.plot(across, values, label=label, **look)
-            _points(top, x, shown(ends, quantity, found.measured[quantity]), say("measured"))
-            own = unit(ends, quantity)
-            # with several columns the quantity must stand at each
-            top.set_ylabel(quantity_label(ends.output, ends.word(quantity), own))
-            for axes, label, apart in zip(panels, below, differences(quantity), strict=True):
-                _points(axes, x, apart)
-                axes.set_ylabel(f"{label} [{own}]")
-                axes.yaxis.set_major_locator(MaxNLocator(4))
-            panels[-1].set_xlabel(quantity_label(ends.input, ends.word("input"), unit(ends, "input")))
-            for axes in column:
-                axes.grid(lw=0.6)
-                if ends.turns("input"):
-                    axes.xaxis.set_major_locator(DegreeLocator(9))
-        figure.align_ylabels()
-        headline(figure, f"{short(found.linkage.heading, 60)}\n{what}")
-        handles, labels = grid[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=len(handles), frameon=False)
+    figure = page_figure(WIDE if columns == 1 else NARROW * columns, TALL, pads=(0.04, 0.06))
+    heights = {"height_ratios": (3.0, *below.values())}
+    grid = figure.subplots(1 + len(below), columns, sharex=True, squeeze=False, gridspec_kw=heights)
+    x = shown(ends, "input", found.input)
+    for quantity, column in zip(found.outputs, grid.T, strict=True):
+        top, *panels = column
+        for across, values, label, look in curves(quantity):
+            top.plot(across, values, label=label, **look)
+        _points(top, x, shown(ends, quantity, found.measured[quantity]), say("measured"))
+        own = unit(ends, quantity)
+        # with several columns the quantity must stand at each
+        top.set_ylabel(quantity_label(ends.output, ends.word(quantity), own))
+        for axes, label, apart in zip(panels, below, differences(quantity), strict=True):
+            _points(axes, x, apart)
+            axes.set_ylabel(f"{label} [{own}]")
+            axes.yaxis.set_major_locator(MaxNLocator(4))
+        panels[-1].set_xlabel(quantity_label(ends.input, ends.word("input"), unit(ends, "input")))
+        for axes in column:
+            axes.grid(lw=0.6)
+            if ends.turns("input"):
+                axes.xaxis.set_major_locator(DegreeLocator(9))
+    figure.align_ylabels()
+    headline(figure, f"{short(found.linkage.heading, 60)}\n{what}")
+    handles, labels = grid[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(handles), frameon=False)
     return figure
 
 

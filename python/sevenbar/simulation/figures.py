@@ -49,6 +49,7 @@ class _Row(NamedTuple):
     in_degrees: bool = False
 
 
+@styled()
 def output_figure(run: Simulation) -> Figure:
     """Angle, velocity and acceleration of the output: theory and engine left, their difference right."""
     motion, column = run.course.motion, run.course.circuit.output_column
@@ -59,21 +60,21 @@ def output_figure(run: Simulation) -> Figure:
         ("velocity", unit, "/s", run.engine.dq, run.theory.dq),
         ("acceleration", unit, "/s²", run.engine.ddq, run.theory.ddq),
     )
-    with styled():
-        figure = page_figure(9.2, 7.2, pads=(0.06, 0.08))
-        grid = figure.subplots(3, 2, sharex=True)
-        for (left, right), (word, shown, per, engine, theory) in zip(grid, rows, strict=True):
-            own, other = theory[:, column], engine[:, column]
-            convert = np.degrees if shown == "deg" else np.asarray
-            _draw_both(left, run, convert(own), convert(other))
-            left.set_ylabel(quantity_label(motion.output, word, f"{shown}{per}"))
-            right.plot(_across(run), other - own, color=_ENGINE, lw=0.9)
-            right.set_ylabel(say("difference [{unit}]", unit=f"{unit}{per}"))
-            right.ticklabel_format(axis="y", style="sci", scilimits=(0, 0), useMathText=False)
-        _finish(figure, run, _keys(run))
+    figure = page_figure(9.2, 7.2, pads=(0.06, 0.08))
+    grid = figure.subplots(3, 2, sharex=True)
+    for (left, right), (word, shown, per, engine, theory) in zip(grid, rows, strict=True):
+        own, other = theory[:, column], engine[:, column]
+        convert = np.degrees if shown == "deg" else np.asarray
+        _draw_both(left, run, convert(own), convert(other))
+        left.set_ylabel(quantity_label(motion.output, word, f"{shown}{per}"))
+        right.plot(_across(run), other - own, color=_ENGINE, lw=0.9)
+        right.set_ylabel(say("difference [{unit}]", unit=f"{unit}{per}"))
+        right.ticklabel_format(axis="y", style="sci", scilimits=(0, 0), useMathText=False)
+    _finish(figure, run, _keys(run))
     return figure
 
 
+@styled()
 def joints_figure(run: Simulation) -> Figure:
     """Every joint's value, theory and engine, and the size of the difference on a logarithmic scale."""
     linkage, rows = run.linkage, []
@@ -91,6 +92,7 @@ def joints_figure(run: Simulation) -> Figure:
     return _sizes_figure(run, 1.6 + 3.4 * len(rows), rows, keys)
 
 
+@styled()
 def points_figure(run: Simulation) -> Figure:
     """Speed and acceleration of the named points, and how far the engine's points are off."""
     rows = []
@@ -111,6 +113,7 @@ def points_figure(run: Simulation) -> Figure:
     return _sizes_figure(run, 7.4, rows, keys)
 
 
+@styled()
 def forces_figure(run: Simulation) -> Figure:
     """The input's torque, and the size of forces and moments in the joints; how far the engine's are off."""
     drive, *others = run.forces
@@ -130,19 +133,18 @@ def forces_figure(run: Simulation) -> Figure:
 
 def _sizes_figure(run: Simulation, height: float, rows: list[_Row], keys: list[tuple[str, str]]) -> Figure:
     """Curves of theory and engine left, the sizes of their differences right, with a key to their colours."""
-    with styled():
-        figure = page_figure(9.2, height, pads=(0.06, 0.08))
-        grid = figure.subplots(len(rows), 2, sharex=True, squeeze=False)
-        for (left, right), row in zip(grid, rows, strict=True):
-            for curve in row.curves:
-                _draw_both(left, run, curve.theory, curve.engine, curve.colour)
-                _draw_size(right, run, curve)
-            if row.in_degrees:
-                left.yaxis.set_major_locator(DegreeLocator(9))
-            left.set_ylabel(row.label)
-            right.set_ylabel(say("size of the difference [{unit}]", unit=row.unit))
-        lines = [Line2D([], [], color=colour, lw=1.5, label=label) for label, colour in keys]
-        _finish(figure, run, [*lines, *_keys(run, "0.35")[:2]])
+    figure = page_figure(9.2, height, pads=(0.06, 0.08))
+    grid = figure.subplots(len(rows), 2, sharex=True, squeeze=False)
+    for (left, right), row in zip(grid, rows, strict=True):
+        for curve in row.curves:
+            _draw_both(left, run, curve.theory, curve.engine, curve.colour)
+            _draw_size(right, run, curve)
+        if row.in_degrees:
+            left.yaxis.set_major_locator(DegreeLocator(9))
+        left.set_ylabel(row.label)
+        right.set_ylabel(say("size of the difference [{unit}]", unit=row.unit))
+    lines = [Line2D([], [], color=colour, lw=1.5, label=label) for label, colour in keys]
+    _finish(figure, run, [*lines, *_keys(run, "0.35")[:2]])
     return figure
 
 

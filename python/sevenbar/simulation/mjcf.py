@@ -116,12 +116,13 @@ class _Tree:
     def close(self, where: Cut) -> None:
         """Adds all bodies, from the ground up to the cut on both sides, and what closes the loop there."""
         model, joints = self._model, self._model.connections
-        parent = world = self.elements[GROUND]
-        for number in range(where.connection + where.weld):
-            parent = self._add_forward(parent, joints[number], number)
-        parent = world
-        for number in reversed(range(where.connection + 1, len(joints))):
-            parent = self._add_backward(parent, joints[number], number)
+        world = self.elements[GROUND]
+        forward = range(where.connection + where.weld)
+        backward = reversed(range(where.connection + 1, len(joints)))
+        for way, numbers_there in ((1.0, forward), (-1.0, backward)):
+            parent = world
+            for number in numbers_there:
+                parent = self._add(parent, joints[number], number, way)
         closing = joints[where.connection]
         if where.weld:
             mark(world, "ground_side", closing.frame_after, model)
@@ -136,25 +137,22 @@ class _Tree:
             mark(self.elements[closing.after], sites[1], closing.frame_after, model)
         add(self._equality, kind, name="loop", site1=sites[0], site2=sites[1], **more)
 
-    def _add_forward(self, parent: Element, joint: Connection, number: int) -> Element:
-        """Adds the body after a joint; past the last one a bare body that the ground's frame is welded to."""
-        if joint.after == GROUND:
-            body = self._add_body(parent, "loop_end_body", joint.frame_before, GROUND)
-            self._add_freedoms(body, joint, number, np.eye(4), 1.0)
-            mark(body, "loop_end", np.eye(4), self._model)
-            return body
-        if joint.after in self._rules:
-            return self._add_held_ball(parent, joint, self._rules[joint.after])
-        name = self._model.bodies[joint.after].name
-        body = self._add_body(parent, name, joint.frame_before @ inverse(joint.frame_after), joint.after)
-        self._add_freedoms(body, joint, number, joint.frame_after, 1.0)
-        return body
+    def _add(self, parent: Element, joint: Connection, number: int, way: float) -> Element:
+        """Adds the body after a joint, or with `way` -1 the one before it, read as the same joint.
 
-    def _add_backward(self, parent: Element, joint: Connection, number: int) -> Element:
-        """Adds the body before a joint, from the one after it: what is read of the joint stays the same."""
-        name = self._model.bodies[joint.before].name
-        body = self._add_body(parent, name, joint.frame_after @ inverse(joint.frame_before), joint.before)
-        self._add_freedoms(body, joint, number, joint.frame_before, -1.0)
+        Past the last joint a bare body that the ground's frame is welded to.
+        """
+        child, near, far = joint.after, joint.frame_before, joint.frame_after
+        if way < 0:
+            child, near, far = joint.before, far, near
+        elif child in self._rules:
+            return self._add_held_ball(parent, joint, self._rules[child])
+        name = self._model.bodies[child].name if child != GROUND else "loop_end_body"
+        far = far if child != GROUND else np.eye(4)
+        body = self._add_body(parent, name, near @ inverse(far), child)
+        self._add_freedoms(body, joint, number, far, way)
+        if child == GROUND:
+            mark(body, "loop_end", far, self._model)
         return body
 
     def _add_body(self, parent: Element, name: str, frame: Floats, number: int) -> Element:
