@@ -53,8 +53,8 @@ class _LinkageFile(CommandFile):
         speed, end, steps = self._drive()
         self._head()
         weights = masses(self.assembly)
-        for body, name in enumerate(self.assembly.bodies):
-            if name == "ground" or self._has_part(body):
+        for body in range(len(self.assembly.bodies)):
+            if self._has_part(body):
                 self._part(body, weights[body])
         for i, word in enumerate(_distinct([word_of(joint.name, "joint") for joint in joints])):
             self._joint(i, word)

@@ -10,7 +10,7 @@ Source: docs/theory_free.md, (4) and (5).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -71,9 +71,7 @@ class EnergyCourse:
             return self
         series = self.quantities.series.copy()
         series[:, :, SLOPE] -= torque * series[:, :, INPUT]
-        return EnergyCourse(
-            Along(self.quantities.edges, series), self.closed, self.breaks, self.start, self.tail
-        )
+        return replace(self, quantities=Along(self.quantities.edges, series))
 
     @cached_property
     def _all(self) -> Along:
@@ -244,10 +242,7 @@ class EnergyCourse:
 
     def marks(self, laps: Floats) -> Floats:
         """Places on laps (j,), edges among them, between which U rises or falls all the way, in order."""
-        if self.winds:
-            found = [self._marked(lap) if lap else self._first_marks for lap in laps.tolist()]
-        else:
-            found = [self._first_marks] * len(laps)
+        found = [self._marked(lap) if self.winds and lap else self._first_marks for lap in laps.tolist()]
         return np.unique(np.concatenate(found) + np.repeat(laps, [len(own) for own in found]) * self.length)
 
 
