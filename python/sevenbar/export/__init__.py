@@ -30,7 +30,7 @@ __all__ = ["FORMATS", "Bodies", "Format", "Table", "ending_of", "export", "forma
 
 
 @dataclass(frozen=True)
-class _Kind:
+class _FileKind:
     """A kind of file: its endings, and the function of a module here that writes it."""
 
     endings: tuple[str, ...]
@@ -43,7 +43,7 @@ class _Kind:
 
 
 @dataclass(frozen=True)
-class Table(_Kind):
+class Table(_FileKind):
     """A kind of file that holds all rows of every circuit."""
 
     def write(self, motion: Motion, path: Path, units: Units, progress: Progress) -> None:
@@ -52,7 +52,7 @@ class Table(_Kind):
 
 
 @dataclass(frozen=True)
-class Bodies(_Kind):
+class Bodies(_FileKind):
     """A kind of file that holds the linkage's bodies in one pose."""
 
     #: Whose masses it holds where the linkage has none.
