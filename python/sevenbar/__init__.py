@@ -154,7 +154,7 @@ SAID_IN["sevenbar.forces"] = "sevenbar.reporting.force_results"
 for _folder in ("design.maps", "design.points", "measuring", "simulation"):
     SAID_IN[f"sevenbar.{_folder}"] = f"sevenbar.{_folder}.report"
 # bodies that are given as drawn are those of exports, which stand above the kinematics
-DRAWN_IN["bodies"] = "sevenbar.export.drawn_bodies"
+DRAWN_IN["bodies"] = "sevenbar.export.mass"
 
 
 def __dir__() -> list[str]:

@@ -10,10 +10,10 @@ overlap little (`layout`), and one module for each kind of file.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sevenbar.errors import RequestError, check_word, shown, suggestion
 from sevenbar.export.pose import take
@@ -30,118 +30,58 @@ __all__ = ["FORMATS", "Bodies", "Format", "Table", "ending_of", "export", "forma
 
 
 @dataclass(frozen=True)
-class Table:
-    """A kind of file that holds all rows of every circuit: its endings, and what writes it."""
+class _FileKind:
+    """A kind of file: its endings, and the function of a module here that writes it."""
 
     endings: tuple[str, ...]
-    write: Callable[[Motion, Path, Units, Progress], None]
+    writer: str
+
+    def _call(self, *given: Any) -> None:
+        """Calls the writer, which is imported when it is used: behind it are large libraries."""
+        module, _, name = self.writer.partition(".")
+        getattr(import_module(f"sevenbar.export.{module}"), name)(*given)
 
 
 @dataclass(frozen=True)
-class Bodies:
-    """A kind of file that holds the linkage's bodies in one pose: its endings, and what writes it."""
+class Table(_FileKind):
+    """A kind of file that holds all rows of every circuit."""
 
-    endings: tuple[str, ...]
-    write: Callable[[Assembly, Path, Progress], None]
+    def write(self, motion: Motion, path: Path, units: Units, progress: Progress) -> None:
+        """Writes the rows of a motion."""
+        self._call(motion, path, units, progress)
+
+
+@dataclass(frozen=True)
+class Bodies(_FileKind):
+    """A kind of file that holds the linkage's bodies in one pose."""
+
     #: Whose masses it holds where the linkage has none.
     masses: str = ""
 
+    def write(self, assembly: Assembly, path: Path, progress: Progress) -> None:
+        """Writes the parts of an assembly."""
+        self._call(assembly, path, progress)
+
 
 Format = Table | Bodies
-
-
-# each writer is imported when it is used: behind them stand large libraries
-
-
-def _csv(motion: Motion, path: Path, units: Units, progress: Progress) -> None:
-    from sevenbar.export import tables
-
-    tables.write_csv(motion, path, units, progress)
-
-
-def _xlsx(motion: Motion, path: Path, units: Units, _: Progress) -> None:
-    from sevenbar.export import workbook
-
-    workbook.write_xlsx(motion, path, units)
-
-
-def _parquet(motion: Motion, path: Path, units: Units, _: Progress) -> None:
-    from sevenbar.export import tables
-
-    tables.write_parquet(motion, path, units)
-
-
-def _npz(motion: Motion, path: Path, units: Units, _: Progress) -> None:
-    from sevenbar.export import tables
-
-    tables.write_npz(motion, path, units)
-
-
-def _mat(motion: Motion, path: Path, units: Units, _: Progress) -> None:
-    from sevenbar.export import tables
-
-    tables.write_mat(motion, path, units)
-
-
-def _json(motion: Motion, path: Path, units: Units, _: Progress) -> None:
-    from sevenbar.export import tables
-
-    tables.write_json(motion, path, units)
-
-
-def _glb(assembly: Assembly, path: Path, progress: Progress) -> None:
-    from sevenbar.export import meshes
-
-    meshes.write_glb(assembly, path, progress)
-
-
-def _stl(assembly: Assembly, path: Path, progress: Progress) -> None:
-    from sevenbar.export import meshes
-
-    meshes.write_stl(assembly, path, progress)
-
-
-def _step(assembly: Assembly, path: Path, progress: Progress) -> None:
-    from sevenbar.export import cad
-
-    cad.write_step(assembly, path, progress)
-
-
-def _urdf(assembly: Assembly, path: Path, _: Progress) -> None:
-    from sevenbar.export import urdf
-
-    urdf.write_urdf(assembly, path)
-
-
-def _mjcf(assembly: Assembly, path: Path, _: Progress) -> None:
-    from sevenbar.export import model
-
-    model.write_mjcf(assembly, path)
-
-
-def _cmd(assembly: Assembly, path: Path, _: Progress) -> None:
-    from sevenbar.export import adams
-
-    adams.write_cmd(assembly, path)
-
 
 #: Masses of bodies as they are drawn (`mass.DENSITY`).
 OF_STEEL = "those of the drawn bodies in steel, 7850 kg/m^3"
 
 #: All kinds of file, by the word that asks for them.
 FORMATS: dict[str, Format] = {
-    "csv": Table((".csv",), _csv),
-    "xlsx": Table((".xlsx",), _xlsx),
-    "parquet": Table((".parquet",), _parquet),
-    "npz": Table((".npz",), _npz),
-    "mat": Table((".mat",), _mat),
-    "json": Table((".json",), _json),
-    "glb": Bodies((".glb",), _glb),
-    "stl": Bodies((".stl",), _stl),
-    "step": Bodies((".step", ".stp"), _step),
-    "urdf": Bodies((".urdf",), _urdf, OF_STEEL),
-    "mjcf": Bodies((".xml", ".mjcf"), _mjcf, "1 kg for every body"),
-    "cmd": Bodies((".cmd",), _cmd, OF_STEEL),
+    "csv": Table((".csv",), "tables.write_csv"),
+    "xlsx": Table((".xlsx",), "workbook.write_xlsx"),
+    "parquet": Table((".parquet",), "tables.write_parquet"),
+    "npz": Table((".npz",), "tables.write_npz"),
+    "mat": Table((".mat",), "tables.write_mat"),
+    "json": Table((".json",), "tables.write_json"),
+    "glb": Bodies((".glb",), "meshes.write_glb"),
+    "stl": Bodies((".stl",), "meshes.write_stl"),
+    "step": Bodies((".step", ".stp"), "cad.write_step"),
+    "urdf": Bodies((".urdf",), "urdf.write_urdf", OF_STEEL),
+    "mjcf": Bodies((".xml", ".mjcf"), "model.write_mjcf", "1 kg for every body"),
+    "cmd": Bodies((".cmd",), "adams.write_cmd", OF_STEEL),
 }
 
 #: What people call a kind of file by the program that reads it.
@@ -160,22 +100,20 @@ ALIASES = {
 
 #: What to give in place of a kind of file that is not written, and that people ask for.
 INSTEAD = {
-    "dxf": "no flat drawings are written; give step for CAD, or use: sevenbar plot --figures svg",
-    "dwg": "no flat drawings are written; give step for CAD, or use: sevenbar plot --figures svg",
-    "svg": "pictures are drawn with: sevenbar plot --figures svg",
-    "png": "pictures are drawn with: sevenbar plot --figures png",
-    "gif": "films are made with: sevenbar analyze --animate move.gif",
-    "mp4": "films are made with: sevenbar analyze --animate move.mp4",
-    "obj": "give glb or stl for meshes",
-    "3mf": "give stl for printing",
-    "iges": "give step, which every CAD program reads",
-    "igs": "give step, which every CAD program reads",
-    "parasolid": "give step, which every CAD program reads",
-    "solidworks": "give step, which every CAD program reads",
-    "inventor": "give step, which every CAD program reads",
-    "simscape": "give urdf, which smimport reads, and close the loop by the .loop.json file",
-    "simulink": "give urdf, which smimport reads, and close the loop by the .loop.json file",
-    "xls": "give xlsx",
+    word: advice
+    for words, advice in {
+        "dxf dwg": "no flat drawings are written; give step for CAD, or use: sevenbar plot --figures svg",
+        "svg": "pictures are drawn with: sevenbar plot --figures svg",
+        "png": "pictures are drawn with: sevenbar plot --figures png",
+        "gif": "films are made with: sevenbar analyze --animate move.gif",
+        "mp4": "films are made with: sevenbar analyze --animate move.mp4",
+        "obj": "give glb or stl for meshes",
+        "3mf": "give stl for printing",
+        "iges igs parasolid solidworks inventor": "give step, which every CAD program reads",
+        "simscape simulink": "give urdf, which smimport reads, and close the loop by the .loop.json file",
+        "xls": "give xlsx",
+    }.items()
+    for word in words.split()
 }
 
 
@@ -241,21 +179,18 @@ def export(
 
 def format_of(path: Path, to: str | None) -> str:
     """The word for the kind of a file: the one given, else that of the path's ending."""
-    if to is not None:
-        word = _word(to)
-        if path.suffix and path.suffix.lower() not in FORMATS[word].endings:
-            raise RequestError(
-                f"{path}: its ending {shown(path.suffix)} is not that of {word}; "
-                f"give {' or '.join(FORMATS[word].endings)}"
-            )
-        if not path.suffix and word != "stl":
-            raise RequestError(f"{path}: has no ending; give {' or '.join(FORMATS[word].endings)}")
-        return word
-    for word, form in FORMATS.items():
-        if path.suffix.lower() in form.endings:
-            return word
-    endings = ", ".join(ending for form in FORMATS.values() for ending in form.endings)
-    raise RequestError(f"{path}: {shown(path.suffix)} is the ending of no format; give one of {endings}")
+    known = {ending: word for word, form in FORMATS.items() for ending in form.endings}
+    found = known.get(path.suffix.lower())
+    word = found if to is None else _word(to)
+    if word is None:
+        endings = ", ".join(known)
+        raise RequestError(f"{path}: {shown(path.suffix)} is the ending of no format; give one of {endings}")
+    allowed = " or ".join(FORMATS[word].endings)
+    if path.suffix and found != word:
+        raise RequestError(f"{path}: its ending {shown(path.suffix)} is not that of {word}; give {allowed}")
+    if not path.suffix and word != "stl":
+        raise RequestError(f"{path}: has no ending; give {allowed}")
+    return word
 
 
 def ending_of(to: str) -> str:

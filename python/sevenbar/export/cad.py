@@ -10,17 +10,13 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import OutputError, of_extra
 from sevenbar.export.libraries import installed
-from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid
+from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid, foot_of, length_of
 from sevenbar.kinematics.loop.rigid import perpendicular
 from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS
 
 
-def write_step(
-    assembly: Assembly,
-    path: Path,
-    progress: Progress = silent,
-) -> None:
+def write_step(assembly: Assembly, path: Path, progress: Progress = silent) -> None:
     """Writes an assembly of one component for each part, in place in the pose, in millimetres.
 
     Each component has its part's name and colour, and its own coordinates are those of its link's frame.
@@ -38,7 +34,7 @@ def write_step(
         frame = assembly.frames[part.body]
         shape.label = part.name
         shape.color = library.Color(*(c / 255 for c in bytes.fromhex(part.colour[1:])))
-        shape.location = library.Location(_plane(library, scale * frame[:3, 3], frame[:3, 0], frame[:3, 2]))
+        shape.location = library.Location(_plane(scale * frame[:3, 3], frame[:3, 0], frame[:3, 2]))
         components.append(shape)
     progress(steps - 1, steps, path.name)
     whole = library.Compound(label=linkage.name, children=components)
@@ -57,20 +53,15 @@ def solid(part: Part, scale: float) -> Any:
 
 
 def _primitive(piece: Solid, scale: float, part: Part) -> Any:
-    library = _build123d()
+    solid = _build123d().Solid
     if isinstance(piece, Ball):
-        plane = _plane(library, scale * piece.centre, *_free_of_arms(piece, part))
-        return library.Solid.make_sphere(scale * piece.radius, plane)
-    along = piece.end - piece.start
-    length = float(np.linalg.norm(along))
-    along = along / length
+        plane = _plane(scale * piece.centre, *_free_of_arms(piece, part))
+        return solid.make_sphere(scale * piece.radius, plane)
+    frame, length = foot_of(piece), scale * length_of(piece)
+    plane = _plane(scale * frame[:3, 3], frame[:3, 0], frame[:3, 2])
     if isinstance(piece, Bar):
-        other = np.cross(along, piece.side)
-        corner = piece.start - piece.width / 2 * (piece.side + other)
-        plane = _plane(library, scale * corner, piece.side, along)
-        return library.Solid.make_box(scale * piece.width, scale * piece.width, scale * length, plane)
-    plane = _plane(library, scale * piece.start, perpendicular(along), along)
-    return library.Solid.make_cylinder(scale * piece.radius, scale * length, plane)
+        return solid.make_box(scale * piece.width, scale * piece.width, length, plane)
+    return solid.make_cylinder(scale * piece.radius, length, plane)
 
 
 def _free_of_arms(ball: Ball, part: Part) -> tuple[Floats, Floats]:
@@ -93,8 +84,8 @@ def _free_of_arms(ball: Ball, part: Part) -> tuple[Floats, Floats]:
     return seam, pole
 
 
-def _plane(library: Any, origin: Floats, x: Floats, z: Floats) -> Any:
-    return library.Plane(origin=tuple(origin), x_dir=tuple(x), z_dir=tuple(z))
+def _plane(origin: Floats, x: Floats, z: Floats) -> Any:
+    return _build123d().Plane(origin=tuple(origin), x_dir=tuple(x), z_dir=tuple(z))
 
 
 def _build123d() -> Any:

@@ -11,7 +11,7 @@ from itertools import product
 
 import numpy as np
 
-from sevenbar.arrays import Floats, Integers
+from sevenbar.arrays import Floats
 from sevenbar.export.parts import Assembly, Ball, Bar, Seat, assemble, hub_height
 from sevenbar.export.pose import Pose
 from sevenbar.kinematics.loop.joints import Shape
@@ -81,7 +81,9 @@ def _overlap(assembly: Assembly) -> float:
             radii.append(radius)
             bodies.append(part.body)
     body = np.array(bodies)
-    one, two = _pairs(body)
+    one, two = np.triu_indices(len(body), 1)
+    unlike = body[one] != body[two]
+    one, two = one[unlike], two[unlike]
     reach = (np.array(radii)[one] + np.array(radii)[two]) / unit
     total = 0.0
     for frames in (pose.frames, *pose.others):
@@ -91,13 +93,6 @@ def _overlap(assembly: Assembly) -> float:
         depth = np.maximum(reach - _distances(a[one], b[one], a[two], b[two]) / unit, 0.0)
         total += float((depth**2).sum())
     return total / (1 + len(pose.others))
-
-
-def _pairs(body: Integers) -> tuple[Integers, Integers]:
-    """All pairs of solids on unlike bodies."""
-    one, two = np.triu_indices(len(body), 1)
-    unlike = body[one] != body[two]
-    return one[unlike], two[unlike]
 
 
 def _distances(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:

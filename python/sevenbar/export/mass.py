@@ -9,8 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.export.layout import arrange
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid
+from sevenbar.export.pose import take
+from sevenbar.forces.bodies import inertia_at
 from sevenbar.kinematics.dynamics.link_bodies import resolved
+from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.simulation.acting import in_links
 from sevenbar.simulation.prototype import GYRATION
@@ -66,14 +70,23 @@ def drawn_masses(assembly: Assembly) -> list[BodyMass]:
     ]
 
 
+def drawn_bodies(linkage: Linkage, circuit: int) -> list[tuple[float, Floats, Floats]]:
+    """Of each moving link the mass [kg] in steel, its centre (3,) in the link's frame, the inertia (3, 3).
+
+    Inertia about the centre, kg times the square of the length unit. The layout is that of an export of this
+    circuit.
+    """
+    assembly = arrange(take(linkage.motion(), circuit))
+    return [(one.mass, one.centre, one.inertia) for one in drawn_masses(assembly)[: len(linkage.links)]]
+
+
 def _sum(solids: Sequence[Solid], density: float) -> BodyMass:
     single = [_of(solid, density) for solid in solids]
     mass = sum(one.mass for one in single)
     centre: Floats = np.sum([one.mass * one.centre for one in single], axis=0) / mass
     inertia = np.zeros((3, 3))
     for one in single:
-        arm = one.centre - centre
-        inertia += one.inertia + one.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        inertia += one.inertia + inertia_at(one.mass, one.centre - centre)
     return BodyMass(float(mass), centre, inertia)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +21,9 @@ SECTIONS = 48
 TO_GLTF = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 
-def write_glb(
-    assembly: Assembly,
-    path: Path,
-    progress: Progress = silent,
-) -> None:
+def write_glb(assembly: Assembly, path: Path, progress: Progress = silent) -> None:
     """Writes the assembly as a scene [m]: a node for each link, in place by its matrix, parts below it."""
-    _begun(assembly, progress)
+    solids = list(_meshes(assembly, progress))
     library = _trimesh()
     scene = library.Scene(base_frame="world")
     scale = LENGTHS[assembly.pose.linkage.length_unit]
@@ -35,14 +32,12 @@ def write_glb(
     scene.graph.update(frame_to="linkage", frame_from="world", matrix=TO_GLTF)
     for name, frame in zip(assembly.bodies, assembly.frames, strict=True):
         scene.graph.update(frame_to=name, frame_from="linkage", matrix=metres @ frame @ back)
-    for done, part in enumerate(assembly.parts):
-        solid = mesh(part)
-        progress(done + 1, len(assembly.parts), part.name)
+    for part, solid in solids:
         solid.apply_transform(metres)
         solid.visual = library.visual.TextureVisuals(
             material=library.visual.material.PBRMaterial(
                 name=part.colour,
-                baseColorFactor=_rgba(part.colour),
+                baseColorFactor=[*bytes.fromhex(part.colour.removeprefix("#")), 255],
                 metallicFactor=0.35,
                 roughnessFactor=0.45,
             )
@@ -54,42 +49,35 @@ def write_glb(
             parent_node_name=assembly.bodies[part.body],
         )
     path.write_bytes(scene.export(file_type="glb"))
-    progress(len(assembly.parts), len(assembly.parts), "")
+    progress(len(solids), len(solids), "")
 
 
-def write_stl(
-    assembly: Assembly,
-    path: Path,
-    progress: Progress = silent,
-) -> None:
+def write_stl(assembly: Assembly, path: Path, progress: Progress = silent) -> None:
     """Writes all parts in the pose into one binary STL, in the linkage's own length unit and report frame."""
-    _begun(assembly, progress)
     placed = []
-    for done, part in enumerate(assembly.parts):
-        solid = mesh(part)
-        progress(done + 1, len(assembly.parts), part.name)
+    for part, solid in _meshes(assembly, progress):
         solid.apply_transform(assembly.frames[part.body])
         placed.append(solid)
     path.write_bytes(_trimesh().util.concatenate(placed).export(file_type="stl"))
-    progress(len(assembly.parts), len(assembly.parts), "")
+    progress(len(placed), len(placed), "")
 
 
-def write_stl_parts(
-    assembly: Assembly,
-    folder: Path,
-    progress: Progress = silent,
-) -> None:
+def write_stl_parts(assembly: Assembly, folder: Path, progress: Progress = silent) -> None:
     """Writes each part into a binary STL of its own, in its link's frame and the linkage's length unit."""
-    _begun(assembly, progress)
-    for done, part in enumerate(assembly.parts, start=1):
-        (folder / f"{part.name}.stl").write_bytes(mesh(part).export(file_type="stl"))
-        progress(done, len(assembly.parts), part.name)
+    for part, solid in _meshes(assembly, progress):
+        (folder / f"{part.name}.stl").write_bytes(solid.export(file_type="stl"))
 
 
-def _begun(assembly: Assembly, progress: Progress) -> None:
-    """Says so before the library is imported, which takes its time, if it is there."""
+def _meshes(assembly: Assembly, progress: Progress) -> Iterator[tuple[Part, Any]]:
+    """Each part and its mesh, one after the other; says which."""
+    total = len(assembly.parts)
     if installed("trimesh", "manifold3d"):
-        progress(0, len(assembly.parts), "trimesh")
+        # their import takes its time
+        progress(0, total, "trimesh")
+    for done, part in enumerate(assembly.parts, 1):
+        solid = mesh(part)
+        progress(done, total, part.name)
+        yield part, solid
 
 
 def mesh(part: Part) -> Any:
@@ -111,10 +99,6 @@ def _primitive(solid: Solid) -> Any:
         case Rod():
             return creation.cylinder(solid.radius, segment=[solid.start, solid.end], sections=SECTIONS)
     return creation.box((solid.width, solid.width, length_of(solid)), transform=frame_of(solid))
-
-
-def _rgba(colour: str) -> list[int]:
-    return [*bytes.fromhex(colour.removeprefix("#")), 255]
 
 
 def _trimesh() -> Any:

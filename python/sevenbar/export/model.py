@@ -12,9 +12,10 @@ from sevenbar.export.parts import Assembly
 from sevenbar.kinematics.loop.law import Law
 from sevenbar.simulation.mjcf import mjcf
 from sevenbar.simulation.prototype import prototype
+from sevenbar.text.progress import Progress, silent
 
 
-def write_mjcf(assembly: Assembly, path: Path) -> None:
+def write_mjcf(assembly: Assembly, path: Path, _progress: Progress = silent) -> None:
     """The bodies as rods with masses, started in the pose with the velocities of its motion.
 
     Raises `RequestError` at a dead centre of the input, where velocities have no bound.

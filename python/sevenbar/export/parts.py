@@ -8,8 +8,10 @@ slides in a plane a disc, as wide as it slides, and a slipper on it.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,7 +20,7 @@ from sevenbar.drawing.scene import link_colours
 from sevenbar.drawing.skeleton import CYLINDER
 from sevenbar.drawing.style import GROUND, JOINT
 from sevenbar.export.pose import Pose, extent_of, shortest_link
-from sevenbar.kinematics.loop.rigid import inverse, perpendicular
+from sevenbar.kinematics.loop.rigid import inverse, perpendicular, placed
 from sevenbar.kinematics.loop.rigid import pose as matrix
 from sevenbar.kinematics.loop.rigid import unit as unit_vector
 
@@ -78,12 +80,24 @@ def length_of(solid: Rod | Bar) -> float:
     return float(np.linalg.norm(solid.end - solid.start))
 
 
-def frame_of(solid: Rod | Bar) -> Floats:
-    """The frame (4, 4) in the middle of a rod or a bar: z along it, x along a bar's side."""
+def frame_of(solid: Solid) -> Floats:
+    """A frame (4, 4) in the middle of a solid: z along it, x along a bar's side; of a ball as the body's."""
+    if isinstance(solid, Ball):
+        return matrix(np.eye(3), solid.centre)
     along = (solid.end - solid.start) / length_of(solid)
     side = solid.side if isinstance(solid, Bar) else perpendicular(along)
     turn = np.stack([side, np.cross(along, side), along], axis=1)
     return matrix(turn, (solid.start + solid.end) / 2)
+
+
+def foot_of(solid: Solid) -> Floats:
+    """The frame (4, 4) from which programs build a solid: in a ball's middle, a rod's end, a bar's corner."""
+    frame = frame_of(solid)
+    if not isinstance(solid, Ball):
+        frame[:3, 3] = solid.start
+    if isinstance(solid, Bar):
+        frame[:3, 3] -= solid.width / 2 * (frame[:3, 0] + frame[:3, 1])
+    return frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,17 +151,14 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
     count = len(linkage.joints)
     colours = _link_colours(pose)
     lines = pose.polylines()
-    builds = [
-        _Build(f"link_{k + 1}" if k < count - 1 else "ground", k, colours[k] if k < count - 1 else GROUND)
-        for k in range(count)
-    ]
+    builds = [_Build(f"link_{k}", k - 1, colour) for k, colour in enumerate(colours, 1)]
+    builds.append(_Build("ground", count - 1, GROUND))
     frames, bodies = list(pose.frames), [build.name for build in builds]
     extra: list[Part] = []
     feet = [(lines[i - 1][-1], lines[i][0]) for i in range(count)]
     ends: list[list[Floats]] = [[line[0], line[-1]] for line in lines]
     for i, joint in enumerate(linkage.joints):
         before, after, seat = builds[i - 1], builds[i], seats[i]
-        near, far = feet[i]
         if joint.row.is_ball:
             continue
         if joint.row.has_cross:
@@ -158,18 +169,20 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
             ends[i - 1][1], ends[i][0] = middles
         else:
             # what is long stands on the ground where it can
-            carrier_is_near = i != count - 1
-            make = _plane if joint.row.has_plane else _axial
-            shafts, middles = make(before, after, pose, i, (near, far), seat, unit, carrier_is_near)
-            carrier = (i - 1) % count if carrier_is_near else i
-            extra += [Part(f"shaft_{_word(joint.name)}", carrier, (shaft,), (), JOINT) for shaft in shafts]
-            ends[i - 1][1], ends[i][0] = middles
+            way = 1 if i != count - 1 else -1
+            pairs = (before, after)[::way], (pose.near[i], pose.far[i])[::way], feet[i][::way]
+            carried = _Carried(*pairs, pose, i, seat, unit, way)
+            shafts, middles = carried.plane() if joint.row.has_plane else carried.axial()
+            name, body = f"shaft_{_word(joint.name)}", carried.builds[0].body
+            extra += [Part(name, body, (shaft,), (), JOINT) for shaft in shafts]
+            ends[i - 1][1], ends[i][0] = middles[::way]
     arms = [
         np.vstack([first, _bent(line, first, last, linkage.base[:3, 3]), last])
         for line, (first, last) in zip(lines, ends, strict=True)
     ]
-    for i in (i for i, joint in enumerate(linkage.joints) if joint.row.is_ball):
-        _ball_joint(builds[i - 1], builds[i], pose, i, (arms[i - 1], arms[i]), unit)
+    for i, joint in enumerate(linkage.joints):
+        if joint.row.is_ball:
+            _ball_joint(builds[i - 1], builds[i], pose, i, (arms[i - 1], arms[i]), unit)
     for build, arm in zip(builds, arms, strict=True):
         build.arm(arm, unit)
     parts = [build.part() for build in builds]
@@ -252,94 +265,80 @@ def _bent(line: Floats, first: Floats, last: Floats, centre: Floats) -> Floats:
     return moved
 
 
-def _axial(
-    before: _Build,
-    after: _Build,
-    pose: Pose,
-    i: int,
-    feet: tuple[Floats, Floats],
-    seat: Seat,
-    unit: float,
-    carrier_is_near: bool,
-) -> tuple[list[Solid], tuple[Floats, Floats]]:
-    """Hubs and shaft of a joint on one axis; returns the shaft and the middles of both hubs."""
-    # each hub by the frame on its own link, so that the two are in line only as far as the loop closes
-    frames = (pose.near[i], pose.far[i]) if carrier_is_near else (pose.far[i], pose.near[i])
-    bases = [
-        foot + unit * (seat.aside[0] * frame[:3, 0] + seat.aside[1] * frame[:3, 1])
-        for foot, frame in zip(feet if carrier_is_near else feet[::-1], frames, strict=True)
-    ]
-    axis, side_way = frames[0][:3, 2], frames[0][:3, 0]
-    # measured along the axis from the carrier's foot
-    low, high = pose.travel[i] if carrier_is_near else -pose.travel[i][::-1]
-    shift = (seat.shift + seat.side * SPACING / 2) * unit
-    stand = (low + shift - SPACING * unit) if seat.side > 0 else (high + shift + SPACING * unit)
-    carrier = bases[0] + stand * axis
-    sleeve = bases[1] + shift * frames[1][:3, 2]
-    way = seat.side * axis
-    travels = high - low > 1e-9 * unit
-    square = pose.linkage.joints[i].row.shape == "block"
-    near, far = (before, after) if carrier_is_near else (after, before)
-    near.hub(carrier, -way, True, frames[0][:3, 0] if square else None)
-    far.hub(sleeve, seat.side * frames[1][:3, 2], not travels, frames[1][:3, 0] if square else None)
-    reach = (0.5 + (STANDS_OUT if travels else -0.04)) * unit
-    last = bases[0] + ((high if seat.side > 0 else low) + shift) * axis + reach * way
-    first = carrier - 0.46 * unit * way
-    if square:
-        shaft: Solid = Bar(first, last, 1.7 * SHAFT * unit, side_way)
-    else:
-        shaft = Rod(first, last, SHAFT * unit)
-    return [shaft], ((carrier, sleeve) if carrier_is_near else (sleeve, carrier))
+class _Carried(NamedTuple):
+    """A joint on one axis or in one plane while it is built; of each pair the carrier is first.
 
+    `frames` are the joint's on either link, so that parts are in line only as far as the loop closes; `feet`
+    are where the links end. The `way` is 1 where the carrier is the link before, else -1.
+    """
 
-def _plane(
-    before: _Build,
-    after: _Build,
-    pose: Pose,
-    i: int,
-    feet: tuple[Floats, Floats],
-    seat: Seat,
-    unit: float,
-    carrier_is_near: bool,
-) -> tuple[list[Solid], tuple[Floats, Floats]]:
-    """Disc and slipper of a joint E, parts of its links; returns no shaft, and where the arms end."""
-    joint, own = pose.linkage.joints[i], pose.linkage.places[i]
-    q = np.vstack([pose.circuit.q, pose.q])[:, own]
-    moves = joint.motion(q[~np.isnan(q).any(axis=1)])
-    slid = moves if carrier_is_near else np.linalg.inv(moves)
-    places = slid[:, :2, 3]
-    middle = (places.min(axis=0) + places.max(axis=0)) / 2
-    radius = np.linalg.norm(places - middle, axis=1).max() + 1.2 * HUB * unit
-    frame, other = (pose.near[i], pose.far[i]) if carrier_is_near else (pose.far[i], pose.near[i])
-    foot, slipper = feet if carrier_is_near else feet[::-1]
-    way = seat.side * frame[:3, 2]
-    top = foot + frame[:3, :2] @ middle + seat.shift * unit * frame[:3, 2]
-    disc = Rod(top - DISC * unit * way, top, float(radius))
-    # the slipper by the frame on its own link, so that it lies on the disc only as far as the loop closes
-    up = unit * seat.side * other[:3, 2]
-    face = slipper + seat.shift * unit * other[:3, 2] + GAP * up
-    near, far = (before, after) if carrier_is_near else (after, before)
-    near.add.append(disc)
-    far.add.append(Rod(face, face + SLIPPER * up, HUB * unit))
-    held, holds = top - 0.5 * DISC * unit * way, face + 0.5 * SLIPPER * up
-    return [], ((held, holds) if carrier_is_near else (holds, held))
+    builds: Sequence[_Build]
+    frames: Sequence[Floats]
+    feet: Sequence[Floats]
+    pose: Pose
+    i: int
+    seat: Seat
+    unit: float
+    way: int
+
+    def axial(self) -> tuple[list[Solid], tuple[Floats, Floats]]:
+        """Hubs and shaft of a joint on one axis; returns the shaft and the middles of both hubs."""
+        seat, unit, frames = self.seat, self.unit, self.frames
+        bases = [
+            foot + unit * (seat.aside[0] * frame[:3, 0] + seat.aside[1] * frame[:3, 1])
+            for foot, frame in zip(self.feet, frames, strict=True)
+        ]
+        axis, side_way = frames[0][:3, 2], frames[0][:3, 0]
+        # measured along the axis from the carrier's foot
+        low, high = self.way * self.pose.travel[self.i][:: self.way]
+        shift = (seat.shift + seat.side * SPACING / 2) * unit
+        stand = (low + shift - SPACING * unit) if seat.side > 0 else (high + shift + SPACING * unit)
+        carrier = bases[0] + stand * axis
+        sleeve = bases[1] + shift * frames[1][:3, 2]
+        way = seat.side * axis
+        travels = high - low > 1e-9 * unit
+        square = self.pose.linkage.joints[self.i].row.shape == "block"
+        near, far = self.builds
+        near.hub(carrier, -way, True, side_way if square else None)
+        far.hub(sleeve, seat.side * frames[1][:3, 2], not travels, frames[1][:3, 0] if square else None)
+        reach = (0.5 + (STANDS_OUT if travels else -0.04)) * unit
+        last = bases[0] + ((high if seat.side > 0 else low) + shift) * axis + reach * way
+        first = carrier - 0.46 * unit * way
+        square_bar = Bar(first, last, 1.7 * SHAFT * unit, side_way)
+        return [square_bar if square else Rod(first, last, SHAFT * unit)], (carrier, sleeve)
+
+    def plane(self) -> tuple[list[Solid], tuple[Floats, Floats]]:
+        """Disc and slipper of a joint E, parts of its links; returns no shaft, and where the arms end."""
+        pose, seat, unit, (frame, other) = self.pose, self.seat, self.unit, self.frames
+        joint, own = pose.linkage.joints[self.i], pose.linkage.places[self.i]
+        q = np.vstack([pose.circuit.q, pose.q])[:, own]
+        moves = joint.motion(q[~np.isnan(q).any(axis=1)])
+        places = (moves if self.way > 0 else np.linalg.inv(moves))[:, :2, 3]
+        middle = (places.min(axis=0) + places.max(axis=0)) / 2
+        radius = np.linalg.norm(places - middle, axis=1).max() + 1.2 * HUB * unit
+        foot, slipper = self.feet
+        way = seat.side * frame[:3, 2]
+        top = foot + frame[:3, :2] @ middle + seat.shift * unit * frame[:3, 2]
+        up = unit * seat.side * other[:3, 2]
+        face = slipper + seat.shift * unit * other[:3, 2] + GAP * up
+        near, far = self.builds
+        near.add.append(Rod(top - DISC * unit * way, top, float(radius)))
+        far.add.append(Rod(face, face + SLIPPER * up, HUB * unit))
+        return [], (top - 0.5 * DISC * unit * way, face + 0.5 * SLIPPER * up)
 
 
 def _universal(
     before: _Build, after: _Build, pose: Pose, i: int, seat: Seat, unit: float
 ) -> tuple[Floats, Part, tuple[Floats, Floats]]:
     """Hubs and cross of a universal joint; returns the cross's frame, the cross, and both middles."""
-    pins: list[Solid] = []
-    middles = []
-    centre = pose.near[i, :3, 3]
-    axes = (pose.near[i, :3, 2], pose.far[i, :3, 2])
-    for build, frame, side in zip(
-        (before, after), (pose.near[i], pose.far[i]), (seat.side, seat.other), strict=True
-    ):
+    pins, middles = [], []
+    near, far = pose.near[i], pose.far[i]
+    centre, axes = near[:3, 3], (near[:3, 2], far[:3, 2])
+    for build, frame, side in ((before, near, seat.side), (after, far, seat.other)):
         way = side * frame[:3, 2]
         middle = frame[:3, 3] + (REACH + seat.shift) * unit * way
         build.hub(middle, way, True, None)
-        pins.append(Rod(pose.near[i, :3, 3], middle + 0.46 * unit * way, SHAFT * unit))
+        pins.append(Rod(centre, middle + 0.46 * unit * way, SHAFT * unit))
         middles.append(middle)
     square = unit_vector(np.cross(*axes))
     frame = matrix(np.stack([square, np.cross(axes[0], square), axes[0]], axis=1), centre)
@@ -359,10 +358,10 @@ def _ball_joint(
     own = own / max(float(np.linalg.norm(own)), 1e-300)
     # the socket's own arm must hold on to it
     held = min(float(mouth @ own), AWAY)
-    mouth = mouth - (mouth @ own) * own
-    if np.linalg.norm(mouth) > 1e-6:
-        mouth = mouth / np.linalg.norm(mouth) * np.sqrt(1 - held * held)
-    mouth = mouth + held * own
+    across = mouth - (mouth @ own) * own
+    if np.linalg.norm(across) > 1e-6:
+        across = across / np.linalg.norm(across) * np.sqrt(1 - held * held)
+    mouth = across + held * own
     mouth = mouth / np.linalg.norm(mouth)
     after.add.append(Ball(centre, SOCKET * radius))
     # a little wider than the ball, so that the two do not touch
@@ -386,15 +385,13 @@ def _mean_arm(pose: Pose, i: int, arm: Floats) -> Floats:
 
 def _moved(part: Part, frame: Floats) -> Part:
     """A part with all its places taken through a rigid motion."""
-    turn, shift = frame[:3, :3], frame[:3, 3]
 
     def moved(solid: Solid) -> Solid:
-        match solid:
-            case Ball():
-                return Ball(turn @ solid.centre + shift, solid.radius)
-            case Rod():
-                return Rod(turn @ solid.start + shift, turn @ solid.end + shift, solid.radius)
-        return Bar(turn @ solid.start + shift, turn @ solid.end + shift, solid.width, turn @ solid.side)
+        if isinstance(solid, Ball):
+            return replace(solid, centre=placed(frame, solid.centre))
+        if isinstance(solid, Bar):
+            solid = replace(solid, side=frame[:3, :3] @ solid.side)
+        return replace(solid, start=placed(frame, solid.start), end=placed(frame, solid.end))
 
     return replace(part, add=tuple(map(moved, part.add)), cut=tuple(map(moved, part.cut)))
 

@@ -14,7 +14,6 @@ from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable, chosen_circuit
 from sevenbar.kinematics.circuits.poses import frames_along, joint_frames
-from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.law import Law
 
 #: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.
@@ -89,16 +88,18 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
     valid = np.concatenate([frames, valid[~np.isnan(valid).any(axis=(1, 2, 3))]])
     picked = np.unique(np.linspace(0, len(valid) - 1, SAMPLED).astype(int))
     near, far = (each[0] for each in joint_frames(linkage, frames))
+    every = np.vstack([chosen.q, q])
+    slid = [joint.slid(every[:, own]) for joint, own in zip(linkage.joints, linkage.places, strict=True)]
     return Pose(
         motion=motion,
         circuit=chosen,
         branch=branch or 0,
         q=q,
         frames=np.concatenate([frames[0], [np.eye(4)]]),
-        others=_with_ground(valid[picked]),
+        others=np.concatenate([valid[picked], np.broadcast_to(np.eye(4), (len(picked), 1, 4, 4))], axis=1),
         near=near,
         far=far,
-        travel=_travel(linkage, np.vstack([chosen.q, q])),
+        travel=np.stack([np.nanmin(slid, axis=1), np.nanmax(slid, axis=1)], axis=1),
         places=skeleton_of(linkage, frames),
     )
 
@@ -106,15 +107,6 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
 def extent_of(pose: Pose) -> float:
     """The size [length] that drawn parts are shares of: the extent of all places along the circuit."""
     return max(pose.places.span, skeleton_of(pose.linkage, pose.others[:, :-1]).span)
-
-
-def _with_ground(frames: Floats) -> Floats:
-    return np.concatenate([frames, np.broadcast_to(np.eye(4), (len(frames), 1, 4, 4))], axis=1)
-
-
-def _travel(linkage: Loop, q: Floats) -> Floats:
-    slid = [joint.slid(q[:, own]) for joint, own in zip(linkage.joints, linkage.places, strict=True)]
-    return np.stack([np.nanmin(slid, axis=1), np.nanmax(slid, axis=1)], axis=1)
 
 
 def _no_pose(motion: Motion, circuit: Circuit, at: float) -> RequestError:

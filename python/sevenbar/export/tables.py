@@ -23,18 +23,13 @@ from sevenbar.text.units import LENGTHS
 Units = Literal["file", "si"]
 
 
-def write_csv(
-    motion: Motion,
-    path: Path,
-    units: Units,
-    progress: Progress = silent,
-) -> None:
+def write_csv(motion: Motion, path: Path, units: Units, progress: Progress = silent) -> None:
     """Writes the flat table as CSV; a value that does not exist is an empty cell beside its status."""
     rows = sum(circuit.tally.rows for circuit in motion)
     write_parts(path, motion.column_parts(si=units == "si"), lambda done: progress(done, rows, "rows"))
 
 
-def write_parquet(motion: Motion, path: Path, units: Units) -> None:
+def write_parquet(motion: Motion, path: Path, units: Units, _progress: Progress = silent) -> None:
     """Writes the flat table as Parquet, with the note as JSON under `sevenbar` in its schema's metadata."""
     with of_extra("export", "parquet needs pyarrow"):
         import pyarrow as arrow
@@ -57,7 +52,7 @@ def write_parquet(motion: Motion, path: Path, units: Units) -> None:
     writer.close()
 
 
-def write_npz(motion: Motion, path: Path, units: Units) -> None:
+def write_npz(motion: Motion, path: Path, units: Units, _progress: Progress = silent) -> None:
     """Writes the rows of all circuits, one under the other, as NumPy arrays; `note` is JSON text."""
     parts = [circuit_arrays(motion, circuit, units) for circuit in motion.circuits]
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -70,7 +65,7 @@ def write_npz(motion: Motion, path: Path, units: Units) -> None:
         np.savez_compressed(file, **arrays)
 
 
-def write_mat(motion: Motion, path: Path, units: Units) -> None:
+def write_mat(motion: Motion, path: Path, units: Units, _progress: Progress = silent) -> None:
     """Writes a MATLAB 5 file: `note` (JSON text), `columns` (cells), `circuits` (an array of structures)."""
     with of_extra("export", "mat needs scipy"):
         from scipy.io import savemat
@@ -94,7 +89,7 @@ def write_mat(motion: Motion, path: Path, units: Units) -> None:
     savemat(str(path), content, appendmat=False, do_compression=True)
 
 
-def write_json(motion: Motion, path: Path, units: Units) -> None:
+def write_json(motion: Motion, path: Path, units: Units, _progress: Progress = silent) -> None:
     """Writes one JSON object: the note, and `circuits` with their rows; null stands for no value."""
     whole = note(motion, units) | {
         "circuits": [

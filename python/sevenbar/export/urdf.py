@@ -13,7 +13,8 @@ from sevenbar.arrays import Floats
 from sevenbar.export.left_out import left_out
 from sevenbar.export.mass import BodyMass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
-from sevenbar.kinematics.loop.rigid import half_turn, zyx_turns
+from sevenbar.kinematics.loop.rigid import half_turn, pose, zyx_turns
+from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS
 
 #: The mass of a link that only joins the freedoms of one joint, as a share of the heaviest link's.
@@ -22,7 +23,7 @@ JOINING = 1e-6
 EFFORT, VELOCITY = 1e6, 1e3
 
 
-def write_urdf(assembly: Assembly, path: Path) -> None:
+def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> None:
     """Writes the tree to `path` and the loop joint to `loop_file(path)`; metres and radians.
 
     The tree begins with `ground`, whose frame is the report frame, and ends with the last moving link. Each
@@ -46,9 +47,8 @@ def write_urdf(assembly: Assembly, path: Path) -> None:
         robot.append(Xml.Comment(f" Left out, for URDF has no place for it: {missing}. "))
     for colour in dict.fromkeys(part.colour for part in assembly.parts):
         channels = " ".join(f"{c / 255:.6g}" for c in bytes.fromhex(colour[1:]))
-        Xml.SubElement(
-            Xml.SubElement(robot, "material", name=_material(colour)), "color", rgba=f"{channels} 1"
-        )
+        material = Xml.SubElement(robot, "material", name=_material(colour))
+        Xml.SubElement(material, "color", rgba=f"{channels} 1")
     weights = masses(assembly)
     heaviest = max(weights[: count - 1], key=lambda one: one.mass)
     _add_link(robot, assembly, assembly.bodies.index("ground"), "ground", None, scale)
@@ -58,9 +58,8 @@ def write_urdf(assembly: Assembly, path: Path) -> None:
         name = assembly.bodies[i]
         q = np.vstack([assembly.pose.circuit.q, assembly.pose.q])[:, linkage.places[i]]
         steps = joint.steps(q)
-        for k, ((step, values), (column, _)) in enumerate(
-            zip(steps, joint.row.named(joint.name), strict=True)
-        ):
+        names = [column for column, _ in joint.row.named(joint.name)]
+        for k, ((step, values), column) in enumerate(zip(steps, names, strict=True)):
             last = k == len(steps) - 1
             child = name if last else f"{name}_{k + 1}"
             kind = "prismatic" if step.freedom == "slide" else "continuous"
@@ -89,10 +88,8 @@ def write_urdf(assembly: Assembly, path: Path) -> None:
         if i < count - 2:
             mount = linkage.links[i]
     Xml.indent(robot)
-    path.write_text(
-        '<?xml version="1.0" encoding="utf-8"?>\n' + Xml.tostring(robot, encoding="unicode") + "\n",
-        encoding="utf-8",
-    )
+    text = '<?xml version="1.0" encoding="utf-8"?>\n' + Xml.tostring(robot, encoding="unicode") + "\n"
+    path.write_text(text, encoding="utf-8")
     loop_file(path).write_text(json.dumps(loop(assembly, path), indent=2) + "\n", encoding="utf-8")
 
 
@@ -115,7 +112,8 @@ def loop(assembly: Assembly, path: Path) -> dict[str, Any]:
         turned = half_turn(joint.row.half_turn)
         frames = {link: frame @ turned for link, frame in reversed(frames.items())}
         columns, angle = columns[:: -1 if joint.row.has_cross or joint.row.numbered_back else 1], -angle
-    sides = [{"link": link, "frame": _scaled(frame, scale).tolist()} for link, frame in frames.items()]
+    scaled = {link: pose(frame[:3, :3], scale * frame[:3, 3]) for link, frame in frames.items()}
+    sides = [{"link": link, "frame": frame.tolist()} for link, frame in scaled.items()]
     own: dict[str, Any] = {"name": joint.name, "kind": joint.kind, "columns": list(columns)}
     if joint.row.is_screw:
         own["pitch"] = scale * joint.pitch
@@ -144,9 +142,7 @@ def _add_link(
     link = Xml.SubElement(robot, "link", name=name)
     if mass is not None:
         inertial = Xml.SubElement(link, "inertial")
-        frame = np.eye(4)
-        frame[:3, 3] = mass.centre
-        _origin(inertial, frame, scale)
+        _origin(inertial, pose(np.eye(3), mass.centre), scale)
         Xml.SubElement(inertial, "mass", value=_number(mass.mass))
         moments = scale**2 * mass.inertia
         names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
@@ -166,22 +162,16 @@ def _material(colour: str) -> str:
 
 
 def _geometry(visual: Xml.Element, solid: Solid, scale: float) -> None:
-    frame = np.eye(4)
     if isinstance(solid, Ball):
-        frame[:3, 3] = solid.centre
-        attributes = {"radius": _number(scale * solid.radius)}
-        kind = "sphere"
+        kind, sizes = "sphere", {"radius": _number(scale * solid.radius)}
     elif isinstance(solid, Rod):
-        frame = frame_of(solid)
-        attributes = {"radius": _number(scale * solid.radius), "length": _number(scale * length_of(solid))}
-        kind = "cylinder"
+        length = _number(scale * length_of(solid))
+        kind, sizes = "cylinder", {"radius": _number(scale * solid.radius), "length": length}
     else:
-        frame = frame_of(solid)
         width = _number(scale * solid.width)
-        attributes = {"size": f"{width} {width} {_number(scale * length_of(solid))}"}
-        kind = "box"
-    _origin(visual, frame, scale)
-    Xml.SubElement(Xml.SubElement(visual, "geometry"), kind, attributes)
+        kind, sizes = "box", {"size": f"{width} {width} {_number(scale * length_of(solid))}"}
+    _origin(visual, frame_of(solid), scale)
+    Xml.SubElement(Xml.SubElement(visual, "geometry"), kind, sizes)
 
 
 def _origin(element: Xml.Element, frame: Floats, scale: float) -> None:
@@ -194,9 +184,3 @@ def _origin(element: Xml.Element, frame: Floats, scale: float) -> None:
 def _number(value: float) -> str:
     """A number to its last digit."""
     return repr(float(value) + 0.0)
-
-
-def _scaled(frame: Floats, scale: float) -> Floats:
-    scaled = frame.copy()
-    scaled[:3, 3] *= scale
-    return scaled

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from sevenbar.description.table_writer import linkage_table, points_table
 from sevenbar.description.tables import SHEET
 from sevenbar.errors import RequestError, of_extra
+from sevenbar.export.tables import Units
 from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.text.progress import Progress, silent
 
 #: Rows that a sheet of Excel holds, the head not counted.
 MOST_ROWS = 1_048_575
@@ -20,7 +22,7 @@ MOST_ROWS = 1_048_575
 WIDTH, WIDEST = 11, 32
 
 
-def write_xlsx(motion: Motion, path: Path, units: Literal["file", "si"]) -> None:
+def write_xlsx(motion: Motion, path: Path, units: Units, _progress: Progress = silent) -> None:
     """Writes a workbook: sheets `circuit 0`, `circuit 1` .., `linkage` as tables are read, `points`.
 
     A value that does not exist is an empty cell. The sheet `linkage` is in the file's units whatever `units`
@@ -61,28 +63,22 @@ def _add_sheet(
         sheet.column_dimensions[get_column_letter(place)].width = min(max(WIDTH, len(label) + 2), WIDEST)
     sheet.freeze_panes = f"A{2 + bool(title)}"
 
-    def bold(text: str) -> Any:
-        cell = WriteOnlyCell(sheet, value=text)
-        cell.font = Font(bold=True)
+    def text(value: str, *, bold: bool = False) -> Any:
+        cell = WriteOnlyCell(sheet, value=value)
+        if bold:
+            cell.font = Font(bold=True)
         # a name that begins with '=' is no formula
         cell.data_type = "s"
         return cell
 
+    def plain(value: Any) -> Any:
+        """A value as a sheet takes it: nothing for NaN, text as text."""
+        if value is None or value != value:
+            return None
+        return text(value) if isinstance(value, str) and value.startswith("=") else value
+
     if title:
-        sheet.append([bold(title)])
-    sheet.append([bold(label) for label in head])
+        sheet.append([text(title, bold=True)])
+    sheet.append([text(label, bold=True) for label in head])
     for row in rows:
-        sheet.append([_cell(sheet, value) for value in row])
-
-
-def _cell(sheet: Any, value: Any) -> Any:
-    """A value as a sheet takes it: nothing for NaN, text as text."""
-    if value is None or value != value:
-        return None
-    if isinstance(value, str) and value.startswith("="):
-        from openpyxl.cell import WriteOnlyCell
-
-        cell = WriteOnlyCell(sheet, value=value)
-        cell.data_type = "s"
-        return cell
-    return value
+        sheet.append(list(map(plain, row)))

@@ -110,6 +110,11 @@ def _tensor(values: npt.ArrayLike) -> Floats:
     return tensor
 
 
+def inertia_at(mass: float, arm: Floats) -> Floats:
+    """The inertia (3, 3) of a mass at an arm (3,) from where it is counted: `m (|a|^2 1 - a a^T)`."""
+    return np.asarray(mass * (arm @ arm * np.eye(3) - np.outer(arm, arm)))
+
+
 def as_one(bodies: Sequence[Body], metre: float) -> Body:
     """Bodies of one link, none of them a rod or drawn, as one; `metre` is the length unit in metres."""
     if len(bodies) == 1:
@@ -119,6 +124,5 @@ def as_one(bodies: Sequence[Body], metre: float) -> Body:
     centre = np.array([body.mass for body in bodies]) @ centres / mass
     tensor = np.zeros((3, 3))
     for body, place in zip(bodies, centres, strict=True):
-        arm = metre * (place - centre)
-        tensor += body.tensor + body.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        tensor += body.tensor + inertia_at(body.mass, metre * (place - centre))
     return Body(mass, triple("centre", centre), tensor)

@@ -117,9 +117,8 @@ def counterweights(
     if most_mass is not None and radius is None:
         raise RequestError("radius: is missing; give the farthest that a counterweight may be from its pivot")
     weights = np.array([moment] * 3 + [force] * 3)
-    if not moment or not force:
-        weights = weights[weights > 0]
-    kept = np.array([moment > 0] * 3 + [force > 0] * 3)
+    kept = weights > 0
+    weights = weights[kept]
     part = np.full(len(shaking), 1 / len(shaking)) if shares is None else shares
     constant = shaking[:, kept] * weights
     columns = [mount.columns[:, kept] * weights[:, None] for mount in mounts]
@@ -138,9 +137,8 @@ def counterweights(
     chosen = []
     scale = float(np.linalg.norm(products, axis=1).max(initial=0.0))
     for mount, product, mass, acts in zip(mounts, products, added, found.mass_acts, strict=True):
-        own = _counterweight(mount, product, mass, acts, radii[mount.link], scale)
         left += mount.columns @ np.append(product, mass)
-        chosen.append(own)
+        chosen.append(_counterweight(mount, product, mass, acts, radii[mount.link], scale))
 
     def value(wrench: Floats) -> float:
         squares = ((wrench[:, kept] * weights) ** 2).sum(axis=1)
@@ -226,33 +224,33 @@ def _counterweight(
     amount = float(np.linalg.norm(product))
     none = amount <= NONE * scale and not (acts and mass)
     direction = np.zeros(3) if none or not amount else product / amount
-    own: float | None = 0.0 if none else mass
-    if not acts and not none:
+    own: float | None = mass
+    if none:
+        own, amount = 0.0, 0.0
+    elif not acts:
         own = None if radius is None else amount / radius
     body = None
     if own is not None and own > 0:
         x, y, z = (float(v) for v in np.asarray(mount.pivot) + product / own)
         body = Body(own, (x, y, z), solid="point")
-    return Counterweight(mount.link, mount.pivot, 0.0 if none else amount, direction, own, body)
+    return Counterweight(mount.link, mount.pivot, amount, direction, own, body)
 
 
 def _by_link(
     name: str, given: float | Mapping[int, float] | None, mounts: Sequence[Mount]
 ) -> dict[int, float | None]:
     """A number > 0 for each link, or none for any."""
+    links = [mount.link for mount in mounts]
     if given is None:
-        return {mount.link: None for mount in mounts}
-    found: dict[int, float | None] = {}
-    for mount in mounts:
-        if isinstance(given, Mapping) and mount.link not in given:
-            raise RequestError(f"{name}: none for link {mount.link}; give one for each link")
-        value = given[mount.link] if isinstance(given, Mapping) else given
-        number = finite_number(name, value)
-        if number <= 0:
+        return dict.fromkeys(links)
+    values = given if isinstance(given, Mapping) else dict.fromkeys(links, given)
+    for link in links:
+        if link not in values:
+            raise RequestError(f"{name}: none for link {link}; give one for each link")
+        if finite_number(name, values[link]) <= 0:
             unit = "a length" if name == "radius" else "kilograms"
-            raise RequestError(f"{name}: {shown(value)} of link {mount.link}; give {unit} > 0")
-        found[mount.link] = number
-    return found
+            raise RequestError(f"{name}: {shown(values[link])} of link {link}; give {unit} > 0")
+    return {link: finite_number(name, values[link]) for link in links}
 
 
 def _refuse(mounts: Sequence[Mount], measure: object, force: float, moment: float) -> None:

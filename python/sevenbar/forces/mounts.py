@@ -39,8 +39,8 @@ class Mount:
 
         Source: docs/theory_forces.md, (19).
         """
-        moved = np.concatenate([np.eye(3), [self.pivot]])
-        moved = np.column_stack([moved, [0.0, 0.0, 0.0, 1.0]])
+        moved = np.eye(4)
+        moved[3, :3] = self.pivot
         return np.asarray(np.einsum("ij,njw->nwi", moved, self.unit))
 
 

@@ -87,18 +87,9 @@ def shaking_along(forces: Forces) -> Shaking | None:
     if not len(forces.input) or not np.isfinite(forces.shaking).all():
         return None
     between = None if forces.through_change_points else forces.between
-
-    def evaluate(inputs: Floats) -> Floats:
-        assert between is not None
-        return between(inputs).shaking
-
-    return shaking_of(
-        forces.shaking,
-        forces.input,
-        period=forces.period,
-        time=forces.time,
-        evaluate=None if between is None else evaluate,
-    )
+    evaluate = None if between is None else lambda inputs: between(inputs).shaking
+    period, time = forces.period, forces.time
+    return shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate)
 
 
 def _root(square: float) -> float:

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Literal, Protocol
 
 import numpy as np
@@ -51,17 +52,14 @@ class Wrenches(Protocol):
     @property
     def force(self) -> Floats:
         """Of the link before on the link after."""
-        ...
 
     @property
     def moment(self) -> Floats:
         """About the place of the joint."""
-        ...
 
     @property
     def determinate(self) -> Booleans:
         """Whether equilibrium determines each part."""
-        ...
 
 
 class Rows(Protocol):
@@ -70,27 +68,22 @@ class Rows(Protocol):
     @property
     def input(self) -> Floats:
         """The input [rad, or length]."""
-        ...
 
     @property
     def time(self) -> Floats:
         """The time [s]."""
-        ...
 
     @property
     def torque(self) -> Floats:
         """What the input gives."""
-        ...
 
     @property
     def power(self) -> Floats:
         """The drive's power."""
-        ...
 
     @property
     def reactions(self) -> Mapping[str, Wrenches]:
         """By the names of the joints."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -174,7 +167,12 @@ def sizing(
 
     Raises `RequestError` for an unevenness that is not > 0, and for breaks without `evaluate`.
     """
-    delta = None if unevenness is None else _positive("unevenness", unevenness)
+    delta = None if unevenness is None else finite_number("unevenness", unevenness)
+    if delta is not None and delta <= 0:
+        raise RequestError(
+            f"unevenness: {shown(unevenness)} is not an unevenness; "
+            "give a part of the mean speed > 0, as in 0.01"
+        )
     names = tuple(rows.reactions)
     table = _table(rows, names)
     known = np.array(
@@ -184,7 +182,10 @@ def sizing(
         table = filled(table, gaps)
     if gaps is not None and np.isfinite(table[:, 0]).all():
         # what grows without bound at a change point has no series that ends
-        bounded = [_bounded(part) for part in _wrench_parts(table, known)]
+        bounded = [
+            not part.size or CycleSeries(part, 0.0, math.tau).tail <= ACROSS
+            for part in _wrench_parts(table, known)
+        ]
         known[1:] &= np.repeat(np.array(bounded, dtype=bool), 3)
     if not len(table) or not np.isfinite(table[:, known]).all():
         return None
@@ -212,9 +213,9 @@ def sizing(
         power: Curve = TimedRows(rows.power, rows.input, rows.time)
         peak_power, braking, energy, work = power.highest(), power.lowest(), power.running(), 1.0
     else:
-        rate, work = speed or 0.0, unit
+        rate, work, value_of = speed or 0.0, unit, attrgetter("value")
         ends = [Peak(rate * unit * one.value, one.input) for one in (torque.highest(), torque.lowest())]
-        peak_power, braking = max(ends, key=_value), min(ends, key=_value)
+        peak_power, braking = max(ends, key=value_of), min(ends, key=value_of)
         energy = torque.running()
     top, bottom = energy.highest(), energy.lowest()
     fluctuation = work * (top.value - bottom.value)
@@ -229,9 +230,7 @@ def sizing(
         fastest=bottom.input,
         slowest=top.input,
         unevenness=delta,
-        flywheel=None
-        if delta is None or period is None or not speed
-        else flywheel(fluctuation, speed, delta),
+        flywheel=None if not (delta and period and speed) else flywheel(fluctuation, speed, delta),
         bearings={
             name: _bearing(every, units, known, rows.reactions[name], 1 + 6 * i)
             for i, name in enumerate(names)
@@ -282,11 +281,6 @@ def _wrench_parts(table: Floats, known: npt.NDArray[np.bool_]) -> list[Floats]:
     return found
 
 
-def _bounded(part: Floats) -> bool:
-    """Whether the series of quantities (n, k) round a cycle ends."""
-    return not part.size or CycleSeries(part, 0.0, math.tau).tail <= ACROSS
-
-
 def _table(rows: Rows, names: tuple[str, ...]) -> Floats:
     """Torque, then moment and force of each joint, (n, 1 + 6 joints)."""
     found = [rows.torque[:, None]]
@@ -302,16 +296,3 @@ def _units(table: Floats) -> Floats:
     kinds = np.concatenate([[0], np.tile([1, 1, 1, 2, 2, 2], joints)])
     sizes = np.array([greatest_of[kinds == kind].max(initial=0.0) for kind in range(3)])
     return np.asarray(np.where(sizes > 0, sizes, 1.0)[kinds])
-
-
-def _value(peak: Peak) -> float:
-    return peak.value
-
-
-def _positive(name: str, value: float) -> float:
-    number = finite_number(name, value)
-    if number <= 0:
-        raise RequestError(
-            f"{name}: {shown(value)} is not an {name}; give a part of the mean speed > 0, as in 0.01"
-        )
-    return number

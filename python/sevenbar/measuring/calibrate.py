@@ -28,6 +28,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import count
 from typing import Literal
 
 import numpy as np
@@ -38,7 +39,7 @@ from sevenbar.errors import RequestError, check_word, of_extra, shown, suggestio
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.measuring.compare import Comparison, causes, compare, ends_of, inputs_of, name_of, per_cent
-from sevenbar.measuring.doubtful import EXACT, far_off, left_by_most, sentence
+from sevenbar.measuring.doubtful import EXACT, far_off_notes, left_by_most
 from sevenbar.measuring.fit import CurveFit
 from sevenbar.measuring.measured import Ends, Measured
 from sevenbar.measuring.model import OFFSETS, CurveModel
@@ -119,10 +120,7 @@ class Calibration(Printed):
 
     def parameter(self, name: str) -> Parameter:
         """The parameter of a name; `KeyError` where there is none."""
-        for parameter in self.parameters:
-            if parameter.name == name:
-                return parameter
-        raise KeyError(name)
+        return {parameter.name: parameter for parameter in self.parameters}[name]
 
     @property
     def calibrated(self) -> tuple[Parameter, ...]:
@@ -168,7 +166,9 @@ def calibrate(
         >>> [(p.name, round(p.value, 6)) for p in found.calibrated]
         [('L1', 251.0), ('L2', 998.0)]
     """
-    _need_scipy()
+    with of_extra("calibrate", "calibrate needs scipy and tomlkit"):
+        # its parts take a while to load, and are not needed before the end
+        import scipy  # noqa: F401
     if not 0 < confidence < 1:
         raise RequestError(f"confidence: {shown(confidence)} is not a probability; give one like 0.95")
     for word in offsets:
@@ -179,7 +179,7 @@ def calibrate(
     if follow:
         Draft.of_linkage(linkage).holding(follow)
     _refuse_what_stays(measured, ends)
-    evaluations, seen = 0, progress or silent
+    seen, evaluations = progress or silent, count(1)
     seen(0, 0, "")
     align = [word for word, side in (("phase", "input"), ("offset", "output")) if side in offsets]
     before = compare(
@@ -192,13 +192,7 @@ def calibrate(
     wanted += [model.names.index(f"{side}_offset") for side in OFFSETS if side in offsets]
     if not wanted:
         raise RequestError("free: nothing is left to be found; free a dimension or an offset")
-
-    def best(share: float) -> None:
-        nonlocal evaluations
-        evaluations += 1
-        seen(evaluations, 0, f"residual {per_cent(share)}")
-
-    fit = CurveFit(model, wanted, best)
+    fit = CurveFit(model, wanted, lambda share: seen(next(evaluations), 0, f"residual {per_cent(share)}"))
     unidentified = fit.run()
     _refuse_unexplained(before, fit)
     if fit.unfinished is not None:
@@ -209,24 +203,22 @@ def calibrate(
 def _named(numbers: Numbers, free: Sequence[str], hold: Sequence[str], follow: Sequence[str]) -> list[str]:
     """The dimensions that are to be found, in the order of the file."""
     dimensions = [d.name for d in numbers.dimensions if d.place[0] != "point"]
+    named: dict[str, set[str]] = {}
     for option, patterns in (("free", free), ("hold", hold)):
-        for pattern in patterns:
-            if not fnmatch.filter(dimensions, pattern):
+        matched = {pattern: fnmatch.filter(dimensions, pattern) for pattern in patterns}
+        for pattern, found in matched.items():
+            if not found:
                 raise RequestError(
                     f"{option}: no dimension {shown(pattern)}; {suggestion(pattern, dimensions)}"
                     f"this linkage has {', '.join(dimensions)}"
                 )
+        named[option] = {name for found in matched.values() for name in found}
     for name in follow:
         for option, patterns in (("free", free), ("hold", hold)):
             if name in patterns:
                 raise RequestError(f"follow: {name} is in --{option} too; give it in one of them")
-    return [
-        name
-        for name in dimensions
-        if any(fnmatch.fnmatchcase(name, pattern) for pattern in free)
-        and not any(fnmatch.fnmatchcase(name, pattern) for pattern in hold)
-        and name not in follow
-    ]
+    kept = named["free"] - named["hold"] - set(follow)
+    return [name for name in dimensions if name in kept]
 
 
 def _refuse_what_stays(measured: Measured, ends: Ends) -> None:
@@ -262,17 +254,8 @@ def _refuse_unexplained(before: Comparison, fit: CurveFit) -> None:
         )
 
 
-def _need_scipy() -> None:
-    with of_extra("calibrate", "calibrate needs scipy and tomlkit"):
-        # its parts take a while to load, and are not needed before the end
-        import scipy  # noqa: F401
-
-
 def _calibration(
-    measured: Measured,
-    fit: CurveFit,
-    unidentified: Mapping[int, tuple[int, ...]],
-    confidence: float,
+    measured: Measured, fit: CurveFit, unidentified: Mapping[int, tuple[int, ...]], confidence: float
 ) -> Calibration:
     """The calibration of a finished fit."""
     from scipy.special import stdtrit
@@ -303,10 +286,9 @@ def _calibration(
         elif k in unidentified:
             undone = tuple(model.names[other] for other in unidentified[k])
             parameters.append(Parameter(name, kind, "unidentified", nominal, value, undone_by=undone))
-        elif name in model.opening:
-            parameters.append(Parameter(name, kind, "opens the loop", nominal, value))
         elif k < len(model.names) - 2:
-            parameters.append(Parameter(name, kind, "fixed", nominal, value))
+            why: Status = "opens the loop" if name in model.opening else "fixed"
+            parameters.append(Parameter(name, kind, why, nominal, value))
     return Calibration(
         linkage=before.linkage,
         ends=before.ends,
@@ -369,14 +351,11 @@ def _far_off(fit: CurveFit, computed: Mapping[str, Floats]) -> list[str]:
     """Rows that are far from where most of the others put the curve."""
     model, before = fit.model, fit.model.before
     left = left_by_most(fit.found(), fit.jacobian(fit.free))
-    slopes = model.slopes(fit.z)
+    lines, slopes = before.line[model.rows], model.slopes(fit.z)
     notes = []
     for part, quantity in zip(np.split(left, len(computed)), computed, strict=True):
-        apart = -part * fit.noise[quantity]
-        rows = far_off(apart, slopes[quantity][:, -2], model.extents[quantity])
-        if rows:
-            word, unit = before.ends.word(quantity), before.ends.unit(quantity)
-            notes.append(sentence(before.source, before.line[model.rows], rows, apart, word, unit))
+        apart, steep, extent = -part * fit.noise[quantity], slopes[quantity][:, -2], model.extents[quantity]
+        notes += far_off_notes(before.ends, quantity, lines, before.source, apart, steep, extent)
     return notes
 
 

@@ -21,7 +21,7 @@ from sevenbar.errors import RequestError, check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.measuring.candidates import SAME_RESIDUAL, Candidates
-from sevenbar.measuring.doubtful import far_off, sentence
+from sevenbar.measuring.doubtful import far_off_notes, first_of
 from sevenbar.measuring.extremes import Extent
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
 from sevenbar.measuring.passes import PassFit
@@ -210,8 +210,10 @@ def _about_rows(compared: Comparison) -> list[str]:
     """What the rows show besides their differences."""
     notes, best = [], compared.chosen
     if best.branches:
+        behind = [int(compared.line[row]) for row in compared._candidates.stretches.turns]
+        lines = f"line{'s' * (len(behind) > 1)} {first_of(behind, MOST_LINES)}"
         notes.append(
-            f"the input turns back at its limit in {_lines(compared)}: the rows are taken pass by pass, "
+            f"the input turns back at its limit in {lines}: the rows are taken pass by pass, "
             f"on {name_of(best).partition(', ')[2]}"
         )
     for quantity, values in compared.measured.items():
@@ -241,7 +243,7 @@ def _about_differences(compared: Comparison, measured: Measured) -> list[str]:
             f"these data; {causes(compared, '--align')}"
         )
     else:
-        notes += far_off_notes(compared)
+        notes += _far_off(compared)
     if best.open_rows:
         notes.append(
             f"{best.open_rows} of {len(measured)} rows have inputs at which the loop does not close on this "
@@ -268,22 +270,15 @@ def causes(compared: Comparison, zeros: str) -> str:
     return f"{rows}check units, zeros ({zeros}), speed and which joint was measured"
 
 
-def far_off_notes(compared: Comparison) -> list[str]:
+def _far_off(compared: Comparison) -> list[str]:
     """The rows whose differences are far from all others, with their lines."""
     rates = compared._candidates.at(compared.chosen.key, compared.chosen.phase)
     notes = []
-    for quantity in compared.outputs:
+    for quantity, measured in compared.measured.items():
         order = OUTPUTS.index(quantity)
-        apart = compared.difference(quantity)
-        slopes = rates[order + 1] * compared.speeds**order
-        rows = far_off(apart, slopes, float(np.ptp(compared.measured[quantity])))
-        if rows:
-            ends = compared.ends
-            notes.append(
-                sentence(
-                    compared.source, compared.line, rows, apart, ends.word(quantity), ends.unit(quantity)
-                )
-            )
+        apart, slopes = compared.difference(quantity), rates[order + 1] * compared.speeds**order
+        extent = float(np.ptp(measured))
+        notes += far_off_notes(compared.ends, quantity, compared.line, compared.source, apart, slopes, extent)
     return notes
 
 
@@ -294,14 +289,6 @@ def name_of(fit: PassFit) -> str:
     shown_ways = ", ".join(map(str, fit.branches[:MOST_LINES]))
     more = ", .." if len(fit.branches) > MOST_LINES else ""
     return f"circuit {fit.circuit}, branches {shown_ways}{more} one after the other"
-
-
-def _lines(compared: Comparison) -> str:
-    """The lines of the file behind which the input turns back."""
-    rows = compared._candidates.stretches.turns
-    lines = ", ".join(str(compared.line[row]) for row in rows[:MOST_LINES])
-    more = f" and {len(rows) - MOST_LINES} more" if len(rows) > MOST_LINES else ""
-    return f"line{'s' * (len(rows) > 1)} {lines}{more}"
 
 
 def inputs_of(measured: Measured, speed: float, start: float) -> Floats:

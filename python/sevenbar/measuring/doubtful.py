@@ -11,10 +11,12 @@ power series", Technometrics 16 (1974).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
-import numpy.typing as npt
 
 from sevenbar.arrays import Floats, Integers
+from sevenbar.measuring.measured import Ends
 
 #: Times the median difference beyond which a row is far off; of normal noise one in 1e40 is.
 FAR = 20.0
@@ -77,9 +79,26 @@ def left_by_most(residual: Floats, jacobian: Floats) -> Floats:
     return left
 
 
-def sentence(source: str, lines: Integers, rows: list[int], differences: npt.NDArray[np.float64], word: str,
-             unit: str) -> str:  # fmt: skip
-    """The rows of a quantity that are far off, as a note names them."""
+def first_of(lines: Sequence[int], most: int) -> str:
+    """Lines of a file as a message names them: the first ones, and how many more there are."""
+    more = f" and {len(lines) - most} more" if len(lines) > most else ""
+    return ", ".join(map(str, lines[:most])) + more
+
+
+def far_off_notes(
+    ends: Ends,
+    quantity: str,
+    lines: Integers,
+    source: str,
+    differences: Floats,
+    slopes: Floats,
+    extent: float,
+) -> list[str]:
+    """A note on the rows (n,) of a quantity that are far off, if any, by their `lines` in the file."""
+    rows = far_off(differences, slopes, extent)
+    if not rows:
+        return []
+    word, unit = ends.word(quantity), ends.unit(quantity)
     middle = float(np.nanmedian(np.abs(differences - np.nanmedian(differences))))
     named = []
     for row in rows[:MOST_NAMED]:
@@ -87,5 +106,5 @@ def sentence(source: str, lines: Integers, rows: list[int], differences: npt.NDA
         often = f"{times:,.0f} times the median" if times < 1e6 else "the others by almost nothing"
         named.append(f"line {lines[row]} by {differences[row]:.3g} {unit} ({often})")
     more = f", and {len(rows) - MOST_NAMED} more" if len(rows) > MOST_NAMED else ""
-    where = f"{', '.join(named)}{more}"
-    return f"the {word} is far off in {source}: {where}; measure again there, or leave such rows out"
+    listed = f"{', '.join(named)}{more}"
+    return [f"the {word} is far off in {source}: {listed}; measure again there, or leave such rows out"]

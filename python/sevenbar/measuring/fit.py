@@ -20,7 +20,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
-from sevenbar.measuring.doubtful import EXACT
+from sevenbar.measuring.doubtful import EXACT, first_of
 from sevenbar.measuring.least_squares import least_squares
 from sevenbar.measuring.model import CurveModel
 
@@ -56,7 +56,7 @@ MOST_LINES = 8
 class CurveFit:
     """The parameters of a model that explain its rows best; `seen(best residual)` is called on the way."""
 
-    def __init__(self, model: CurveModel, wanted: list[int], seen: Callable[[float], None]) -> None:
+    def __init__(self, model: CurveModel, wanted: list[int], seen: Callable[[float], object]) -> None:
         self.model, self.wanted, self.seen = model, wanted, seen
         self.z = model.first.copy()
         self.noise = {q: float(np.ptp(v)) or 1.0 for q, v in model.values.items()}
@@ -93,15 +93,10 @@ class CurveFit:
         computed = self.model.computed(z)
         if computed is None:
             return None
-        values = self.model.values
-        self._see(computed)
-        return np.concatenate([(computed[q] - values[q]) / self.noise[q] for q in values])
-
-    def _see(self, computed: Mapping[str, Floats]) -> None:
-        share = self.share(computed)
-        if share < self._least:
+        if (share := self.share(computed)) < self._least:
             self._least = share
             self.seen(share)
+        return np.concatenate([(computed[q] - v) / self.noise[q] for q, v in self.model.values.items()])
 
     def share(self, computed: Mapping[str, Floats]) -> float:
         """Root mean square of the differences relative to the range, of the quantity that fits worst."""
@@ -118,7 +113,10 @@ class CurveFit:
 
     def jacobian(self, columns: Sequence[int]) -> Floats:
         """Derivatives (n, columns) of the residual at the parameters that were found."""
-        slopes = self.model.slopes(self.z)
+        return self._slopes(self.z, columns)
+
+    def _slopes(self, z: Floats, columns: Sequence[int]) -> Floats:
+        slopes = self.model.slopes(z)
         return np.concatenate([slopes[q][:, columns] / self.noise[q] for q in slopes])
 
     def run(self) -> dict[int, tuple[int, ...]]:
@@ -152,17 +150,15 @@ class CurveFit:
     def _closed_way(self) -> RequestError:
         """What keeps the fit from its minimum."""
         model, source = self.model, self.model.before.source
-        if model.too_short:
+        if short := model.too_short:
             return RequestError(
-                f"{source}: the least residual is where {model.too_short} is no length any more; "
-                f"hold it with --hold {model.too_short}, or check which joint was measured, units and zeros"
+                f"{source}: the least residual is where {short} is no length any more; "
+                f"hold it with --hold {short}, or check which joint was measured, units and zeros"
             )
-        lines = model.before.line[model.rows[model.lost]]
-        shown = ", ".join(map(str, lines[:MOST_LINES].tolist()))
-        more = f" and {len(lines) - MOST_LINES} more" if len(lines) > MOST_LINES else ""
+        lines = first_of(model.before.line[model.rows[model.lost]].tolist(), MOST_LINES)
         return RequestError(
             f"{source}: the dimensions that would explain these data do not let the loop close at the inputs "
-            f"of lines {shown}{more}; check the circuit, units and zeros, or hold more dimensions"
+            f"of lines {lines}; check the circuit, units and zeros, or hold more dimensions"
         )
 
     def _weigh(self, *, exactly: bool) -> str:
@@ -174,16 +170,13 @@ class CurveFit:
                 break
             parts = np.split(self.found(), len(self.noise))
             share = math.sqrt(1 - len(self.free) / self.count)
-            factors = []
+            factors = {}
             for (quantity, noise), part in zip(self.noise.items(), parts, strict=True):
                 deviation = math.sqrt(self._squares(part) / self.sites) / share
                 # of exact data there is no noise to weigh by
-                least = EXACT * self.model.extents[quantity] / noise
-                factors.append(max(deviation, least))
-            self.noise = {
-                q: noise * factor for (q, noise), factor in zip(self.noise.items(), factors, strict=True)
-            }
-            if max(abs(math.log(factor)) for factor in factors) < (WEIGHED if exactly else ENOUGH):
+                factors[quantity] = max(deviation, EXACT * self.model.extents[quantity] / noise)
+            self.noise = {quantity: noise * factors[quantity] for quantity, noise in self.noise.items()}
+            if max(abs(math.log(factor)) for factor in factors.values()) < (WEIGHED if exactly else ENOUGH):
                 break
         return end
 
@@ -225,15 +218,13 @@ class CurveFit:
             z[free] = part * scales[free]
             return self.model.filled(z)
 
-        def slopes(part: Floats) -> Floats:
-            found = self.model.slopes(spread(part))
-            return np.concatenate([found[q][:, free] / self.noise[q] for q in found])
-
         extents = self.model.extents
         exact = sum(len(v) * (EXACT * extents[q] / self.noise[q]) ** 2 for q, v in self.model.values.items())
         while True:
             minimum = least_squares(
-                lambda part: self.residual(spread(part)), slopes, self.z[free] / scales[free],
+                lambda part: self.residual(spread(part)),
+                lambda part: self._slopes(spread(part), free),
+                self.z[free] / scales[free],
                 most=MOST_EVALUATIONS, enough=enough, exact=exact)  # fmt: skip
             self.evaluations += minimum.evaluations
             self.z = spread(minimum.x)
@@ -242,9 +233,7 @@ class CurveFit:
             if minimum.end != "closed":
                 return minimum.end
             self.unfinished = self._closed_way()
-            if not lost.size:
-                return minimum.end
-            if len(self.left_out) + lost.size > MAY_BE_LOST * total:
+            if not lost.size or len(self.left_out) + lost.size > MAY_BE_LOST * total:
                 return minimum.end
             # a few rows at a limit of the input, which has moved
             self.left_out += self.model.before.line[self.model.rows[lost]].tolist()
@@ -275,8 +264,7 @@ class CurveFit:
         for _ in range(directions.shape[1]):
             shares = np.linalg.norm(left, axis=1)
             # zeros of the test bench are guesses, dimensions come from a drawing and stay
-            worth = shares * np.array([0.1 if self.wanted[k] >= len(self.model.names) - 2 else 1.0
-                                       for k in range(len(shares))])  # fmt: skip
+            worth = shares * np.where(np.array(self.wanted) >= len(self.model.names) - 2, 0.1, 1.0)
             place = next(k for k, w in enumerate(worth) if w >= 0.5 * worth.max())
             held.append(place)
             along = left[place] / np.linalg.norm(left[place])

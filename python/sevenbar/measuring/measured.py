@@ -13,6 +13,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -84,8 +85,19 @@ class Ends:
         return {"time": "s", "turn": "deg", "slide": "mm"}[kind] + ("", "/s", "/s^2")[order]
 
 
+class _Values(Printed):
+    """What was measured, by quantity."""
+
+    values: Mapping[str, Any]
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The quantities of the output that were measured."""
+        return tuple(quantity for quantity in OUTPUTS if quantity in self.values)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Measured(Printed):
+class Measured(_Values):
     """Measured rows: `values` (n,) by quantity, in s, rad (or the length unit) and their derivatives.
 
     `line` (n,) is the line of the file of each row; `labels` name the column of each quantity.
@@ -101,23 +113,13 @@ class Measured(Printed):
     def __len__(self) -> int:
         return len(self.line)
 
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """The quantities of the output that were measured."""
-        return tuple(quantity for quantity in OUTPUTS if quantity in self.values)
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MeasuredExtremes(Printed):
+class MeasuredExtremes(_Values):
     """The lowest and the highest measured value of each quantity, as the paper's Table 1 has them."""
 
     source: str
     values: Mapping[str, tuple[float, float]]
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """The quantities of the output that were measured."""
-        return tuple(quantity for quantity in OUTPUTS if quantity in self.values)
 
 
 def read_measured(
@@ -159,18 +161,10 @@ def read_measured(
     table = read_table(file, HELD)
     places = _places(table, ends, columns)
     _refuse_what_is_missing(table, ends, places)
-    sizes = {
-        q: table.size(
-            place,
-            ends.kind(q),
-            ends.length_unit,
-            what=q,
-            example=ends.example(q),
-            asked=units.get(q, ""),
-            option="--unit",
-        )
-        for q, place in places.items()
-    }
+    sizes = {}
+    for q, place in places.items():
+        words = {"what": q, "example": ends.example(q), "asked": units.get(q, ""), "option": "--unit"}
+        sizes[q] = table.size(place, ends.kind(q), ends.length_unit, **words)
     raw = {quantity: table.numbers(place) for quantity, place in places.items()}
     if not skip_nan:
         table.refuse_gaps({places[q]: raw[q] for q in places}, "leave such rows out with --skip-nan")
@@ -308,9 +302,9 @@ def _read_extremes(path: Path, ends: Ends, units: Mapping[str, str]) -> Measured
         example = ends.example(name)
         size = unit_size(where, unit, ends.kind(name), ends.length_unit, what=name, example=example)
         try:
-            low, high = float(row["lowest"]) * size, float(row["highest"]) * size
-        except (KeyError, ValueError):
-            low = high = float("nan")
+            low, high = (float(row[end]) * size for end in ("lowest", "highest"))
+        except ValueError:
+            low = high = math.nan
         if not low <= high:
             raise TableError(f"{where}: lowest and highest are not two rising numbers; mend the line")
         values[name] = (low, high)

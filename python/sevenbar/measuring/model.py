@@ -106,14 +106,12 @@ class CurveModel:
     def _start(self, loop: NumberedLoop, poses: Floats, here: Slopes) -> None:
         """Takes closed poses of a loop, with derivatives by all numbers, to follow others from."""
         self._only = [self.places[k] for k in self.moving]
-        self._known = (loop, poses)
-        self._slopes: Slopes | None = None
-        self._matrices: dict[str, Floats] = {}
+        self._slopes: Slopes | None
+        self._matrices: dict[str, Floats]
+        self._stand(loop.p, poses, self.first)
         if self.order == 0:
+            self._known = (loop, poses)
             self._slopes = replace(here, by_number=here.by_number[:, :, self.moving])
-        else:
-            self._known = (self.numbers.loop(self.driver, loop.p, self._only), poses)
-        self._at = self.first.copy()
         self._first_poses = (self.numbers.loop(self.driver, loop.p, ()), poses)
         at_first = self.computed(self.first)
         #: The curve of the design, with the zeros of the first alignment.
@@ -144,8 +142,7 @@ class CurveModel:
         self.sites = np.unique(self.sites[keep], return_inverse=True)[1]
         self._first_poses = (self._first_poses[0], self._first_poses[1][keep])
         # derivatives are those of the poses that are left
-        self._known = (self.numbers.loop(self.driver, loop.p, self._only), poses[keep])
-        self._slopes, self._matrices = None, {}
+        self._stand(loop.p, poses[keep], self._at)
 
     def filled(self, z: Floats) -> Floats:
         """Parameters with the one that follows the others in its place."""
@@ -185,16 +182,19 @@ class CurveModel:
             self.lost = bad[~np.isfinite(near[bad]).all(axis=1)]
         if self.lost.size:
             return False
-        self._known = (self.numbers.loop(self.driver, p, self._only), near)
-        self._slopes, self._matrices, self._at = None, {}, z.copy()
+        self._stand(p, near, z)
         return True
 
     def back_to(self, z: Floats) -> bool:
         """Moves the poses to parameters from those of the design; whether every row closes there."""
         loop, poses = self._first_poses
-        self._known = (self.numbers.loop(self.driver, loop.p, self._only), poses)
-        self._slopes, self._matrices, self._at = None, {}, self.first.copy()
+        self._stand(loop.p, poses, self.first)
         return self._to(z)
+
+    def _stand(self, p: Floats, poses: Floats, z: Floats) -> None:
+        """Takes poses that close with the numbers p, those of parameters z."""
+        self._known = (self.numbers.loop(self.driver, p, self._only), poses)
+        self._slopes, self._matrices, self._at = None, {}, z.copy()
 
     def _here(self) -> Slopes:
         """The derivatives at the poses."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,11 +36,10 @@ MOST_CANDIDATES = 4
 
 def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableType:
     """The comparison for people: what explains the data, the paper's Table 1, the differences."""
-    ends, heading, facts = comparison.ends, comparison.linkage.heading, Facts()
-    drive = drive_text(ends.input, comparison.speed, ends.unit("input"), ends.output)
+    heading, table = comparison.linkage.heading, _extents_table(comparison.table, comparison.ends)
     if isinstance(comparison, ExtremesComparison):
-        facts.add("measured", say("{source}, lowest and highest values", source=comparison.source))
-        facts.add("drive", drive)
+        measured = say("{source}, lowest and highest values", source=comparison.source)
+        facts = _facts(comparison.ends, comparison.speed, measured)
         first, *others = (
             _with_residual(say("circuit {number}", number=i), m) for i, m in comparison.residuals
         )
@@ -48,19 +47,10 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
         if others:
             facts.add("not by", say("; ").join(others[:MOST_CANDIDATES]))
         facts.add("", say("residual: root mean square of the errors relative to the measured range"))
-        return page(heading, facts, _extents_table(comparison.table, ends))
+        return page(heading, facts, table)
     chosen = comparison.chosen
-    rows = np.isfinite(next(iter(comparison.computed.values()))).sum()
-    facts.add(
-        "measured",
-        say(
-            "{source}, {rows} of {quantities}",
-            source=comparison.source,
-            rows=say("{count} rows", count=rows),
-            quantities=say(", ").join(_words(ends, comparison.outputs)),
-        ),
-    )
-    facts.add("drive", drive)
+    rows = say("{count} rows", count=np.isfinite(next(iter(comparison.computed.values()))).sum())
+    facts = _facts(comparison.ends, comparison.speed, _measured(comparison, rows))
     facts.add("explained by", _candidate(chosen), style="bold")
     others, named = [], [chosen]
     for candidate in comparison.candidates[1:]:
@@ -72,51 +62,32 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
         rest = [say("{count} more", count=more)] if more > 0 else []
         facts.add("not by", say("; ").join([*others[:MOST_CANDIDATES], *rest]))
     facts.add("", say("residual: root mean square of the differences relative to the measured range"))
-    for name, value, quantity, asked in (
-        ("phase", chosen.phase, "input", "phase"),
-        ("offset", chosen.offset, "angle", "offset"),
-    ):
-        if asked in comparison.aligned:
-            shown = _value(ends, quantity, value)
-            facts.add(
-                name,
-                say("{value} added to the measured input", value=shown)
-                if name == "phase"
-                else say("{value} subtracted from the measured output", value=shown),
-            )
-    for note in comparison.notes:
-        facts.add("note", retold(note))
-    return page(heading, facts, _extents_table(comparison.table, ends), _spread_table(comparison))
+    if "phase" in comparison.aligned:
+        phase = _value(comparison.ends, "input", chosen.phase)
+        facts.add("phase", say("{value} added to the measured input", value=phase))
+    if "offset" in comparison.aligned:
+        offset = _value(comparison.ends, "angle", chosen.offset)
+        facts.add("offset", say("{value} subtracted from the measured output", value=offset))
+    facts.add_all(("note", retold(note)) for note in comparison.notes)
+    return page(heading, facts, table, _spread_table(comparison))
 
 
 def calibration_text(calibration: Calibration) -> RenderableType:
     """The calibration for people: each dimension with its interval, or why it has none."""
-    ends, chosen = calibration.ends, calibration.before.chosen
-    facts = Facts()
-    facts.add(
-        "measured",
-        say(
-            "{source}, {rows} of {quantities}",
-            source=calibration.source,
-            rows=_rows_and_places(calibration),
-            quantities=say(", ").join(_words(ends, calibration.outputs)),
-        ),
-    )
-    speed = calibration.before.speed
-    facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output))
-    facts.add("explained by", _named(chosen))
+    ends, before = calibration.ends, calibration.before
+    count, places = len(calibration.line), calibration.places
+    rows = say("{count} rows", count=count)
+    if places < count:
+        rows = say("{count} rows at {places} places", count=count, places=places)
+    facts = _facts(ends, before.speed, _measured(calibration, rows))
+    facts.add("explained by", _named(before.chosen))
     for quantity in calibration.outputs:
-        before, after = (
-            _rms(calibration.measured[quantity] - side[quantity])
-            for side in (calibration.nominal, calibration.computed)
-        )
+        nominal, calibrated = _rms(calibration, quantity)
+        word, unit = say(ends.word(quantity)), ends.unit(quantity)
         facts.add(
-            say("rms of the {quantity}", quantity=say(ends.word(quantity))),
+            say("rms of the {quantity}", quantity=word),
             say(
-                "{before:.4g} before, {after:.4g} after [{unit}]",
-                before=before,
-                after=after,
-                unit=ends.unit(quantity),
+                "{before:.4g} before, {after:.4g} after [{unit}]", before=nominal, after=calibrated, unit=unit
             ),
         )
     count = len(calibration.calibrated)
@@ -128,60 +99,64 @@ def calibration_text(calibration: Calibration) -> RenderableType:
         facts.add("held", held)
     for parameter in calibration.parameters:
         if parameter.status == "unidentified":
-            facts.add("not identifiable", unidentified_sentence(parameter, calibration))
-    opening = [p.name for p in calibration.parameters if p.status == "opens the loop"]
-    if opening:
-        names = ", ".join(opening)
+            facts.add("not identifiable", _unidentified(parameter, ends))
+    if names := ", ".join(p.name for p in calibration.parameters if p.status == "opens the loop"):
         facts.add(
             "held", say("{names}: a change of one alone would open this overconstrained loop", names=names)
         )
-    for note in calibration.notes:
-        facts.add("note", retold(note))
+    facts.add_all(("note", retold(note)) for note in calibration.notes)
     return page(calibration.linkage.heading, facts, _parameter_table(calibration))
 
 
-def _rows_and_places(calibration: Calibration) -> str:
-    """How many rows there are, and at how many places where some repeat an input."""
-    rows = len(calibration.line)
-    if calibration.places < rows:
-        return say("{count} rows at {places} places", count=rows, places=calibration.places)
-    return say("{count} rows", count=rows)
+def _facts(ends: Ends, speed: float, measured: str) -> Facts:
+    """What every page begins with."""
+    facts = Facts()
+    facts.add("measured", measured)
+    facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output))
+    return facts
 
 
-def unidentified_sentence(parameter: Parameter, calibration: Calibration) -> str:
+def _measured(found: Comparison | Calibration, rows: str) -> str:
+    quantities = say(", ").join(say(found.ends.word(quantity)) for quantity in found.outputs)
+    return say("{source}, {rows} of {quantities}", source=found.source, rows=rows, quantities=quantities)
+
+
+def _unidentified(parameter: Parameter, ends: Ends) -> str:
     """Why a parameter was held, and at what."""
-    at = _parameter_value(parameter, parameter.value, calibration.ends)
-    if not parameter.undone_by:
-        return say(
-            "{name}, held at {value}: a change of it does not show in these data",
-            name=parameter.name, value=at,
-        )  # fmt: skip
+    name, others = parameter.name, ", ".join(parameter.undone_by)
+    at = f"{_shown(parameter, parameter.value):.6g} {_parameter_unit(parameter, ends)}".rstrip()
+    if not others:
+        return say("{name}, held at {value}: a change of it does not show in these data", name=name, value=at)
     return say(
         "{name}, held at {value}: changes of {others} would hide a change of it",
-        name=parameter.name,
-        value=at,
-        others=", ".join(parameter.undone_by),
-    )
+        name=name, value=at, others=others,
+    )  # fmt: skip
+
+
+def _head(found: Comparison | ExtremesComparison | Calibration, speed: float) -> dict[str, Any]:
+    """What every object of a result begins with."""
+    ends = found.ends
+    return {
+        "format": 1,
+        "linkage": found.linkage.name,
+        "measured": found.source,
+        "units": {"length": ends.length_unit, "angle": "rad", "time": "s"},
+        "drive": {"input": ends.input, "output": ends.output, "speed": speed},
+    }
+
+
+def _chosen(before: Comparison) -> dict[str, Any]:
+    fit = before.chosen
+    return {"circuit": fit.circuit, "branch": fit.branch, "branches": list(fit.branches)}
 
 
 def comparison_dict(comparison: Comparison | ExtremesComparison) -> dict[str, Any]:
     """The comparison as plain values; angles in radians."""
-    ends = comparison.ends
-    common = {
-        "format": 1,
-        "linkage": comparison.linkage.name,
-        "measured": comparison.source,
-        "units": _units(ends),
-        "drive": {"input": ends.input, "output": ends.output, "speed": comparison.speed},
-    }
+    common = _head(comparison, comparison.speed)
+    heads = ("computed", "measured", "error", "per_cent")
     table = [
-        {
-            "quantity": extent.quantity,
-            **{
-                name: {"computed": c, "measured": m, "error": error, "per_cent": share}
-                for name, c, m, error, share in extent.rows()
-            },
-        }
+        {"quantity": extent.quantity}
+        | {name: dict(zip(heads, values, strict=True)) for name, *values in extent.rows()}
         for extent in comparison.table
     ]
     if isinstance(comparison, ExtremesComparison):
@@ -189,54 +164,33 @@ def comparison_dict(comparison: Comparison | ExtremesComparison) -> dict[str, An
         return common | {"circuit": comparison.circuit, "candidates": residuals, "table": table}
     return common | {
         "rows": len(comparison.line),
-        "circuit": comparison.chosen.circuit,
-        "branch": comparison.chosen.branch,
-        "branches": list(comparison.chosen.branches),
+        **_chosen(comparison),
         "aligned": list(comparison.aligned),
         "phase": comparison.chosen.phase,
         "offset": comparison.chosen.offset,
-        "candidates": [_candidate_dict(c) for c in comparison.candidates],
+        "candidates": [{**vars(fit), "branches": list(fit.branches)} for fit in comparison.candidates],
         "table": table,
         "differences": {q: vars(comparison.spread(q)) for q in comparison.outputs},
         "notes": list(comparison.notes),
     }
 
 
-def _candidate_dict(fit: PassFit) -> dict[str, Any]:
-    return {**vars(fit), "branches": list(fit.branches)}
-
-
 def calibration_dict(calibration: Calibration) -> dict[str, Any]:
     """The calibration as plain values; angles in radians, NaN where there is no interval."""
-    ends = calibration.ends
+    names, sides = [p.name for p in calibration.calibrated], ("nominal", "calibrated")
     return {
-        "format": 1,
-        "linkage": calibration.linkage.name,
-        "measured": calibration.source,
-        "units": _units(ends),
-        "drive": {"input": ends.input, "output": ends.output, "speed": calibration.before.speed},
+        **_head(calibration, calibration.before.speed),
         "rows": len(calibration.line),
-        "circuit": calibration.before.chosen.circuit,
-        "branch": calibration.before.chosen.branch,
-        "branches": list(calibration.before.chosen.branches),
+        **_chosen(calibration.before),
         "confidence": calibration.confidence,
         "degrees_of_freedom": calibration.freedom,
         "places": calibration.places,
         "exact": calibration.exact,
         **calibration.held.as_dict,
         "parameters": [{**vars(p), "undone_by": list(p.undone_by)} for p in calibration.parameters],
-        "covariance": {
-            "parameters": [p.name for p in calibration.calibrated],
-            "values": calibration.covariance.tolist(),
-        },
+        "covariance": {"parameters": names, "values": calibration.covariance.tolist()},
         "noise": dict(calibration.noise),
-        "rms": {
-            q: {
-                "nominal": _rms(calibration.measured[q] - calibration.nominal[q]),
-                "calibrated": _rms(calibration.measured[q] - calibration.computed[q]),
-            }
-            for q in calibration.outputs
-        },
+        "rms": {q: dict(zip(sides, _rms(calibration, q), strict=True)) for q in calibration.outputs},
         "notes": list(calibration.notes),
     }
 
@@ -325,10 +279,6 @@ def _calibrated_rows(calibration: Calibration) -> dict[str, Any]:
         "calibrated": calibration.computed,
     }
     return _rows(calibration.ends, calibration.line, calibration.input, sides)
-
-
-def _words(ends: Ends, quantities: Iterable[str]) -> list[str]:
-    return [say(ends.word(quantity)) for quantity in quantities]
 
 
 def _candidate(fit: PassFit) -> str:
@@ -423,16 +373,12 @@ def _shown(parameter: Parameter, value: float) -> float:
     return math.degrees(value) if parameter.kind == "angle" else value
 
 
-def _parameter_value(parameter: Parameter, value: float, ends: Ends) -> str:
-    return f"{_shown(parameter, value):.6g} {_parameter_unit(parameter, ends)}".rstrip()
-
-
-def _rms(values: Any) -> float:
-    return math.sqrt(float(np.mean(np.asarray(values) ** 2)))
-
-
-def _units(ends: Ends) -> dict[str, str]:
-    return {"length": ends.length_unit, "angle": "rad", "time": "s"}
+def _rms(calibration: Calibration, quantity: str) -> tuple[float, float]:
+    """Root mean square of the differences from the nominal and from the calibrated curve."""
+    measured = calibration.measured[quantity]
+    apart = (measured - side[quantity] for side in (calibration.nominal, calibration.computed))
+    before, after = (math.sqrt(float(np.mean(part**2))) for part in apart)
+    return before, after
 
 
 def _rows(ends: Ends, line: Any, inputs: Any, sides: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:

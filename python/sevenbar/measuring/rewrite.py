@@ -34,18 +34,15 @@ def calibrated_toml(text: str, calibration: Calibration, *, source: str = "calib
     units = {dimension.name: dimension.scale for dimension in draft.dimensions}
     written = draft.with_values({name: value / units[name] for name, value in found.items()}).toml()
     whole = "".join(f"# {line}\n" for line in _head(calibration)) + "\n" + written
-    _check(_read(whole), calibration)
-    return whole
-
-
-def _read(text: str) -> Linkage:
     try:
-        return loads(text, "calibrated.toml")
+        again = loads(whole, "calibrated.toml")
     except SevenbarError as error:
         raise RequestError(
             "calibrate: the dimensions that explain these data best make no linkage, so nothing is written: "
             f"{error}"
         ) from None
+    _check(again, calibration)
+    return whole
 
 
 def _check(linkage: Linkage, calibration: Calibration) -> None:
@@ -69,10 +66,9 @@ def _check(linkage: Linkage, calibration: Calibration) -> None:
 
 
 def _head(calibration: Calibration) -> list[str]:
-    per_cent_words = f"{100 * calibration.confidence:g} %"
-    intervals = (
-        "Exact rows: no intervals." if calibration.exact else f"Half widths of {per_cent_words} intervals:"
-    )
+    intervals = f"Half widths of {100 * calibration.confidence:g} % intervals:"
+    if calibration.exact:
+        intervals = "Exact rows: no intervals."
     lines = [f"Calibrated by sevenbar from {calibration.source}, {len(calibration.line)} rows. {intervals}"]
     for p in calibration.calibrated:
         degrees = p.kind == "angle"

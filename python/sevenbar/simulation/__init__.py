@@ -1,9 +1,5 @@
 """The linkage as a virtual prototype: built and moved by another program, beside what Sevenbar says.
 
-    from sevenbar.simulation import simulate
-    run = simulate(sb.load("rssr"), "exudyn")
-    print(run.difference("rocker angle").greatest)
-
 The way there: a `course` of rows and a `prototype` that starts at one of them, an engine's module that moves
 it and knows nothing else, `agreement` of both, then `figures` and `report`.
 """

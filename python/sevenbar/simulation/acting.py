@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -114,20 +115,12 @@ def acting(
     def on_link(link: int, at: Three) -> Placed:
         return links[link], placed(linkage.point_frames[link - 1], at)
 
-    def axes(link: int) -> Floats:
-        return np.asarray(linkage.point_frames[link - 1][:3, :3])
-
     def load(own: Load) -> PlacedLoad:
         assert own.at is not None
         turns = own.axes == "link"
-        turn = axes(own.link) if turns else np.eye(3)
-        return PlacedLoad(
-            on_link(own.link, own.at),
-            turn @ np.array(own.force),
-            turn @ np.array(own.torque),
-            turns,
-            lambda value: factor(own, value),
-        )
+        turn = linkage.point_frames[own.link - 1][:3, :3] if turns else np.eye(3)
+        force, torque = (turn @ np.array(vector) for vector in (own.force, own.torque))
+        return PlacedLoad(on_link(own.link, own.at), force, torque, turns, partial(factor, own))
 
     def factor(own: Load, value: float) -> float:
         # at both ends of its range a load acts, also where an engine's input is a rounding off
@@ -142,16 +135,14 @@ def acting(
 
     def in_joint(own: Spring) -> JointSpring:
         assert own.joint is not None
-        slides = not linkage.turns(own.joint)
-        unit = metre if slides else 1.0
+        unit = 1.0 if linkage.turns(own.joint) else metre
         return JointSpring(*columns[own.joint], own.stiffness / unit, own.length * unit, own.damping / unit)
 
     masses = in_links(linkage, as_moved(linkage, resolved(loading, linkage)))
-    between = [own for own in loading.springs if own.links is not None]
     return PlacedLoading(
         {links[link]: own for link, own in masses.items()},
         np.array(loading.gravity),
-        tuple(load(own) for own in loading.loads),
-        tuple(spring(own) for own in between),
+        tuple(map(load, loading.loads)),
+        tuple(spring(own) for own in loading.springs if own.links is not None),
         tuple(in_joint(own) for own in loading.springs if own.links is None),
     )

@@ -1,22 +1,91 @@
-"""An engine's record beside Sevenbar's rows: joints, named points, closure errors, differences."""
+"""An engine's record beside Sevenbar's rows: joints, named points, forces, closure errors, differences."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sevenbar.arrays import Booleans, Floats
+from sevenbar.forces.result import Forces
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import placed
 from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
-from sevenbar.simulation.force_agreement import ComparedForce, compared_forces
 from sevenbar.simulation.joint_values import BodyStates, JointValues, joint_values
 from sevenbar.simulation.prototype import Prototype
 from sevenbar.text.printing import Printed
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedForce:
+    """A torque, a force or a moment of both at n rows, (n, k) each [`unit`], its components named by `axes`.
+
+    The input's own has one component without a name. Of a reaction only those are here that equilibrium
+    determines, along the axes of the joint's frame on the side of the link before.
+    """
+
+    name: str
+    what: str
+    unit: str
+    axes: tuple[str, ...]
+    engine: Floats
+    theory: Floats
+
+    @property
+    def apart(self) -> Floats:
+        """How far they are apart (n,)."""
+        return np.asarray(np.linalg.norm(self.engine - self.theory, axis=1))
+
+    @property
+    def size(self) -> Floats:
+        """How great Sevenbar's is (n,)."""
+        return np.asarray(np.linalg.norm(self.theory, axis=1))
+
+
+def compared_forces(course: Course, model: Prototype, record: Record) -> tuple[ComparedForce, ...]:
+    """The input's torque, and what the constraints of each joint bear; nothing where an engine has no forces.
+
+    What passes along a joint's own freedoms is a spring's, and at the input the torque; a ball that holds an
+    idle spin bears what the rule needs.
+    """
+    if record.drive is None:
+        return ()
+    circuit, rows, first = course.circuit, course.rows, len(course.lead)
+    forces, linkage = circuit.forces(), course.motion.linkage
+    name = linkage.columns[circuit.input_column]
+    what = "force" if forces.slides else "torque"
+    drive = ComparedForce(
+        name, what, forces.unit, ("",), record.drive[first:, None], forces.torque[rows][:, None]
+    )
+    if record.reactions is None:
+        return (drive,)
+    found = [drive]
+    for joint, seat in zip(linkage.joints, model.seats, strict=True):
+        row = model.connections[seat].row
+        if not row.is_screw:
+            found += _reaction(forces, joint.name, rows, row.free, record.reactions[first:, seat])
+    return tuple(found)
+
+
+def _reaction(
+    forces: Forces, name: str, rows: np.ndarray, free: Sequence[bool], engine: Floats
+) -> list[ComparedForce]:
+    """The force and the moment in a joint, where any of their components is determinate."""
+    reaction = forces.reactions[name]
+    slides, turns = np.array(free[:3]), np.array(free[3:])
+    found = []
+    for what, unit, own, held, part in (
+        ("force", "N", reaction.force, reaction.determinate[3:] & ~slides, engine[:, :3]),
+        ("moment", "N m", reaction.moment, reaction.determinate[:3] & ~turns, engine[:, 3:]),
+    ):
+        if held.any():
+            along = np.einsum("nji,nj->ni", reaction.axes[rows], part)
+            axes = tuple(axis for axis, here in zip("xyz", held, strict=True) if here)
+            found.append(ComparedForce(name, what, unit, axes, along[:, held], own[rows][:, held]))
+    return found
 
 
 @dataclass(frozen=True)
@@ -127,7 +196,7 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
         returned = (float(apart), float(askew))
     forces = compared_forces(course, model, record)
     found = Simulation(course, model, record, values, theory, points, returned, forces)
-    return replace(found, differences=(*_differences(found), *_force_differences(found)))
+    return replace(found, differences=tuple(_differences(found)))
 
 
 def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> BodyStates:
@@ -159,6 +228,7 @@ def _unwind(values: JointValues, theory: JointValues, turns: Booleans) -> None:
 
 
 def _differences(run: Simulation) -> Iterator[Difference]:
+    """Those of the output and its rates, of all other joints, of points, and of forces."""
     linkage, circuit = run.linkage, run.course.circuit
     unit = linkage.length_unit
     output = circuit.output_column
@@ -174,40 +244,25 @@ def _differences(run: Simulation) -> Iterator[Difference]:
             ("acceleration", f"{own}/s²", run.engine.ddq, run.theory.ddq),
         )
         for what, units, engine, theory in rows if column == output else rows[:1]:
-            yield _difference(run, f"{name} {what}", units, engine[:, column], theory[:, column])
+            values = theory[:, column]
+            apart = np.abs(engine[:, column] - values)
+            yield _difference(run, f"{name} {what}", units, apart, np.nanmax(np.abs(values), initial=0.0))
     for name, (engine_point, theory_point) in run.points.items():
         for what, units in (("position", unit), ("velocity", f"{unit}/s"), ("acceleration", f"{unit}/s²")):
-            apart = getattr(engine_point, what) - getattr(theory_point, what)
-            yield _difference(
-                run,
-                f"{name} {what}",
-                units,
-                np.linalg.norm(apart, axis=1),
-                np.zeros(len(apart)),
-                float(np.nanmax(np.linalg.norm(getattr(theory_point, what), axis=1), initial=0.0)),
+            theory = getattr(theory_point, what)
+            apart, size = (
+                np.linalg.norm(own, axis=1) for own in (getattr(engine_point, what) - theory, theory)
             )
+            yield _difference(run, f"{name} {what}", units, apart, np.nanmax(size, initial=0.0))
+    for force in run.forces:
+        scale = np.nanmax(force.size, initial=0.0)
+        yield _difference(run, f"{force.name} {force.what}", force.unit, force.apart, scale)
 
 
-def _force_differences(run: Simulation) -> Iterator[Difference]:
-    """The input's torque, and in each joint what its constraints bear as far as equilibrium determines it."""
-    for found in run.forces:
-        name = f"{found.name} {found.what}"
-        scale = float(np.nanmax(found.size, initial=0.0))
-        yield _difference(run, name, found.unit, found.apart, np.zeros(len(found.apart)), scale)
-
-
-def _difference(
-    run: Simulation, name: str, unit: str, engine: Floats, theory: Floats, scale: float | None = None
-) -> Difference:
-    apart = np.abs(engine - theory)
+def _difference(run: Simulation, name: str, unit: str, apart: Floats, scale: float) -> Difference:
+    """How far apart (n,) the two are in a quantity, which is up to `scale`."""
     if np.isnan(apart).all():
         return Difference(name, unit, math.nan, math.nan, math.nan, math.nan)
     worst = int(np.nanargmax(apart))
-    return Difference(
-        quantity=name,
-        unit=unit,
-        greatest=float(apart[worst]),
-        at=float(run.input[worst]),
-        median=float(np.nanmedian(apart)),
-        scale=float(np.nanmax(np.abs(theory))) if scale is None else scale,
-    )
+    median = float(np.nanmedian(apart))
+    return Difference(name, unit, float(apart[worst]), float(run.input[worst]), median, float(scale))

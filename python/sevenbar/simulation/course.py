@@ -85,22 +85,23 @@ def course(motion: Motion, index: int) -> Course:
 
     Raises `RequestError` where there is no such circuit, or where it has too few rows.
     """
-    circuit = _circuit(motion, index)
+    if not motion.circuits:
+        raise RequestError(
+            f"simulate: {motion.linkage.name} does not move ({motion.motion_type}), so no engine can follow "
+            "it; give another input, or other dimensions"
+        )
+    circuit = chosen_circuit(motion, index)
     if motion.law is not None:
         raise RequestError("law: an engine is driven at constant speed; give a motion without a law")
-    forward = 1.0 if motion.speed > 0 else -1.0
     count = len(circuit.time)
-    solved = (circuit.status == "ok") | (circuit.status == "turns-undefined")
-    if circuit.goes_round and solved.all() and count >= LEAST_ROWS:
-        rows = np.arange(count)
-        if forward * (circuit.input[1] - circuit.input[0]) < 0:
-            rows = rows[::-1]
-        step = float(abs(circuit.input[1] - circuit.input[0]) / abs(motion.speed))
-        lead = rows[-min(LEAD, count) :]
-        return Course(motion, circuit, lead, np.append(rows, rows[0]), step, closes=True)
-    rows = _longest_pass(circuit, solved)
-    if len(rows) > 1 and forward * (circuit.input[rows[1]] - circuit.input[rows[0]]) < 0:
+    solved = np.isin(circuit.status, ("ok", "turns-undefined"))
+    closes = circuit.goes_round and solved.all() and count >= LEAST_ROWS
+    rows = np.arange(count) if closes else _longest_pass(circuit, solved)
+    if len(rows) > 1 and motion.speed * (circuit.input[rows[1]] - circuit.input[rows[0]]) < 0:
         rows = rows[::-1]
+    if closes:
+        step = float(abs(circuit.input[1] - circuit.input[0]) / abs(motion.speed))
+        return Course(motion, circuit, rows[-LEAD:], np.append(rows, rows[0]), step, closes=True)
     margin = round(MARGIN * len(rows))
     inner = rows[margin : len(rows) - margin]
     lead = rows[max(0, min(margin, len(rows)) - LEAD) : margin]
@@ -124,12 +125,3 @@ def _longest_pass(circuit: Circuit, solved: Booleans) -> Integers:
     marks = np.flatnonzero(np.diff(circuit.branch) != 0) + 1
     passes = [np.arange(a, b) for a, b in pairwise([0, *marks, len(circuit.branch)])]
     return max((rows[solved[rows]] for rows in passes), key=len, default=np.array([], dtype=np.int64))
-
-
-def _circuit(motion: Motion, index: int) -> Circuit:
-    if not motion.circuits:
-        raise RequestError(
-            f"simulate: {motion.linkage.name} does not move ({motion.motion_type}), so no engine can follow "
-            "it; give another input, or other dimensions"
-        )
-    return chosen_circuit(motion, index)

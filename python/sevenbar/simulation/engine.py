@@ -8,6 +8,10 @@ from typing import Any
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError
+from sevenbar.text.progress import Progress
+
+#: A bar is moved at most so often.
+TICKS = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +38,12 @@ class Record:
     #: frame; where masses act and the engine knows it.
     drive: Floats | None = None
     reactions: Floats | None = None
+
+
+def tell(progress: Progress | None, done: int, steps: int) -> None:
+    """Tells how many steps an engine has made: now and then, and at the end."""
+    if progress is not None and (done % max(1, steps // TICKS) == 0 or done == steps):
+        progress(done, steps)
 
 
 def imported(module: str) -> Any:

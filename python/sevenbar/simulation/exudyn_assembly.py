@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.forces.bodies import inertia_at
 from sevenbar.kinematics.loop.rigid import perpendicular, pose
 from sevenbar.simulation.engine import imported
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
@@ -21,6 +21,9 @@ MASS = 1e-2
 #: The mass of what has none, as a part of the heaviest body's: Exudyn takes no body without mass.
 MASSLESS = 1e-9
 
+#: What Exudyn gives of each body, in its words.
+MOTION = ("Position", "RotationMatrix", "Velocity", "Acceleration", "AngularVelocity", "AngularAcceleration")
+
 
 def pace_of(model: Prototype) -> float:
     """How many of Exudyn's units of time make a second."""
@@ -31,16 +34,30 @@ def pace_of(model: Prototype) -> float:
 class ExudynAssembly:
     """A prototype put together in an Exudyn system; a length of 1 is its size, a second has `pace` units."""
 
-    def __init__(self, items: Any, system: Any, model: Prototype, pace: float) -> None:
-        self.items, self.system, self.model, self.pace = items, system, model, pace
-        self.ground = system.AddObject(items.ObjectGround())
+    def __init__(self, exu: Any, system: Any, model: Prototype, pace: float) -> None:
+        self.system, self.model, self.pace = system, model, pace
+        self._items, self._outputs = imported("exudyn.itemInterface"), exu.OutputVariableType
+        self.ground = self.add("ObjectGround")
         self.nodes = [self._add_node(body) for body in model.bodies]
         self.joints: list[Any] = []
-        #: The size [m], and Exudyn's unit of mass [kg].
+        #: The size [m], and Exudyn's units of mass [kg] and force [N].
         self.metres = model.size * LENGTHS[model.length_unit]
         masses = {} if model.acting is None else model.acting.masses
         self.kilogram = max((own.mass for own in masses.values()), default=MASS) / MASS
+        self.newton = self.kilogram * self.metres * pace**2
         self.bodies = [self._add_body(number, node) for number, node in enumerate(self.nodes)]
+
+    def add(self, kind: str, **parameters: Any) -> Any:
+        """Adds an item of Exudyn, by the name of its class, which begins with what it is added as."""
+        family = next(
+            word for word in ("Object", "Node", "Marker", "Load", "Sensor") if kind.startswith(word)
+        )
+        return getattr(self.system, f"Add{family}")(getattr(self._items, kind)(**parameters))
+
+    def add_sensor(self, kind: str, output: str, **of: Any) -> Any:
+        """A sensor whose values are kept until they are read."""
+        variable = getattr(self._outputs, output)
+        return self.add(kind, storeInternal=True, writeToFile=False, outputVariableType=variable, **of)
 
     def _add_body(self, number: int, node: Any) -> Any:
         """A rigid body with the mass that acts, or one of its own where none does."""
@@ -53,57 +70,34 @@ class ExudynAssembly:
             mass, centre = own.mass / self.kilogram, own.centre / self.model.size
             # Exudyn counts inertia about the frame's origin
             about = own.inertia / (self.kilogram * self.metres**2)
-            moments = about + mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+            moments = about + inertia_at(mass, centre)
         inertia = [moments[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))]
-        return self.system.AddObject(
-            self.items.ObjectRigidBody(nodeNumber=node, mass=mass, inertia=inertia, centerOfMass=list(centre))
+        return self.add(
+            "ObjectRigidBody", nodeNumber=node, mass=mass, inertia=inertia, centerOfMass=list(centre)
         )
-
-    @property
-    def newton(self) -> float:
-        """Exudyn's unit of force [N]."""
-        return self.kilogram * self.metres * self.pace**2
 
     def _add_node(self, body: MovingBody) -> Any:
         rigid = imported("exudyn.rigidBodyUtilities")
         parameters = rigid.RotationMatrix2EulerParameters(body.frame[:3, :3])
         rates = rigid.AngularVelocity2EulerParameters_t(body.spin / self.pace, parameters)
         place, velocity = body.frame[:3, 3] / self.model.size, body.velocity / (self.model.size * self.pace)
-        return self.system.AddNode(
-            self.items.NodeRigidBodyEP(
-                referenceCoordinates=[*place, *parameters], initialVelocities=[*velocity, *rates]
-            )
-        )
+        start = {"referenceCoordinates": [*place, *parameters], "initialVelocities": [*velocity, *rates]}
+        return self.add("NodeRigidBodyEP", **start)
 
     def marker(self, body: int, frame: Floats) -> Any:
         """A marker at a frame (4, 4) of a body, or of the ground."""
-        return self.system.AddMarker(
-            self.items.MarkerBodyRigid(
-                bodyNumber=self.ground if body == GROUND else self.bodies[body],
-                localHT=pose(frame[:3, :3], frame[:3, 3] / self.model.size),
-            )
-        )
+        number = self.ground if body == GROUND else self.bodies[body]
+        local = pose(frame[:3, :3], frame[:3, 3] / self.model.size)
+        return self.add("MarkerBodyRigid", bodyNumber=number, localHT=local)
 
     def _add_constraints(
-        self,
-        joint: Connection,
-        held: list[int],
-        offset: Callable[..., list[float]] | None = None,
-        *,
-        from_after: bool = False,
+        self, joint: Connection, held: list[int], *, from_after: bool = False, **more: Any
     ) -> None:
-        markers = [
-            self.marker(joint.before, joint.frame_before),
-            self.marker(joint.after, joint.frame_after),
-        ]
-        own = self.system.AddObject(
-            self.items.ObjectJointGeneric(
-                markerNumbers=markers[::-1] if from_after else markers,
-                constrainedAxes=held,
-                **({} if offset is None else {"offsetUserFunction": offset}),
-            )
+        markers = [self.marker(joint.before, joint.frame_before), self.marker(joint.after, joint.frame_after)]
+        markers = markers[::-1] if from_after else markers
+        self.joints.append(
+            self.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=held, **more)
         )
-        self.joints.append(own)
 
     def add_joint(self, joint: Connection) -> None:
         """Adds the constraints of a joint's kind; of a screw those of a cylinder, and one of its own."""
@@ -112,33 +106,30 @@ class ExudynAssembly:
             return
         turn = self.model.values[self.model.connections.index(joint), 5]
         screw = ScrewConstraint(joint, self.model.size, turn)
-        one = np.zeros((1, 1))
-        nodes = [None if body == GROUND else self.nodes[body] for body in (joint.before, joint.after)]
-        self.system.AddObject(
-            self.items.ObjectConnectorCoordinateVector(
-                markerNumbers=[
-                    self.system.AddMarker(
-                        self.items.MarkerNodeCoordinates(
-                            nodeNumber=self.system.AddNode(self.items.NodePointGround())
-                            if node is None
-                            else node
-                        )
-                    )
-                    for node in nodes
-                ],
-                scalingMarker0=one,
-                constraintUserFunction=screw.value,
-                jacobianUserFunction=screw.slope,
-            )
+        nodes = [
+            self.add("NodePointGround") if body == GROUND else self.nodes[body]
+            for body in (joint.before, joint.after)
+        ]
+        self.add(
+            "ObjectConnectorCoordinateVector",
+            markerNumbers=[self.add("MarkerNodeCoordinates", nodeNumber=node) for node in nodes],
+            scalingMarker0=np.zeros((1, 1)),
+            constraintUserFunction=screw.value,
+            jacobianUserFunction=screw.slope,
         )
+
+    @property
+    def drive_is_carried(self) -> bool:
+        """Whether the driven slide is along an axis of the body after.
+
+        Exudyn slides along axes of its first body, so that the body after is first, and slides the other way.
+        """
+        joint, drive = self.model.connections[self.model.drive.connection], self.model.drive
+        return joint.row.has_plane and joint.backwards and not drive.turns
 
     def add_drive(self) -> None:
         """Constrains the driven freedom alone; the joint itself has the other constraints."""
-        drive = self.model.drive
-        joint = self.model.connections[drive.connection]
-        # Exudyn slides along axes of its first body: where the body after carries them, that one is first,
-        # and the slide is the other way
-        carried = joint.row.has_plane and joint.backwards and not drive.turns
+        drive, carried = self.model.drive, self.drive_is_carried
         unit = (1.0 if drive.turns else self.model.size) * (-1.0 if carried else 1.0)
 
         def offset(_system: Any, time: float, _item: int, _parameters: Any) -> list[float]:
@@ -147,43 +138,22 @@ class ExudynAssembly:
             return values
 
         held = [int(row == drive.freedom) for row in range(6)]
-        self._add_constraints(joint, held, offset, from_after=carried)
+        joint = self.model.connections[drive.connection]
+        self._add_constraints(joint, held, from_after=carried, offsetUserFunction=offset)
 
     def add_spin_rule(self, rule: SpinRule) -> None:
         """Constrains the idle spin of a link."""
         # of a turn about z alone held, x of the first frame and y of the second stay at right angles
-        self.system.AddObject(
-            self.items.ObjectJointGeneric(
-                markerNumbers=[
-                    self.marker(rule.before, pose(_axes_with(rule.axis_before, 0))),
-                    self.marker(rule.after, pose(_axes_with(rule.axis_after, 1))),
-                ],
-                constrainedAxes=[0, 0, 0, 0, 0, 1],
-            )
-        )
+        markers = [
+            self.marker(rule.before, pose(_axes_with(rule.axis_before, 0))),
+            self.marker(rule.after, pose(_axes_with(rule.axis_after, 1))),
+        ]
+        self.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=[0, 0, 0, 0, 0, 1])
 
-    def add_sensors(self, kinds: Any) -> list[dict[str, Any]]:
+    def add_motion_sensors(self) -> list[dict[str, Any]]:
         """Sensors of each body's place, attitude and their rates, by name."""
-        names = (
-            "Position",
-            "RotationMatrix",
-            "Velocity",
-            "Acceleration",
-            "AngularVelocity",
-            "AngularAcceleration",
-        )
         return [
-            {
-                name: self.system.AddSensor(
-                    self.items.SensorBody(
-                        bodyNumber=body,
-                        storeInternal=True,
-                        writeToFile=False,
-                        outputVariableType=getattr(kinds, name),
-                    )
-                )
-                for name in names
-            }
+            {name: self.add_sensor("SensorBody", name, bodyNumber=body) for name in MOTION}
             for body in self.bodies
         ]
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import EngineError
-from sevenbar.simulation.engine import Record, imported
+from sevenbar.simulation.engine import Record, imported, tell
 from sevenbar.simulation.exudyn_assembly import ExudynAssembly, pace_of
 from sevenbar.simulation.exudyn_forces import add_acting, constraint_forces, constraint_sensors
 from sevenbar.simulation.prototype import Prototype
@@ -23,17 +22,8 @@ SPECTRAL_RADIUS = 0.6
 #: lengths relative to the size, times in the input's time for a radian (or a size, where it slides).
 TOLERANCE, SHARE = 1e-12, 1e-10
 
-#: A bar is moved at most so often.
-TICKS = 200
 
-
-def run(
-    model: Prototype,
-    steps: int,
-    step: float,
-    *,
-    progress: Progress | None = None,
-) -> Record:
+def run(model: Prototype, steps: int, step: float, *, progress: Progress | None = None) -> Record:
     """Moves a prototype through `steps` steps of `step` [s]; rows of the record are the start and all steps.
 
     Each body is Exudyn's rigid body with Euler parameters, each joint a GenericJoint with the constraints of
@@ -51,11 +41,10 @@ def run(
 
 
 def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress | None) -> Record:
-    items = imported("exudyn.itemInterface")
     container = exu.SystemContainer()
     system = container.AddSystem()
     pace = pace_of(model)
-    assembly = ExudynAssembly(items, system, model, pace)
+    assembly = ExudynAssembly(exu, system, model, pace)
     notes = []
     for joint in model.connections:
         assembly.add_joint(joint)
@@ -71,15 +60,19 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
         )
     if model.redundant:
         notes.append(
-            f"{len(model.redundant)} redundant constraint{'s' * (len(model.redundant) > 1)} "
-            f"({'; '.join(model.redundant)}): all joints are whole, and Exudyn's linear solver with full "
-            "pivoting sets the repeated rows aside"
+            f"{model.redundant_text}: all joints are whole, and Exudyn's linear solver with full pivoting "
+            "sets the repeated rows aside"
         )
     add_acting(assembly)
-    sensors = assembly.add_sensors(exu.OutputVariableType)
-    constraints = constraint_sensors(assembly, exu.OutputVariableType)
+    sensors = assembly.add_motion_sensors()
+    constraints = constraint_sensors(assembly)
     if progress is not None:
-        system.SetPreStepUserFunction(_ticking(progress, steps, step * pace))
+
+        def tick(_system: Any, time: float) -> bool:
+            tell(progress, round(time / (step * pace)), steps)
+            return True
+
+        system.SetPreStepUserFunction(tick)
     system.Assemble()
     try:
         solved = system.SolveDynamic(_settings(exu, model, steps, step * pace), showHints=False)
@@ -90,8 +83,7 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
         raise EngineError(_failure(reason)) from None
     if not solved:
         raise EngineError(_failure("its solver stopped"))
-    if progress is not None:
-        progress(steps, steps)
+    tell(progress, steps, steps)
 
     def stored(name: str) -> Floats:
         """The values (n, bodies, numbers) of one sensor of each body."""
@@ -126,33 +118,16 @@ def _failure(reason: str) -> str:
 
 def _settings(exu: Any, model: Prototype, steps: int, step: float) -> Any:
     settings = exu.SimulationSettings()
-    settings.timeIntegration.numberOfSteps = steps
-    settings.timeIntegration.endTime = steps * step
-    settings.timeIntegration.verboseMode = 0
+    time, solver = settings.timeIntegration, settings.linearSolver
+    time.numberOfSteps, time.endTime, time.verboseMode = steps, steps * step, 0
     # every step is one of the motion's rows, so none may be cut
-    settings.timeIntegration.adaptiveStep = False
-    settings.timeIntegration.newton.useModifiedNewton = False
-    settings.timeIntegration.newton.relativeTolerance = SHARE
-    settings.timeIntegration.newton.absoluteTolerance = TOLERANCE
-    settings.timeIntegration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
-    if model.redundant:
-        settings.linearSolver.solverType = exu.LinearSolverType.EigenDense
-        settings.linearSolver.ignoreSingularJacobian = True
-    else:
-        settings.linearSolver.solverType = exu.LinearSolverType.EXUdense
+    time.adaptiveStep = False
+    time.newton.useModifiedNewton = False
+    time.newton.relativeTolerance, time.newton.absoluteTolerance = SHARE, TOLERANCE
+    time.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
+    solver.solverType = exu.LinearSolverType.EigenDense if model.redundant else exu.LinearSolverType.EXUdense
+    solver.ignoreSingularJacobian = bool(model.redundant)
     settings.solution.file.write = False
     # half a step: each step is kept, whatever its rounding
     settings.solution.sensors.writePeriod = 0.5 * step
     return settings
-
-
-def _ticking(progress: Progress, steps: int, step: float) -> Callable[[Any, float], bool]:
-    every = max(1, steps // TICKS)
-
-    def tick(_system: Any, time: float) -> bool:
-        done = round(time / step)
-        if done % every == 0:
-            progress(done, steps)
-        return True
-
-    return tick

@@ -26,23 +26,20 @@ def add_acting(assembly: ExudynAssembly) -> None:
     acting = assembly.model.acting
     if acting is None:
         return
-    items, system = assembly.items, assembly.system
     pull = acting.gravity / (assembly.metres * assembly.pace**2)
     for number in acting.masses:
-        marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=assembly.bodies[number]))
-        system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=list(pull)))
+        marker = assembly.add("MarkerBodyMass", bodyNumber=assembly.bodies[number])
+        assembly.add("LoadMassProportional", markerNumber=marker, loadVector=list(pull))
     for load in acting.loads:
         _add_load(assembly, load)
     stiff = assembly.newton / assembly.metres
     for spring in acting.springs:
-        markers = [assembly.marker(number, pose(np.eye(3), at)) for number, at in spring.ends]
-        system.AddObject(
-            items.ObjectConnectorSpringDamper(
-                markerNumbers=markers,
-                referenceLength=spring.length / assembly.metres,
-                stiffness=spring.stiffness / stiff,
-                damping=spring.damping * assembly.pace / stiff,
-            )
+        assembly.add(
+            "ObjectConnectorSpringDamper",
+            markerNumbers=[assembly.marker(number, pose(np.eye(3), at)) for number, at in spring.ends],
+            referenceLength=spring.length / assembly.metres,
+            stiffness=spring.stiffness / stiff,
+            damping=spring.damping * assembly.pace / stiff,
         )
     for own in acting.joint_springs:
         _add_joint_spring(assembly, own)
@@ -50,8 +47,7 @@ def add_acting(assembly: ExudynAssembly) -> None:
 
 def _add_load(assembly: ExudynAssembly, load: PlacedLoad) -> None:
     """A force and a torque, as large as they are at the drive's value."""
-    items, drive, pace = assembly.items, assembly.model.drive, assembly.pace
-    number, at = load.place
+    drive, pace, (number, at) = assembly.model.drive, assembly.pace, load.place
     marker = assembly.marker(number, pose(np.eye(3), at))
 
     def share(_system: Any, time: float, full: list[float]) -> list[float]:
@@ -59,76 +55,52 @@ def _add_load(assembly: ExudynAssembly, load: PlacedLoad) -> None:
         return [factor * x for x in full]
 
     for kind, vector, unit in (
-        (items.LoadForceVector, load.force, assembly.newton),
-        (items.LoadTorqueVector, load.torque, assembly.newton * assembly.metres),
+        ("LoadForceVector", load.force, assembly.newton),
+        ("LoadTorqueVector", load.torque, assembly.newton * assembly.metres),
     ):
         if vector.any():
-            full = kind(
-                markerNumber=marker,
-                loadVector=list(vector / unit),
-                bodyFixed=load.turns,
-                loadVectorUserFunction=share,
-            )
-            assembly.system.AddLoad(full)
+            how = {"bodyFixed": load.turns, "loadVectorUserFunction": share}
+            assembly.add(kind, markerNumber=marker, loadVector=list(vector / unit), **how)
 
 
 def _add_joint_spring(assembly: ExudynAssembly, own: JointSpring) -> None:
     """A spring about or along the axis of a joint's free turn or slide."""
-    items, system = assembly.items, assembly.system
-    joint = assembly.model.connections[own.connection]
+    joint, turns = assembly.model.connections[own.connection], own.freedom >= 3
     # Exudyn's springs act about and along z
     axis = np.roll(np.eye(3), own.freedom % 3 - 2, axis=1)
-    frames = [frame @ pose(axis, np.zeros(3)) for frame in (joint.frame_before, joint.frame_after)]
-    markers = [assembly.marker(joint.before, frames[0]), assembly.marker(joint.after, frames[1])]
-    if own.freedom >= 3:
-        unit = assembly.newton * assembly.metres
-        start = assembly.model.values[own.connection, own.freedom]
-        # its turns begin within half a turn
-        whole = start - np.arctan2(np.sin(start), np.cos(start))
-        node = items.NodeGenericData(initialCoordinates=[0], numberOfDataCoordinates=1)
-        system.AddObject(
-            items.ObjectConnectorTorsionalSpringDamper(
-                markerNumbers=markers,
-                nodeNumber=system.AddNode(node),
-                stiffness=own.stiffness / unit,
-                damping=own.damping * assembly.pace / unit,
-                offset=own.slack - whole,
-            )
-        )
+    sides = ((joint.before, joint.frame_before), (joint.after, joint.frame_after))
+    markers = [assembly.marker(body, frame @ pose(axis, np.zeros(3))) for body, frame in sides]
+    unit = assembly.newton * assembly.metres if turns else assembly.newton / assembly.metres
+    common = {
+        "markerNumbers": markers,
+        "stiffness": own.stiffness / unit,
+        "damping": own.damping * assembly.pace / unit,
+    }
+    if not turns:
+        offset, along = own.slack / assembly.metres, list(axis[:, 2])
+        assembly.add("ObjectConnectorLinearSpringDamper", offset=offset, axisMarker0=along, **common)
         return
-    unit = assembly.newton / assembly.metres
-    system.AddObject(
-        items.ObjectConnectorLinearSpringDamper(
-            markerNumbers=markers,
-            stiffness=own.stiffness / unit,
-            damping=own.damping * assembly.pace / unit,
-            offset=own.slack / assembly.metres,
-            axisMarker0=list(axis[:, 2]),
-        )
-    )
+    start = assembly.model.values[own.connection, own.freedom]
+    # its turns begin within half a turn
+    whole = start - np.arctan2(np.sin(start), np.cos(start))
+    node = assembly.add("NodeGenericData", initialCoordinates=[0], numberOfDataCoordinates=1)
+    offset = own.slack - whole
+    assembly.add("ObjectConnectorTorsionalSpringDamper", nodeNumber=node, offset=offset, **common)
 
 
-def constraint_sensors(assembly: ExudynAssembly, kinds: Any) -> list[tuple[Any, Any]]:
+def constraint_sensors(assembly: ExudynAssembly) -> list[list[Any]]:
     """Sensors of force and torque of each joint's constraints, the drive's last; none without masses."""
     if assembly.model.acting is None:
         return []
-    numbers = range(len(assembly.model.connections) + 1)
-
-    def sensor(number: int, name: str) -> Any:
-        return assembly.system.AddSensor(
-            assembly.items.SensorObject(
-                objectNumber=assembly.joints[number],
-                storeInternal=True,
-                writeToFile=False,
-                outputVariableType=getattr(kinds, name),
-            )
-        )
-
-    return [(sensor(number, "ForceLocal"), sensor(number, "TorqueLocal")) for number in numbers]
+    kinds = ("ForceLocal", "TorqueLocal")
+    return [
+        [assembly.add_sensor("SensorObject", kind, objectNumber=own) for kind in kinds]
+        for own in assembly.joints
+    ]
 
 
 def constraint_forces(
-    assembly: ExudynAssembly, sensors: list[tuple[Any, Any]], frames: Floats
+    assembly: ExudynAssembly, sensors: list[list[Any]], frames: Floats
 ) -> ConstraintForces | None:
     """What the constraints bear along the frames (n, bodies, 4, 4) of the bodies; `None` without masses.
 
@@ -138,22 +110,18 @@ def constraint_forces(
     """
     if not sensors:
         return None
-    model, drive = assembly.model, assembly.model.drive
+    model, drive, carried = assembly.model, assembly.model.drive, assembly.drive_is_carried
     stored = [[assembly.system.GetSensorStoredData(one)[:, 1:4] for one in pair] for pair in sensors]
     places = assembly.newton * np.array([force for force, _ in stored])
     turns = assembly.newton * assembly.metres * np.array([torque for _, torque in stored])
-    driven = model.connections[drive.connection]
-    carried = driven.row.has_plane and driven.backwards and not drive.turns
     axis = drive.freedom % 3
     # where the body after carries the slide, its constraint is the other way round
     given = turns[-1, :, axis] if drive.turns else (1.0 if carried else -1.0) * places[-1, :, axis]
     metre = LENGTHS[model.length_unit]
     found = []
     for number, joint in enumerate(model.connections):
-        before, after = (
-            _placed(frames, joint.before) @ joint.frame_before,
-            _placed(frames, joint.after) @ joint.frame_after,
-        )
+        before = _placed(frames, joint.before) @ joint.frame_before
+        after = _placed(frames, joint.after) @ joint.frame_after
         force = -_turned(before, places[number])
         moment = _moment(joint, before, after, turns[number])
         moment = moment + np.cross(metre * (after[:, :3, 3] - before[:, :3, 3]), force)

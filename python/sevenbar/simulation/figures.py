@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -28,6 +30,26 @@ SPAN, FLOOR = 1e-6, 1e-17
 _ENGINE, _THEORY = OTHER, COMPUTED
 
 
+class _Curve(NamedTuple):
+    """A quantity (n,) of both, how far they are apart, and its name and colour; without one in their own."""
+
+    name: str
+    theory: Floats
+    engine: Floats
+    apart: Floats
+    colour: str = ""
+
+
+class _Row(NamedTuple):
+    """A row of panels: curves left, how far they are apart right [unit]; `label` is that of the curves."""
+
+    label: str
+    unit: str
+    curves: list[_Curve]
+    in_degrees: bool = False
+
+
+@styled()
 def output_figure(run: Simulation) -> Figure:
     """Angle, velocity and acceleration of the output: theory and engine left, their difference right."""
     motion, column = run.course.motion, run.course.circuit.output_column
@@ -38,131 +60,96 @@ def output_figure(run: Simulation) -> Figure:
         ("velocity", unit, "/s", run.engine.dq, run.theory.dq),
         ("acceleration", unit, "/s²", run.engine.ddq, run.theory.ddq),
     )
-    with styled():
-        figure = page_figure(9.2, 7.2, pads=(0.06, 0.08))
-        grid = figure.subplots(3, 2, sharex=True)
-        for (left, right), (word, shown, per, engine, theory) in zip(grid, rows, strict=True):
-            own, other = theory[:, column], engine[:, column]
-            convert = np.degrees if shown == "deg" else np.asarray
-            _compared(left, run, convert(own), convert(other))
-            left.set_ylabel(quantity_label(motion.output, word, f"{shown}{per}"))
-            right.plot(_across(run), other - own, color=_ENGINE, lw=0.9)
-            right.set_ylabel(say("difference [{unit}]", unit=f"{unit}{per}"))
-            right.ticklabel_format(axis="y", style="sci", scilimits=(0, 0), useMathText=False)
-        _finish(figure, run)
-        figure.legend(handles=_keys(run), loc="outside lower center", ncols=3, frameon=False)
+    figure = page_figure(9.2, 7.2, pads=(0.06, 0.08))
+    grid = figure.subplots(3, 2, sharex=True)
+    for (left, right), (word, shown, per, engine, theory) in zip(grid, rows, strict=True):
+        own, other = theory[:, column], engine[:, column]
+        convert = np.degrees if shown == "deg" else np.asarray
+        _draw_both(left, run, convert(own), convert(other))
+        left.set_ylabel(quantity_label(motion.output, word, f"{shown}{per}"))
+        right.plot(_across(run), other - own, color=_ENGINE, lw=0.9)
+        right.set_ylabel(say("difference [{unit}]", unit=f"{unit}{per}"))
+        right.ticklabel_format(axis="y", style="sci", scilimits=(0, 0), useMathText=False)
+    _finish(figure, run, _keys(run))
     return figure
 
 
+@styled()
 def joints_figure(run: Simulation) -> Figure:
     """Every joint's value, theory and engine, and the size of the difference on a logarithmic scale."""
-    linkage = run.linkage
-    kinds = [turns for turns in (True, False) if turns in linkage.turning]
-    with styled():
-        figure = page_figure(9.2, 1.6 + 3.4 * len(kinds), pads=(0.06, 0.08))
-        grid = figure.subplots(len(kinds), 2, sharex=True, squeeze=False)
-        for (left, right), turns in zip(grid, kinds, strict=True):
-            unit = "rad" if turns else linkage.length_unit
-            shown = "deg" if turns else unit
-            convert = np.degrees if turns else np.asarray
-            for column, name in enumerate(linkage.columns):
-                if linkage.turns(column) != turns:
-                    continue
-                colour = CIRCUIT_COLOURS[column % len(CIRCUIT_COLOURS)]
-                own, other = run.theory.q[:, column], run.engine.q[:, column]
-                _compared(left, run, convert(own), convert(other), colour)
-                _logarithmic(right, run, np.abs(other - own), colour, shown_name(name, 20))
-            if turns:
-                left.yaxis.set_major_locator(DegreeLocator(9))
-            left.set_ylabel(
-                say("turns [{unit}]", unit=shown) if turns else say("slides [{unit}]", unit=shown)
-            )
-            right.set_ylabel(say("size of the difference [{unit}]", unit=unit))
-        _finish(figure, run)
-        keys = [
-            Line2D(
-                [], [], color=CIRCUIT_COLOURS[c % len(CIRCUIT_COLOURS)], lw=1.5, label=shown_name(name, 20)
-            )
-            for c, name in enumerate(linkage.columns)
+    linkage, rows = run.linkage, []
+    for turns in (turns for turns in (True, False) if turns in linkage.turning):
+        unit, convert = ("rad", np.degrees) if turns else (linkage.length_unit, np.asarray)
+        label = say("turns [{unit}]", unit="deg") if turns else say("slides [{unit}]", unit=unit)
+        curves = [
+            _Curve(name, convert(own), convert(other), np.abs(other - own), _colour(column))
+            for column, name in enumerate(linkage.columns)
+            for own, other in [(run.theory.q[:, column], run.engine.q[:, column])]
+            if linkage.turns(column) == turns
         ]
-        keys += _keys(run, "0.35")[:2]
-        figure.legend(handles=keys, loc="outside lower center", ncols=min(len(keys), 6), frameon=False)
-    return figure
+        rows.append(_Row(label, unit, curves, in_degrees=turns))
+    keys = [(shown_name(name, 20), _colour(column)) for column, name in enumerate(linkage.columns)]
+    return _sizes_figure(run, 1.6 + 3.4 * len(rows), rows, keys)
 
 
+@styled()
 def points_figure(run: Simulation) -> Figure:
     """Speed and acceleration of the named points, and how far the engine's points are off."""
-    unit = run.linkage.length_unit
-    rows = (("position", ""), ("velocity", "/s"), ("acceleration", "/s²"))
-    with styled():
-        figure = page_figure(9.2, 7.4, pads=(0.06, 0.08))
-        grid = figure.subplots(3, 2, sharex=True)
-        for (left, right), (what, per) in zip(grid, rows, strict=True):
-            for place, (name, (engine, theory)) in enumerate(run.points.items()):
-                colour = CIRCUIT_COLOURS[place % len(CIRCUIT_COLOURS)]
-                own, other = getattr(theory, what), getattr(engine, what)
-                origin = own[0] if what == "position" else np.zeros(3)
-                _compared(left, run, _length(own - origin), _length(other - origin), colour)
-                _logarithmic(right, run, _length(other - own), colour, shown_name(name, 20))
-            label = {
-                "position": say("distance from the start"),
-                "velocity": say("speed"),
-                "acceleration": say("size of acceleration"),
-            }[what]
-            left.set_ylabel(f"{label} [{unit}{per}]")
-            right.set_ylabel(say("size of the difference [{unit}]", unit=f"{unit}{per}"))
-        _finish(figure, run)
-        keys = [
-            Line2D(
-                [],
-                [],
-                color=CIRCUIT_COLOURS[p % len(CIRCUIT_COLOURS)],
-                lw=1.5,
-                label=say("point {name}", name=short(n, 20)),
-            )
-            for p, n in enumerate(run.points)
-        ]
-        keys += _keys(run, "0.35")[:2]
-        figure.legend(handles=keys, loc="outside lower center", ncols=min(len(keys), 6), frameon=False)
-    return figure
+    rows = []
+    for what, label, per in (
+        ("position", say("distance from the start"), ""),
+        ("velocity", say("speed"), "/s"),
+        ("acceleration", say("size of acceleration"), "/s²"),
+    ):
+        curves = []
+        for place, (name, both) in enumerate(run.points.items()):
+            engine, theory = (getattr(one, what) for one in both)
+            origin = theory[0] if what == "position" else np.zeros(3)
+            sizes = (_length(theory - origin), _length(engine - origin), _length(engine - theory))
+            curves.append(_Curve(name, *sizes, _colour(place)))
+        unit = f"{run.linkage.length_unit}{per}"
+        rows.append(_Row(f"{label} [{unit}]", unit, curves))
+    keys = [(say("point {name}", name=short(n, 20)), _colour(place)) for place, n in enumerate(run.points)]
+    return _sizes_figure(run, 7.4, rows, keys)
 
 
+@styled()
 def forces_figure(run: Simulation) -> Figure:
     """The input's torque, and the size of forces and moments in the joints; how far the engine's are off."""
-    joints = dict.fromkeys(force.name for force in run.forces[1:])
-    colours = {name: CIRCUIT_COLOURS[k % len(CIRCUIT_COLOURS)] for k, name in enumerate(joints)}
-    parts = [list(run.forces[:1])]
-    parts += [[force for force in run.forces[1:] if force.what == what] for what in ("force", "moment")]
-    shown = [part for part in parts if part]
-    with styled():
-        figure = page_figure(9.2, 1.2 + 2.2 * len(shown), pads=(0.06, 0.08))
-        grid = figure.subplots(len(shown), 2, sharex=True, squeeze=False)
-        for number, ((left, right), part) in enumerate(zip(grid, shown, strict=True)):
-            unit = part[0].unit
-            for force in part:
-                colour = colours[force.name] if number else ""
-                # the input's own has a sign
-                own, other = (
-                    _length(values) if number else values[:, 0] for values in (force.theory, force.engine)
-                )
-                _compared(left, run, own, other, colour)
-                _logarithmic(right, run, force.apart, colour or _ENGINE, shown_name(force.name, 20))
-            left.set_ylabel(_force_label(part[0].what, unit, drive=number == 0))
-            right.set_ylabel(say("size of the difference [{unit}]", unit=unit))
-        _finish(figure, run)
-        keys = [
-            Line2D([], [], color=colour, lw=1.5, label=shown_name(name, 20))
-            for name, colour in colours.items()
-        ]
-        keys += _keys(run, "0.35")[:2]
-        figure.legend(handles=keys, loc="outside lower center", ncols=min(len(keys), 6), frameon=False)
+    drive, *others = run.forces
+    names = dict.fromkeys(force.name for force in others)
+    colours = {name: _colour(place) for place, name in enumerate(names)}
+    # the input's own has a sign
+    signed = [_Curve(drive.name, drive.theory[:, 0], drive.engine[:, 0], drive.apart)]
+    label = say("input force") if drive.what == "force" else say("input torque")
+    rows = [_Row(f"{label} [{drive.unit}]", drive.unit, signed)]
+    for what, label in (("force", say("force [N]")), ("moment", say("moment [N m]"))):
+        part = [force for force in others if force.what == what]
+        curves = [_Curve(f.name, f.size, _length(f.engine), f.apart, colours[f.name]) for f in part]
+        rows += [_Row(label, part[0].unit, curves)] if part else []
+    keys = [(shown_name(name, 20), colour) for name, colour in colours.items()]
+    return _sizes_figure(run, 1.2 + 2.2 * len(rows), rows, keys)
+
+
+def _sizes_figure(run: Simulation, height: float, rows: list[_Row], keys: list[tuple[str, str]]) -> Figure:
+    """Curves of theory and engine left, the sizes of their differences right, with a key to their colours."""
+    figure = page_figure(9.2, height, pads=(0.06, 0.08))
+    grid = figure.subplots(len(rows), 2, sharex=True, squeeze=False)
+    for (left, right), row in zip(grid, rows, strict=True):
+        for curve in row.curves:
+            _draw_both(left, run, curve.theory, curve.engine, curve.colour)
+            _draw_size(right, run, curve)
+        if row.in_degrees:
+            left.yaxis.set_major_locator(DegreeLocator(9))
+        left.set_ylabel(row.label)
+        right.set_ylabel(say("size of the difference [{unit}]", unit=row.unit))
+    lines = [Line2D([], [], color=colour, lw=1.5, label=label) for label, colour in keys]
+    _finish(figure, run, [*lines, *_keys(run, "0.35")[:2]])
     return figure
 
 
-def _force_label(what: str, unit: str, *, drive: bool) -> str:
-    if drive:
-        return f"{say('input force') if what == 'force' else say('input torque')} [{unit}]"
-    return say("force [N]") if what == "force" else say("moment [N m]")
+def _colour(place: int) -> str:
+    return CIRCUIT_COLOURS[place % len(CIRCUIT_COLOURS)]
 
 
 def _length(vectors: Floats) -> Floats:
@@ -174,19 +161,19 @@ def _across(run: Simulation) -> Floats:
     return np.asarray(shown_value(run.course.motion, run.course.motion.input, run.input))
 
 
-def _compared(axes: Axes, run: Simulation, theory: Floats, engine: Floats, colour: str = "") -> None:
+def _draw_both(axes: Axes, run: Simulation, theory: Floats, engine: Floats, colour: str = "") -> None:
     across = _across(run)
     marks = np.unique(np.linspace(0, len(across) - 1, MARKS).astype(int))
     axes.plot(across, theory, color=colour or _THEORY, lw=1.3)
     axes.plot(across[marks], engine[marks], "o", ms=3.4, mfc="white", mec=colour or _ENGINE, mew=0.9)
 
 
-def _logarithmic(axes: Axes, run: Simulation, values: Floats, colour: str, name: str) -> None:
-    """Draws the greatest value of each stretch: of rounding, its size and not its noise."""
-    count = min(STRETCHES, len(values))
-    greatest = [np.fmax.reduce(part) for part in np.array_split(np.maximum(values, FLOOR), count)]
+def _draw_size(axes: Axes, run: Simulation, curve: _Curve) -> None:
+    """Draws the greatest difference of each stretch: of rounding, its size and not its noise."""
+    count = min(STRETCHES, len(curve.apart))
+    greatest = [np.fmax.reduce(part) for part in np.array_split(np.maximum(curve.apart, FLOOR), count)]
     middles = [part[len(part) // 2] for part in np.array_split(_across(run), count)]
-    axes.plot(middles, greatest, color=colour, lw=1.0, label=name)
+    axes.plot(middles, greatest, color=curve.colour or _ENGINE, lw=1.0, label=shown_name(curve.name, 20))
     axes.set_yscale("log")
     axes.yaxis.set_major_locator(LogLocator(numticks=7))
     # mathematical text is off, so powers are written as numbers are
@@ -194,7 +181,7 @@ def _logarithmic(axes: Axes, run: Simulation, values: Floats, colour: str, name:
     axes.yaxis.set_minor_formatter(NullFormatter())
 
 
-def _finish(figure: Figure, run: Simulation) -> None:
+def _finish(figure: Figure, run: Simulation, keys: list[Line2D]) -> None:
     motion = run.course.motion
     across = _across(run)
     for axes in figure.axes:
@@ -217,6 +204,7 @@ def _finish(figure: Figure, run: Simulation) -> None:
         number=run.course.circuit.index, driven=driven, step=run.course.step,
     )  # fmt: skip
     headline(figure, title)
+    figure.legend(handles=keys, loc="outside lower center", ncols=min(len(keys), 6), frameon=False)
 
 
 def _keys(run: Simulation, colour: str = "") -> list[Line2D]:

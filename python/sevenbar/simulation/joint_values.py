@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -53,119 +54,106 @@ class JointValues:
     tilt: Floats
 
 
+class _Side(NamedTuple):
+    """A joint's frame (n, 4, 4) on a body, how its origin moves and how the body turns, (n, 3) each."""
+
+    frame: Floats
+    velocity: Floats
+    acceleration: Floats
+    spin: Floats
+    spin_rate: Floats
+
+
+#: The values (n,) of a column, and their two derivatives by time.
+_Values = tuple[Floats, Floats, Floats]
+
+
 def joint_values(linkage: Loop, bodies: BodyStates) -> JointValues:
     """The values of all joints of a linkage whose links stand and move so."""
-    rows = len(bodies.frames)
-    still = np.zeros((rows, 3))
-    parts: list[tuple[Floats, Floats, Floats]] = []
-    gaps: list[Floats] = []
-    tilts: list[Floats] = []
+    columns: list[_Values] = []
+    apart: list[tuple[Floats, Floats]] = []
     for i, joint in enumerate(linkage.joints):
-        if i == 0:
-            before = np.broadcast_to(linkage.base, (rows, 4, 4))
-            motion = (still, still)
-            spin, spin_rate = still, still
+        before, after = _sides(linkage, bodies, i)
+        turn = np.swapaxes(before.frame[:, :3, :3], 1, 2) @ after.frame[:, :3, :3]
+        way = after.frame[:, :3, 3] - before.frame[:, :3, 3]
+        own = _columns(joint, turn, way, before, after)
+        local = np.einsum("nji,nj->ni", before.frame[:, :3, :3], way)
+        columns += own
+        apart.append(_apart(joint, turn, local, own[0][0]))
+    q, dq, ddq = (np.stack(part, axis=1) for part in zip(*columns, strict=True))
+    q[:, linkage.turning] = np.unwrap(q[:, linkage.turning], axis=0)
+    gap, tilt = (np.stack(part, axis=1) for part in zip(*apart, strict=True))
+    return JointValues(q, dq, ddq, gap, tilt)
+
+
+def _sides(linkage: Loop, bodies: BodyStates, i: int) -> tuple[_Side, _Side]:
+    """Joint i on the link before it and on the link after it."""
+    after = _Side(*(states[:, i] for states in vars(bodies).values()))
+    if i == 0:
+        rows = len(bodies.frames)
+        return _Side(np.broadcast_to(linkage.base, (rows, 4, 4)), *[np.zeros((rows, 3))] * 4), after
+    link = linkage.links[i - 1]
+    _, velocity, acceleration = bodies.point(i - 1, link[:3, 3])
+    frame, spins = bodies.frames[:, i - 1] @ link, (bodies.spin[:, i - 1], bodies.spin_rate[:, i - 1])
+    return _Side(frame, velocity, acceleration, *spins), after
+
+
+def _columns(joint: Joint, turn: Floats, way: Floats, before: _Side, after: _Side) -> list[_Values]:
+    """The columns of a joint, whose sides are a `turn` (n, 3, 3) and a `way` (n, 3) apart."""
+    if joint.row.is_ball:
+        nothing = np.full(len(turn), np.nan)
+        return [(value, nothing, nothing) for value in zyx_turns(turn).T]
+    if joint.row.has_cross:
+        return _universal(joint, turn, before, after)
+    columns: list[_Values] = []
+    turned = False
+    for step in joint.row.steps:
+        # what is behind a turn goes with it: across its axis that is the body after
+        carrier = after if turned and step.axis != Z else before
+        axis = carrier.frame[:, :3, step.axis]
+        turned = turned or step.freedom == "turn"
+        # d(axis)/dt
+        swept = np.cross(carrier.spin, axis)
+        if step.driven:
+            continue
+        if step.freedom == "turn":
+            spin, rate = after.spin - before.spin, after.spin_rate - before.spin_rate
+            value = np.arctan2(turn[:, 1, 0], turn[:, 0, 0])
+            columns.append((value, _dot(spin, axis), _dot(rate, axis) + _dot(spin, swept)))
         else:
-            before = bodies.frames[:, i - 1] @ linkage.links[i - 1]
-            motion = bodies.point(i - 1, linkage.links[i - 1][:3, 3])[1:]
-            spin, spin_rate = bodies.spin[:, i - 1], bodies.spin_rate[:, i - 1]
-        after = bodies.frames[:, i]
-        turn = np.swapaxes(before[:, :3, :3], 1, 2) @ after[:, :3, :3]
-        way = after[:, :3, 3] - before[:, :3, 3]
-        local = np.einsum("nji,nj->ni", before[:, :3, :3], way)
-        columns: list[tuple[Floats, Floats, Floats]] = []
-        turned = False
-        for step in () if joint.row.is_ball or joint.row.has_cross else joint.row.steps:
-            # what is behind a turn goes with it: across its axis that is the body after
-            behind = turned and step.axis != Z
-            axis = (after if behind else before)[:, :3, step.axis]
-            own = (bodies.spin[:, i], bodies.spin_rate[:, i]) if behind else (spin, spin_rate)
-            turned = turned or step.freedom == "turn"
-            if step.driven:
-                continue
-            if step.freedom == "turn":
-                columns.append(
-                    (
-                        np.arctan2(turn[:, 1, 0], turn[:, 0, 0]),
-                        _dot(bodies.spin[:, i] - spin, axis),
-                        _dot(bodies.spin_rate[:, i] - spin_rate, axis)
-                        + _dot(bodies.spin[:, i] - spin, np.cross(spin, axis)),
-                    )
-                )
-            else:
-                apart = bodies.velocity[:, i] - motion[0]
-                columns.append(
-                    (
-                        _dot(way, axis),
-                        _dot(apart, axis) + _dot(way, np.cross(own[0], axis)),
-                        _slide_acceleration(bodies, i, way, axis, motion, *own),
-                    )
-                )
-        if joint.row.has_cross:
-            columns += _universal(joint, turn, before, bodies, i, spin, spin_rate)
-        if joint.row.is_ball:
-            nothing = np.full(rows, np.nan)
-            columns += [(value, nothing, nothing) for value in zyx_turns(turn).T]
-        parts += columns
-        gap, tilt = _apart(joint, turn, local, columns[0][0])
-        gaps.append(gap)
-        tilts.append(tilt)
-    turns = linkage.turning
-    q = np.stack([part[0] for part in parts], axis=1)
-    q[:, turns] = np.unwrap(q[:, turns], axis=0)
-    return JointValues(
-        q,
-        np.stack([part[1] for part in parts], axis=1),
-        np.stack([part[2] for part in parts], axis=1),
-        np.stack(gaps, axis=1),
-        np.stack(tilts, axis=1),
-    )
+            velocity = after.velocity - before.velocity
+            acceleration = (
+                _dot(after.acceleration - before.acceleration, axis)
+                + 2 * _dot(velocity, swept)
+                + _dot(way, np.cross(carrier.spin_rate, axis) + np.cross(carrier.spin, swept))
+            )
+            columns.append((_dot(way, axis), _dot(velocity, axis) + _dot(way, swept), acceleration))
+    return columns
 
 
 def _dot(a: Floats, b: Floats) -> Floats:
     return np.asarray(np.einsum("ni,ni->n", a, b))
 
 
-def _slide_acceleration(
-    bodies: BodyStates,
-    i: int,
-    way: Floats,
-    axis: Floats,
-    motion: tuple[Floats, Floats],
-    spin: Floats,
-    spin_rate: Floats,
-) -> Floats:
-    """The second derivative of `way . axis`, the axis carried by a body that turns so."""
-    turning = np.cross(spin, axis)
-    return (
-        _dot(bodies.acceleration[:, i] - motion[1], axis)
-        + 2 * _dot(bodies.velocity[:, i] - motion[0], turning)
-        + _dot(way, np.cross(spin_rate, axis) + np.cross(spin, turning))
-    )
-
-
-def _universal(
-    joint: Joint, turn: Floats, before: Floats, bodies: BodyStates, i: int, spin: Floats, spin_rate: Floats
-) -> list[tuple[Floats, Floats, Floats]]:
+def _universal(joint: Joint, turn: Floats, before: _Side, after: _Side) -> list[_Values]:
     """Both turns of a universal joint: z of the frame before, then z of the frame after."""
     c, s = math.cos(joint.angle), math.sin(joint.angle)
     # Rz(a) Rx(angle) Rz(b): its last column and its last row tell a and b where s is not zero
     first = np.arctan2(turn[:, 0, 2] / s, -turn[:, 1, 2] / s)
     second = np.arctan2(turn[:, 2, 0] / s, turn[:, 2, 1] / s)
-    near, far = before[:, :3, 2], bodies.frames[:, i, :3, 2]
-    apart = bodies.spin[:, i] - spin
+    near, far = before.frame[:, :3, 2], after.frame[:, :3, 2]
 
     def along(vector: Floats) -> tuple[Floats, Floats]:
         """The shares x, y of a vector x near + y far (+ what is across both)."""
         one, other = _dot(vector, near), _dot(vector, far)
         return (one - c * other) / s**2, (other - c * one) / s**2
 
-    rates = along(apart)
+    rates = along(after.spin - before.spin)
     rest = (
-        bodies.spin_rate[:, i]
-        - spin_rate
-        - rates[0][:, None] * np.cross(spin, near)
-        - rates[1][:, None] * np.cross(bodies.spin[:, i], far)
+        after.spin_rate
+        - before.spin_rate
+        - rates[0][:, None] * np.cross(before.spin, near)
+        - rates[1][:, None] * np.cross(after.spin, far)
     )
     seconds = along(rest)
     return [(first, rates[0], seconds[0]), (second, rates[1], seconds[1])]

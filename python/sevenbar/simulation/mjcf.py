@@ -10,7 +10,7 @@ carries a flywheel, so it runs on at its speed without an actuator, with gravity
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
@@ -18,9 +18,18 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.rigid import inverse, quaternion
-from sevenbar.simulation.mjcf_acting import add_springs, gyration, heaviest, inertial, joint_spring, mark
-from sevenbar.simulation.mjcf_elements import add, numbers, placed
-from sevenbar.simulation.prototype import GROUND, Connection, Prototype, SpinRule
+from sevenbar.simulation.mjcf_acting import (
+    add,
+    add_springs,
+    gyration,
+    heaviest,
+    inertial,
+    joint_spring,
+    mark,
+    numbers,
+    placed,
+)
+from sevenbar.simulation.prototype import GROUND, STILL, Connection, Prototype, SpinRule
 from sevenbar.text.units import LENGTHS
 
 #: The flywheel's inertia, in those of a body: constraints change its speed by about the inverse of this.
@@ -53,14 +62,6 @@ def cut(model: Prototype) -> Cut:
     return Cut(chosen[0], False) if chosen else Cut(len(model.connections) - 1, True)
 
 
-@dataclass
-class _State:
-    """Joint coordinates and velocities of the start, in the order of MuJoCo."""
-
-    qpos: list[float] = field(default_factory=list)
-    qvel: list[float] = field(default_factory=list)
-
-
 def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
     """The MJCF of a prototype: a text that MuJoCo loads.
 
@@ -77,97 +78,81 @@ def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
     root = Element("mujoco", model=model.name)
     root.append(ElementTree.Comment(" made by Sevenbar; lengths in metres, angles in radians "))
     add(root, "compiler", angle="radian", autolimits="true")
-    add(
-        root,
-        "option",
-        timestep=f"{time_step:.17g}",
-        gravity="0 0 0" if model.acting is None else numbers(model.acting.gravity),
-        integrator="Euler",
-        solver="Newton",
-        iterations="100",
-        tolerance="0",
-    )
+    gravity = "0 0 0" if model.acting is None else numbers(model.acting.gravity)
+    how = {"integrator": "Euler", "solver": "Newton", "iterations": "100", "tolerance": "0"}
+    add(root, "option", timestep=f"{time_step:.17g}", gravity=gravity, **how)
     extent = max(model.size * metre / 3, 1e-9)
-    add(root, "statistic", extent=f"{extent:.6g}", center=numbers(_middle(model) * metre))
+    places = np.array([model.frames(number)[0][:3, 3] for number in range(len(model.connections))])
+    middle = (places.min(axis=0) + places.max(axis=0)) / 2
+    add(root, "statistic", extent=f"{extent:.6g}", center=numbers(middle * metre))
     default = add(root, "default")
-    bar = {"contype": "0", "conaffinity": "0", "mass": "0", "rgba": "0.35 0.5 0.7 1"}
-    add(default, "geom", **bar)
-    add(
-        default,
-        "equality",
-        solref=f"{TIME_CONSTANT * time_step:.17g} 1",
-        solimp=f"{IMPEDANCE} {IMPEDANCE} 0.001 0.5 2",
-    )
+    add(default, "geom", contype="0", conaffinity="0", mass="0", rgba="0.35 0.5 0.7 1")
+    stiff = f"{TIME_CONSTANT * time_step:.17g} 1"
+    add(default, "equality", solref=stiff, solimp=f"{IMPEDANCE} {IMPEDANCE} 0.001 0.5 2")
     world = add(root, "worldbody")
     add(world, "light", pos=numbers([0, 0, 3 * extent]), dir="0 0 -1", directional="true")
-    equality = add(root, "equality")
-    state = _State()
-    tree = _Tree(model, metre, equality, state)
-    where = cut(model)
-    forward = model.connections[: where.connection + where.weld]
-    backward = model.connections[where.connection + 1 :]
-    tree.elements[GROUND] = parent = world
-    for number, joint in enumerate(forward):
-        parent = tree.add_forward(parent, joint, number)
-    parent = world
-    for joint in reversed(backward):
-        parent = tree.add_backward(parent, joint, model.connections.index(joint))
-    closing = model.connections[where.connection]
-    if where.weld:
-        mark(world, "ground_side", closing.frame_after, model)
-        add(
-            equality,
-            "weld",
-            name="loop",
-            site1="ground_side",
-            site2="loop_end",
-            torquescale=f"{gyration(model):.17g}",
-        )
-    else:
-        mark(tree.elements[closing.before], f"{closing.name}_before", closing.frame_before, model)
-        mark(tree.elements[closing.after], f"{closing.name}_after", closing.frame_after, model)
-        add(
-            equality,
-            "connect",
-            name="loop",
-            site1=f"{closing.name}_before",
-            site2=f"{closing.name}_after",
-        )
+    tree = _Tree(model, world, add(root, "equality"))
+    tree.close(cut(model))
     add_springs(root, model, tree.elements)
     frames = add(root, "keyframe")
-    add(frames, "key", name="start", qpos=numbers(state.qpos), qvel=numbers(state.qvel))
+    add(frames, "key", name="start", qpos=numbers(tree.qpos), qvel=numbers(tree.qvel))
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
 class _Tree:
-    """The tree of bodies as it grows: `elements` holds the XML element of each body placed so far."""
+    """The tree of bodies as it grows: `elements` holds the XML element of each body placed so far.
 
-    def __init__(self, model: Prototype, metre: float, equality: Element, state: _State) -> None:
-        self._model, self._metre, self._equality, self._state = model, metre, equality, state
-        self.elements: dict[int, Element] = {}
+    `qpos` and `qvel` are joint coordinates and velocities of the start, in the order of MuJoCo.
+    """
+
+    def __init__(self, model: Prototype, world: Element, equality: Element) -> None:
+        self._model, self._metre, self._equality = model, LENGTHS[model.length_unit], equality
+        self.elements: dict[int, Element] = {GROUND: world}
+        self.qpos: list[float] = []
+        self.qvel: list[float] = []
         self._rules = {rule.after: rule for rule in model.spin_rules}
 
-    def add_forward(self, parent: Element, joint: Connection, number: int) -> Element:
-        """Adds the body after a joint; past the last one a bare body that the ground's frame is welded to."""
-        if joint.after == GROUND:
-            body = self._add_body(parent, "loop_end_body", joint.frame_before, GROUND)
-            self._add_freedoms(body, joint, number, np.eye(4), 1.0)
-            mark(body, "loop_end", np.eye(4), self._model)
-            return body
-        name = self._model.bodies[joint.after].name
-        rule = self._rules.get(joint.after)
-        if rule is not None:
-            return self._add_held_ball(parent, joint, rule)
-        body = self._add_body(parent, name, joint.frame_before @ inverse(joint.frame_after), joint.after)
-        self._add_freedoms(body, joint, number, joint.frame_after, 1.0)
-        return body
+    def close(self, where: Cut) -> None:
+        """Adds all bodies, from the ground up to the cut on both sides, and what closes the loop there."""
+        model, joints = self._model, self._model.connections
+        world = self.elements[GROUND]
+        forward = range(where.connection + where.weld)
+        backward = reversed(range(where.connection + 1, len(joints)))
+        for way, numbers_there in ((1.0, forward), (-1.0, backward)):
+            parent = world
+            for number in numbers_there:
+                parent = self._add(parent, joints[number], number, way)
+        closing = joints[where.connection]
+        if where.weld:
+            mark(world, "ground_side", closing.frame_after, model)
+            kind, sites, more = (
+                "weld",
+                ("ground_side", "loop_end"),
+                {"torquescale": f"{gyration(model):.17g}"},
+            )
+        else:
+            kind, sites, more = "connect", (f"{closing.name}_before", f"{closing.name}_after"), {}
+            mark(self.elements[closing.before], sites[0], closing.frame_before, model)
+            mark(self.elements[closing.after], sites[1], closing.frame_after, model)
+        add(self._equality, kind, name="loop", site1=sites[0], site2=sites[1], **more)
 
-    def add_backward(self, parent: Element, joint: Connection, number: int) -> Element:
-        """Adds the body before a joint, from the one after it: what is read of the joint stays the same."""
-        name = self._model.bodies[joint.before].name
-        body = self._add_body(parent, name, joint.frame_after @ inverse(joint.frame_before), joint.before)
-        self._add_freedoms(body, joint, number, joint.frame_before, -1.0)
+    def _add(self, parent: Element, joint: Connection, number: int, way: float) -> Element:
+        """Adds the body after a joint, or with `way` -1 the one before it, read as the same joint.
+
+        Past the last joint a bare body that the ground's frame is welded to.
+        """
+        child, near, far = joint.after, joint.frame_before, joint.frame_after
+        if way < 0:
+            child, near, far = joint.before, far, near
+        elif child in self._rules:
+            return self._add_held_ball(parent, joint, self._rules[child])
+        name = self._model.bodies[child].name if child != GROUND else "loop_end_body"
+        far = far if child != GROUND else np.eye(4)
+        body = self._add_body(parent, name, near @ inverse(far), child)
+        self._add_freedoms(body, joint, number, far, way)
+        if child == GROUND:
+            mark(body, "loop_end", far, self._model)
         return body
 
     def _add_body(self, parent: Element, name: str, frame: Floats, number: int) -> Element:
@@ -185,10 +170,10 @@ class _Tree:
         radius = f"{BAR * self._model.size * self._metre:.6g}"
         first, second = (end * self._metre for end in ends)
         if np.linalg.norm(second - first) > BAR * self._model.size * self._metre:
-            line = numbers([*first, *second])
-            add(body, "geom", type="capsule", size=radius, fromto=line)
+            shape = {"type": "capsule", "size": radius, "fromto": numbers([*first, *second])}
         else:
-            add(body, "geom", type="sphere", size=radius, pos=numbers(first))
+            shape = {"type": "sphere", "size": radius, "pos": numbers(first)}
+        add(body, "geom", **shape)
 
     def _add_freedoms(self, body: Element, joint: Connection, number: int, frame: Floats, way: float) -> None:
         """The joints of MuJoCo that make up one of ours, at `frame` of the body, and their start."""
@@ -201,27 +186,21 @@ class _Tree:
             wheel = self._flywheel(number, step.number)
             spring = joint_spring(self._model, number, step.number)
             add(body, "joint", name=name, type=kind, **at, **axis, **wheel, **spring)
-            self._state.qpos.append(self._model.values[number, step.number] * unit)
-            self._state.qvel.append(self._model.rates[number, step.number] * unit)
+            self.qpos.append(self._model.values[number, step.number] * unit)
+            self.qvel.append(self._model.rates[number, step.number] * unit)
             if step.driven:
-                add(
-                    self._equality,
-                    "joint",
-                    name=f"{joint.name}_screw",
-                    joint1=name,
-                    joint2=joint.name,
-                    polycoef=numbers([0, joint.advance * self._metre, 0, 0, 0]),
-                )
+                tie, advance = f"{joint.name}_screw", numbers([0, joint.advance * self._metre, 0, 0, 0])
+                add(self._equality, "joint", name=tie, joint1=name, joint2=joint.name, polycoef=advance)
         if joint.row.is_ball:
             add(body, "joint", name=joint.name, type="ball", **place)
             before, after = self._model.frames(number)
             # of the body against its parent, at the start and where the two frames of the joint agree
             fixed, moved = (before, after) if way > 0 else (after, before)
             turn_matrix = frame[:3, :3] @ fixed[:3, :3].T @ moved[:3, :3] @ frame[:3, :3].T
-            self._state.qpos += list(quaternion(turn_matrix))
+            self.qpos += list(quaternion(turn_matrix))
             own, other = (joint.after, joint.before) if way > 0 else (joint.before, joint.after)
             rotation = self._model.placed(own)[:3, :3]
-            self._state.qvel += list(rotation.T @ (self._spin(own) - self._spin(other)))
+            self.qvel += list(rotation.T @ (self._spin(own) - self._spin(other)))
 
     def _add_held_ball(self, parent: Element, joint: Connection, rule: SpinRule) -> Element:
         """A ball whose link's idle spin is held: two hinges, about the two directions that stay square."""
@@ -233,12 +212,12 @@ class _Tree:
         for end, axis in (("1", first), ("2", rule.axis_after)):
             add(body, "joint", name=f"{joint.name}.{end}", type="hinge", pos=place, axis=numbers(axis))
         spin = own[:3, :3].T @ (self._spin(joint.after) - self._spin(joint.before))
-        self._state.qpos += [0.0, 0.0]
-        self._state.qvel += [float(spin @ first), float(spin @ rule.axis_after)]
+        self.qpos += [0.0, 0.0]
+        self.qvel += [float(spin @ first), float(spin @ rule.axis_after)]
         return body
 
     def _spin(self, body: int) -> Floats:
-        return np.zeros(3) if body == GROUND else self._model.bodies[body].spin
+        return (STILL if body == GROUND else self._model.bodies[body]).spin
 
     def _flywheel(self, number: int, freedom: int) -> dict[str, str]:
         """The inertia that keeps the driven joint at its speed."""
@@ -249,8 +228,3 @@ class _Tree:
         inertia = mass * (gyration(self._model) ** 2 if drive.turns else 1.0)
         inertia = max(inertia, mass * (self._model.connections[number].advance * self._metre) ** 2)
         return {"armature": f"{FLYWHEEL * inertia:.17g}"}
-
-
-def _middle(model: Prototype) -> Floats:
-    places = np.array([model.frames(number)[0][:3, 3] for number in range(len(model.connections))])
-    return np.asarray((places.min(axis=0) + places.max(axis=0)) / 2)

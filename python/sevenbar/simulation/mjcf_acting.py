@@ -1,20 +1,22 @@
-"""Masses, springs and dampers of a prototype in MJCF.
+"""Elements of MJCF, and what acts on a prototype in it: masses, springs and dampers.
 
-Loads are not written: MJCF has none. They are applied while the engine runs (`mujoco_forces`).
+Loads are not written: MJCF has none. They are applied while the engine runs (`mujoco_engine`).
 """
 
 from __future__ import annotations
 
 from xml.etree import ElementTree
-from xml.etree.ElementTree import Element
+from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.loop.rigid import pose
-from sevenbar.simulation.mjcf_elements import add, numbers, placed
+from sevenbar.kinematics.loop.rigid import pose, quaternion
 from sevenbar.simulation.prototype import GROUND, GYRATION, Prototype
 from sevenbar.text.units import LENGTHS
+
+#: Radius of the sites that springs end at, as a part of the linkage's size.
+SITE = 0.008
 
 #: Mass of every body where nothing acts [kg]: the motion that the drive prescribes does not depend on it.
 MASS = 1.0
@@ -26,8 +28,26 @@ LEAST_GYRATION = 0.01
 #: its soft loop gives way where bodies are very unequal.
 MASSLESS = 1e-5
 
-#: Radius of the sites that springs end at, as a part of the linkage's size.
-SITE = 0.008
+
+def add(parent: Element, tag: str, **attributes: str) -> Element:
+    """A new element at the end of another."""
+    return SubElement(parent, tag, attributes)
+
+
+def numbers(values: object) -> str:
+    """Numbers with all their digits, a zero without its sign."""
+    return " ".join(f"{float(value) + 0.0:.17g}" for value in np.asarray(values, dtype=float).reshape(-1))
+
+
+def placed(frame: Floats, metre: float) -> dict[str, str]:
+    """Where a frame (4, 4) is in its parent, lengths times `metre`."""
+    return {"pos": numbers(frame[:3, 3] * metre), "quat": numbers(quaternion(frame[:3, :3]))}
+
+
+def mark(element: Element, name: str, frame: Floats, model: Prototype) -> None:
+    """A site at a frame of a body, or of the ground."""
+    metre = LENGTHS[model.length_unit]
+    add(element, "site", name=name, size=f"{SITE * model.size * metre:.6g}", **placed(frame, metre))
 
 
 def gyration(model: Prototype) -> float:
@@ -58,11 +78,8 @@ def inertial(model: Prototype, number: int) -> dict[str, str]:
 
 def joint_spring(model: Prototype, number: int, freedom: int) -> dict[str, str]:
     """The springs and dampers in one freedom of a connection, as one; its coordinate is Sevenbar's column."""
-    own = [
-        spring
-        for spring in (() if model.acting is None else model.acting.joint_springs)
-        if (spring.connection, spring.freedom) == (number, freedom)
-    ]
+    every = () if model.acting is None else model.acting.joint_springs
+    own = [spring for spring in every if (spring.connection, spring.freedom) == (number, freedom)]
     if not own:
         return {}
     stiffness = sum(spring.stiffness for spring in own)
@@ -80,29 +97,16 @@ def add_springs(root: Element, model: Prototype, elements: dict[int, Element]) -
     if acting is None:
         return
     if acting.loads:
-        count = len(acting.loads)
-        root.append(
-            ElementTree.Comment(f" {count} load{'s' * (count > 1)} of the linkage not here: MJCF has none ")
-        )
+        loads = f"{len(acting.loads)} load{'s' * (len(acting.loads) > 1)}"
+        root.append(ElementTree.Comment(f" {loads} of the linkage not here: MJCF has none "))
     if not acting.springs:
         return
     tendons = add(root, "tendon")
     for place, spring in enumerate(acting.springs, 1):
-        own = add(
-            tendons,
-            "spatial",
-            name=f"spring_{place}",
-            stiffness=f"{spring.stiffness:.17g}",
-            springlength=f"{spring.length:.17g}",
-            damping=f"{spring.damping:.17g}",
-        )
+        numbered = {"stiffness": spring.stiffness, "springlength": spring.length, "damping": spring.damping}
+        how = {key: f"{value:.17g}" for key, value in numbered.items()}
+        own = add(tendons, "spatial", name=f"spring_{place}", **how)
         for end, (body, at) in zip("ab", spring.ends, strict=True):
             name = f"spring_{place}{end}"
             mark(elements[body], name, pose(np.eye(3), at), model)
             add(own, "site", site=name)
-
-
-def mark(element: Element, name: str, frame: Floats, model: Prototype) -> None:
-    """A site at a frame of a body, or of the ground."""
-    metre = LENGTHS[model.length_unit]
-    add(element, "site", name=name, size=f"{SITE * model.size * metre:.6g}", **placed(frame, metre))

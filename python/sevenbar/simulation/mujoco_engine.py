@@ -1,22 +1,141 @@
-"""A prototype in MuJoCo: joints of a tree in their own coordinates, the loop closed by soft constraints."""
+"""A prototype in MuJoCo: joints of a tree in their own coordinates, the loop closed by soft constraints.
+
+Loads are put on step by step; what drive and joints bear is read as it runs.
+"""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import EngineError
-from sevenbar.simulation.engine import Record, imported
+from sevenbar.simulation.engine import Record, imported, tell
 from sevenbar.simulation.mjcf import IMPEDANCE, TIME_CONSTANT, cut, mjcf
-from sevenbar.simulation.mujoco_forces import MujocoForces, acting_notes
-from sevenbar.simulation.prototype import Prototype
+from sevenbar.simulation.mjcf_acting import MASSLESS
+from sevenbar.simulation.prototype import GROUND, Prototype
 from sevenbar.text.progress import Progress
 from sevenbar.text.units import LENGTHS
+
+#: A body pulled by a tendon, and by nothing else.
+TENDON = """
+<mujoco>
+  <option gravity="0 0 0"/>
+  <worldbody>
+    <site name="here"/>
+    <body pos="1 0 0">
+      <joint type="slide" axis="1 0 0"/>
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      <site name="there"/>
+    </body>
+  </worldbody>
+  <tendon>
+    <spatial stiffness="1" springlength="0.5"><site site="here"/><site site="there"/></spatial>
+  </tendon>
+</mujoco>
+"""
 
 #: Linkages below this size [m] have forces and inertias that MuJoCo takes for none.
 SMALLEST = 1e-4
 
-#: A bar is moved at most so often.
-TICKS = 200
+
+class MujocoForces:
+    """Loads put on one run, and what is read row by row; nothing where nothing acts.
+
+    `drive` (rows,) is what the flywheel gives as it loses speed, `reactions` (rows, connections, 6) what
+    passes from body to body, both as in a `Record`; no reactions where MuJoCo does not count springs.
+    """
+
+    def __init__(self, model: Prototype, own: Any, rows: int) -> None:
+        self._model, self._own, self._engine = model, own, imported("mujoco")
+        self._metre = LENGTHS[model.length_unit]
+        self._bodies = [own.body(body.name).id for body in model.bodies]
+        (self._wheel,) = np.flatnonzero(own.dof_armature)
+        self._cut = cut(model)
+        self.drive: Floats | None = None
+        self.reactions: Floats | None = None
+        if model.acting is None:
+            return
+        self.drive = np.zeros(rows)
+        if not model.acting.springs or _counts_tendons(self._engine):
+            self.reactions = np.zeros((rows, len(model.connections), 6))
+
+    def load(self, data: Any) -> None:
+        """Puts the loads on, as large as they are at the drive's value."""
+        acting = self._model.acting
+        if acting is None:
+            return
+        data.xfrc_applied[:] = 0.0
+        value = self._model.drive.at(data.time)
+        for load in acting.loads:
+            number, at = load.place
+            if number == GROUND:
+                continue
+            body, factor = self._bodies[number], load.factor(value)
+            turn = data.xmat[body].reshape(3, 3)
+            force, torque = (turn @ v if load.turns else v for v in (load.force, load.torque))
+            place = data.xpos[body] + turn @ at * self._metre
+            # MuJoCo applies them at the centre of mass
+            moment = torque + np.cross(place - data.xipos[body], force)
+            data.xfrc_applied[body] += factor * np.concatenate([force, moment])
+
+    def read(self, data: Any, row: int) -> None:
+        """Reads a row, after `mj_rnePostConstraint`."""
+        if self.drive is None:
+            return
+        self.drive[row] = -self._own.dof_armature[self._wheel] * data.qacc[self._wheel]
+        if self.reactions is None:
+            return
+        for number in range(len(self._model.connections)):
+            self.reactions[row, number] = self._borne(data, number)
+
+    def _borne(self, data: Any, number: int) -> Floats:
+        """What a connection puts on the body after it: force and moment about the place of the one before."""
+        joint, where = self._model.connections[number], self._cut
+        if number == where.connection and not where.weld:
+            kind = self._engine.mjtConstraint.mjCNSTR_EQUALITY
+            rows = (data.efc_type == kind) & (data.efc_id == self._own.equality("loop").id)
+            return np.concatenate([-data.efc_force[rows], np.zeros(3)])
+        backwards = number > where.connection
+        child = joint.before if backwards else joint.after
+        # past the last joint a bare body is welded to the ground, which bears its weight
+        body = self._own.body("loop_end_body").id if child == GROUND else self._bodies[child]
+        way = -1.0 if backwards else 1.0
+        moment, force = way * data.cfrc_int[body].reshape(2, 3)
+        place = joint.frame_before[:3, 3] * self._metre
+        if joint.before != GROUND:
+            above = self._bodies[joint.before]
+            place = data.xpos[above] + data.xmat[above].reshape(3, 3) @ place
+        # MuJoCo's moments are about the centre of mass of the whole tree
+        arm = data.subtree_com[self._own.body_rootid[body]] - place
+        return np.concatenate([force, moment + np.cross(arm, force)])
+
+
+def _counts_tendons(engine: Any) -> bool:
+    """Whether this MuJoCo counts the pull of tendons among the forces between bodies; older ones do not."""
+    own = engine.MjModel.from_xml_string(TENDON)
+    data = engine.MjData(own)
+    engine.mj_forward(own, data)
+    engine.mj_rnePostConstraint(own, data)
+    return bool(data.cfrc_ext.any())
+
+
+def acting_notes(model: Prototype) -> list[str]:
+    """What is to be known of the forces of a run, in words."""
+    if model.acting is None:
+        return []
+    notes = [
+        "the drive's torque is what its flywheel gives as it loses speed; forces are as soft as the loop and "
+        "come closer with smaller steps"
+    ]
+    bare = [body.name for number, body in enumerate(model.bodies) if number not in model.acting.masses]
+    if bare:
+        notes.append(
+            f"MuJoCo takes no moving body without mass: {', '.join(bare)} weigh{'s' * (len(bare) == 1)} "
+            f"{MASSLESS:g} of the heaviest"
+        )
+    return notes
 
 
 def run(model: Prototype, steps: int, step: float, *, progress: Progress | None = None) -> Record:
@@ -43,7 +162,6 @@ def run(model: Prototype, steps: int, step: float, *, progress: Progress | None 
     frames = np.tile(np.eye(4), (rows, count, 1, 1))
     rates = np.zeros((2, 2, rows, count, 3))
     six = np.zeros(6)
-    every = max(1, steps // TICKS)
     kind = mujoco.mjtObj.mjOBJ_XBODY
     forces = MujocoForces(model, own, rows)
     for row in range(rows):
@@ -67,10 +185,7 @@ def run(model: Prototype, steps: int, step: float, *, progress: Progress | None 
             )
         if row < steps:
             mujoco.mj_step(own, data)
-        if progress is not None and row % every == 0:
-            progress(row, steps)
-    if progress is not None:
-        progress(steps, steps)
+        tell(progress, row, steps)
     return Record(
         engine="MuJoCo",
         version=str(mujoco.__version__),
@@ -104,9 +219,5 @@ def _notes(model: Prototype, step: float) -> tuple[str, ...]:
     ]
     notes += acting_notes(model)
     if model.redundant:
-        count = len(model.redundant)
-        notes.append(
-            f"{count} redundant constraint{'s' * (count > 1)} ({'; '.join(model.redundant)}): soft "
-            "constraints need not be independent, so all are kept"
-        )
+        notes.append(f"{model.redundant_text}: soft constraints need not be independent, so all are kept")
     return tuple(notes)

@@ -46,6 +46,10 @@ class MovingBody:
     spin: Floats
 
 
+#: The ground as a body.
+STILL = MovingBody("ground", 0, np.eye(4), np.zeros(3), np.zeros(3))
+
+
 @dataclass(frozen=True, eq=False)
 class Connection:
     """A joint between two bodies, of any kind without a cross, which is a body here.
@@ -127,17 +131,20 @@ class Prototype:
     #: The connection that has the constraints of each joint of the linkage next to the link before it.
     seats: tuple[int, ...] = ()
 
+    @property
+    def redundant_text(self) -> str:
+        """How many constraints the others imply, and which."""
+        count = len(self.redundant)
+        return f"{count} redundant constraint{'s' * (count > 1)} ({'; '.join(self.redundant)})"
+
     def frames(self, number: int) -> tuple[Floats, Floats]:
         """Both frames (4, 4) of a joint at the start, in the report frame."""
-        joint = self.connections[number]
-        return (
-            self.placed(joint.before) @ joint.frame_before,
-            self.placed(joint.after) @ joint.frame_after,
-        )
+        own = self.connections[number]
+        return self.placed(own.before) @ own.frame_before, self.placed(own.after) @ own.frame_after
 
     def placed(self, body: int) -> Floats:
         """The frame (4, 4) of a body at the start; the ground's is the report frame."""
-        return np.eye(4) if body == GROUND else self.bodies[body].frame
+        return (STILL if body == GROUND else self.bodies[body]).frame
 
 
 def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Prototype:
@@ -174,33 +181,27 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
         seats.append(first)
         if joint.row.has_cross:
             # the cross is a body of its own
-            (step, q), *rest = steps
-            above = np.eye(4) if before == GROUND else bodies[before].frame
-            start = above @ frame_before
-            carrier = None if before == GROUND else bodies[before]
-            arm = np.zeros(3) if carrier is None else start[:3, 3] - carrier.frame[:3, 3]
-            carried = np.zeros(3) if carrier is None else carrier.spin
-            velocity = np.zeros(3) if carrier is None else carrier.velocity + np.cross(carried, arm)
-            cross, spin = start @ pose(about(step.axis, q[0])), carried + paces[0] * start[:3, step.axis]
+            (step, q), (second, _) = steps
+            carrier = STILL if before == GROUND else bodies[before]
+            start = carrier.frame @ frame_before
+            velocity = carrier.velocity + np.cross(carrier.spin, start[:3, 3] - carrier.frame[:3, 3])
+            cross, spin = start @ pose(about(step.axis, q[0])), carrier.spin + paces[0] * start[:3, step.axis]
             bodies.append(MovingBody(f"{joint.name}_cross", 0, cross, velocity, spin))
             after = len(bodies) - 1
-            connections.append(
-                Connection(joint.columns[0], step.letter, before, after, frame_before, np.eye(4))
-            )
-            before, frame_before = after, joint.before(rest[0][0])
+            name, kind = joint.columns[0], step.letter
+            connections.append(Connection(name, kind, before, after, frame_before, np.eye(4)))
+            before, frame_before = after, joint.before(second)
+            name, kind = joint.columns[-1], second.letter
+        else:
+            name, kind = joint.name, joint.kind
         if i < last:
             bodies.append(link_body(i))
             after, frame_after = len(bodies) - 1, np.eye(4)
             links[i + 1] = after
         else:
             after, frame_after = GROUND, linkage.ground
-        name, kind = joint.name, joint.kind
-        if joint.row.has_cross:
-            name, kind = joint.columns[-1], steps[-1][0].letter
-        frames_of_joint = (frame_before, frame_after)
-        connections.append(
-            Connection(name, kind, before, after, *frames_of_joint, joint.advance, joint.backwards)
-        )
+        both = frame_before, frame_after
+        connections.append(Connection(name, kind, before, after, *both, joint.advance, joint.backwards))
         values += [np.full(6, math.nan) for _ in connections[first:]]
         rates += [np.full(6, math.nan) for _ in connections[first:]]
         column = own.start
@@ -244,7 +245,8 @@ def _spin_rules(
         body = bodies[joint.after]
         line = body.frame[:3, :3] @ following.frame_before[:3, 3]
         axis_before = joint.frame_before[:3, :3] @ axes[joint.name]
-        axis = axis_before if joint.before == GROUND else bodies[joint.before].frame[:3, :3] @ axis_before
+        carrier = STILL if joint.before == GROUND else bodies[joint.before]
+        axis = carrier.frame[:3, :3] @ axis_before
         second = np.cross(axis, line)
         if np.linalg.norm(second) <= LEAST_SINE * np.linalg.norm(line):
             raise NotCoveredError(

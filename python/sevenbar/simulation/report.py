@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 def as_dict(run: Simulation) -> dict[str, Any]:
     """The result of a run, as plain values: angles in radians, lengths in the linkage's unit."""
     way = run.course
+    returned = None if run.returned is None else dict(zip(("length", "angle"), run.returned, strict=True))
     values = {
         "format": 1,
         "linkage": {"name": run.linkage.name, "kind": run.linkage.kind},
@@ -51,7 +52,7 @@ def as_dict(run: Simulation) -> dict[str, Any]:
         },
         "differences": [vars(found) for found in run.differences],
         "closure_error": {"length": run.gap, "angle": run.tilt},
-        "returned": None if run.returned is None else {"length": run.returned[0], "angle": run.returned[1]},
+        "returned": returned,
     }
     return without_nan(values)  # type: ignore[no-any-return]
 
@@ -69,23 +70,14 @@ def text(run: Simulation) -> RenderableType:
     facts.add("steps", f"{len(way.rows) - 1} of {way.step:.6g} s{lead}")
     for number, note in enumerate(record.notes):
         facts.add("" if number else "built", note)
-    facts.add(
-        "closure error", f"{_sized(run.gap, unit)} and {_sized(run.tilt, 'rad')} at most, in the engine"
-    )
+    facts.add("closure error", f"{run.gap:.1e} {unit} and {run.tilt:.1e} rad at most, in the engine")
     if run.returned is not None:
-        facts.add(
-            "return",
-            f"misses its first pose by {_sized(run.returned[0], unit)} and {_sized(run.returned[1], 'rad')}",
-        )
+        apart, askew = run.returned
+        facts.add("return", f"misses its first pose by {apart:.1e} {unit} and {askew:.1e} rad")
     if run.forces:
         facts.add("forces", _forces_text(run))
-    heads = (
-        f"{record.engine} minus Sevenbar",
-        "greatest",
-        f"at {short(motion.input, 12)}",
-        "median",
-        "values up to",
-    )
+    at = f"at {short(motion.input, 12)}"
+    heads = (f"{record.engine} minus Sevenbar", "greatest", at, "median", "values up to")
     slide = linkage.unit_of(motion.input) != "rad"
     table = number_table(heads, (_cells(found, slide, unit) for found in run.differences))
     return page(linkage.heading, facts, table)
@@ -101,21 +93,12 @@ def _forces_text(run: Simulation) -> str:
     )
 
 
-def _sized(value: float, unit: str) -> str:
-    return f"{value:.1e} {unit}"
-
-
 def _cells(found: Difference, slide: bool, unit: str) -> tuple[str, ...]:
+    name = f"{found.quantity} [{found.unit}]"
     if math.isnan(found.greatest):
-        return f"{found.quantity} [{found.unit}]", "-", "-", "-", "-"
+        return name, "-", "-", "-", "-"
     at = f"{found.at:.6g} {unit}" if slide else f"{math.degrees(found.at):.3f}°"
-    return (
-        f"{found.quantity} [{found.unit}]",
-        f"{found.greatest:.2e}",
-        at,
-        f"{found.median:.2e}",
-        f"{found.scale:.6g}",
-    )
+    return name, f"{found.greatest:.2e}", at, f"{found.median:.2e}", f"{found.scale:.6g}"
 
 
 def simulation_report(engine: str, figures: Sequence[str] = ("png",)) -> Report[Simulation]:
@@ -143,11 +126,7 @@ def _figure(stem: str, run: Simulation) -> Figure | None:
 
 
 def write(
-    run: Simulation,
-    folder: str | os.PathLike[str],
-    figures: Sequence[str] = ("png",),
-    *,
-    force: bool = False,
+    run: Simulation, folder: str | os.PathLike[str], figures: Sequence[str] = ("png",), *, force: bool = False
 ) -> list[Path]:
     """Writes the report as JSON, every row as CSV and the figures into a folder: all of them, or none.
 
@@ -170,26 +149,25 @@ def print_text(run: Simulation, console: Console | None = None) -> None:
 def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
     """Every row, column by column, Sevenbar's and the engine's; each name ends in its unit."""
     linkage, unit = run.linkage, run.linkage.length_unit
-    engine = run.record.engine.lower()
+    who = ("sevenbar", run.record.engine.lower())
     found: dict[str, npt.NDArray[Any]] = {"row": np.arange(len(run.time)), "time_s": run.time}
-    sides = {"sevenbar": run.theory, engine: run.engine}
     for index, name in enumerate(linkage.columns):
         slides = not linkage.turns(index)
         for order, quantity in enumerate(("q", "dq", "ddq")):
-            for who, joints in sides.items():
-                head = joint_column(name, slides=slides, order=order, length=unit, angle="deg", who=who)
+            for side, joints in zip(who, (run.theory, run.engine), strict=True):
+                head = joint_column(name, slides=slides, order=order, length=unit, angle="deg", who=side)
                 values = getattr(joints, quantity)[:, index]
                 found[head] = np.degrees(values) if head.endswith("_deg") else values
-    for name, (engine_point, theory_point) in run.points.items():
+    for name, (engine, theory) in run.points.items():
         for order, quantity in enumerate(("position", "velocity", "acceleration")):
             for axis, letter in enumerate("xyz"):
-                for who, point in (("sevenbar", theory_point), (engine, engine_point)):
-                    head = point_column(name, letter, order=order, length=unit, who=who)
+                for side, point in zip(who, (theory, engine), strict=True):
+                    head = point_column(name, letter, order=order, length=unit, who=side)
                     found[head] = getattr(point, quantity)[:, axis]
     for force in run.forces:
         for place, letter in enumerate(force.axes):
-            for who, own in (("sevenbar", force.theory), (engine, force.engine)):
-                words = [force.name, force.what, letter, who, force.unit.replace(" ", "")]
+            for side, own in zip(who, (force.theory, force.engine), strict=True):
+                words = [force.name, force.what, letter, side, force.unit.replace(" ", "")]
                 found["_".join(word for word in words if word)] = own[:, place]
     found[f"closure_error_{unit}"] = run.engine.gap.max(axis=1)
     found["closure_error_rad"] = run.engine.tilt.max(axis=1)

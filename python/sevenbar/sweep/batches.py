@@ -23,7 +23,7 @@ from sevenbar.kinematics.solvers.batches import (
     rssr_types,
 )
 from sevenbar.kinematics.transmission import coupling_of
-from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
+from sevenbar.sweep.block import NO_CIRCUIT, Block
 from sevenbar.sweep.plan import OF_TYPES, SweepPlan
 
 #: Measures that the core's batches of general loops have not.
@@ -108,7 +108,7 @@ def _of_types(plan: SweepPlan, dimensions: Floats, threads: int) -> Block:
     codes, limits = rssr_types(dimensions, plan.input, threads)
     linkage = np.flatnonzero(codes != INVALID)
     columns = _of_linkages(plan, linkage, WORDS[codes], limits)
-    return Block(linkage, np.full(len(linkage), NO_CIRCUIT), _ok(linkage), columns)
+    return Block.measured(linkage, np.full(len(linkage), NO_CIRCUIT), columns)
 
 
 def _of_circuits(plan: SweepPlan, motions: Motions) -> Block:
@@ -129,7 +129,7 @@ def _of_circuits(plan: SweepPlan, motions: Motions) -> Block:
         column = motions.columns[measure.name][kept]
         missing = None if column.dtype == object else np.nan
         columns[measure.name] = np.concatenate([column, np.full(len(without), missing, column.dtype)])
-    return Block(linkage, circuit, _ok(linkage), columns)
+    return Block.measured(linkage, circuit, columns)
 
 
 def _of_linkages(
@@ -141,10 +141,6 @@ def _of_linkages(
         columns["motion_type"] = types[linkage]
     if "limits" in plan.measures:
         columns["limits"] = np.isfinite(limits).sum(axis=1)[linkage].astype(np.float64)
-    for place, name in enumerate(limit_names(plan)):
+    for place, name in enumerate(plan.limit_names):
         columns[name] = np.degrees(limits[linkage, place])
     return columns
-
-
-def _ok(linkage: Integers) -> npt.NDArray[np.object_]:
-    return np.full(len(linkage), OK, dtype=object)

@@ -1,4 +1,4 @@
-"""Rows of a part on their way into its table, and which columns they have."""
+"""Rows of a part on their way into its table."""
 
 from __future__ import annotations
 
@@ -10,17 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Integers
-from sevenbar.kinematics.measures import Measure
-from sevenbar.sweep.plan import SweepPlan
 
 #: The status of a linkage that was measured.
 OK = "ok"
 
 #: The value of `circuit` for a linkage that has none.
 NO_CIRCUIT = -1
-
-#: Limits of an RSSR's input: the zeros of a quartic.
-MOST_LIMITS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +31,11 @@ class Block:
     columns: dict[str, npt.NDArray[Any]]
 
     @staticmethod
+    def measured(linkage: Integers, circuit: Integers, columns: dict[str, npt.NDArray[Any]]) -> Block:
+        """Rows of linkages all of which were measured."""
+        return Block(linkage, circuit, np.full(len(linkage), OK, dtype=object), columns)
+
+    @staticmethod
     def joined(blocks: Sequence[Block]) -> Block:
         """The rows of several blocks with the same columns, by linkage and circuit."""
         linkage, circuit, status = (
@@ -48,15 +48,3 @@ class Block:
             for name in blocks[0].columns
         }
         return Block(linkage[order], circuit[order], status[order], columns)
-
-
-def per_circuit(measures: tuple[Measure, ...]) -> bool:
-    """Whether a linkage has a row for each of its circuits."""
-    return any(measure.per == "circuit" for measure in measures)
-
-
-def limit_names(plan: SweepPlan) -> tuple[str, ...]:
-    """Columns that hold the limits themselves, where those are requested: of an RSSR at most four."""
-    if "limits" not in plan.measures or plan.draft.linkage.kind != "RSSR":
-        return ()
-    return tuple(f"limit_{place}" for place in range(1, MOST_LIMITS + 1))

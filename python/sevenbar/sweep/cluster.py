@@ -7,12 +7,13 @@ import time
 import uuid
 from asyncio import CancelledError
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from importlib import import_module
 from itertools import islice
-from typing import Any, NoReturn, Protocol
+from typing import Any, NoReturn
 
 from sevenbar.errors import EngineError, RequestError, SevenbarError, of_extra, shown
+from sevenbar.sweep.held_folder import Parted
 from sevenbar.sweep.plan import maker
 
 #: Time [s] in which a scheduler must answer.
@@ -28,18 +29,10 @@ LOOK_TIME = 1.0
 IN_FLIGHT = 2
 
 
-class Divided(Protocol):
-    """Work on many linkages that is done part by part."""
-
-    def linkages(self, part: int) -> range:
-        """The linkages of a part."""
-        ...
-
-
 class Cluster:
     """The workers of a scheduler, for one plan; closed after use, whatever happened."""
 
-    def __init__(self, address: str, plan: Divided, make: Callable[[Any, int], bytes]) -> None:
+    def __init__(self, address: str, plan: Parted, make: Callable[[Any, int], bytes]) -> None:
         """Calls the scheduler at an address, as in "tcp://host:8786"; `make(plan, part)` makes a part.
 
         Raises `MissingExtraError` without dask, `RequestError` for an address where none answers, and for
@@ -51,34 +44,29 @@ class Cluster:
         try:
             pickle.dumps(plan)
         except Exception as error:
-            reason = f"{type(error).__name__}: {error}".splitlines()[0]
             raise RequestError(
-                f"measure: a function cannot be sent to workers: {reason}; "
+                f"measure: a function cannot be sent to workers: {_reason(error)}; "
                 "give functions of a module that the workers have, which hold nothing open"
             ) from None
         self._plan, self._make, self._address = plan, make, address
-        self._quiet = _quiet()
-        self._quiet.__enter__()
-        try:
-            self._client: Any = distributed.Client(
-                address, timeout=ANSWER_TIME, set_as_default=False, name="sevenbar-sweep"
-            )
-        except Exception:
-            self._quiet.__exit__(None, None, None)
-            raise RequestError(
-                f"scheduler: no Dask scheduler answers at {shown(address)}; "
-                "start one with 'dask scheduler', and give its address, as in tcp://host:8786"
-            ) from None
+        how: dict[str, Any] = {"timeout": ANSWER_TIME, "set_as_default": False, "name": "sevenbar-sweep"}
+        with ExitStack() as opened:
+            opened.enter_context(_quiet())
+            try:
+                self._client: Any = distributed.Client(address, **how)
+            except Exception:
+                raise RequestError(
+                    f"scheduler: no Dask scheduler answers at {shown(address)}; "
+                    "start one with 'dask scheduler', and give its address, as in tcp://host:8786"
+                ) from None
+            self._opened = opened.pop_all()
 
     def __enter__(self) -> Cluster:
         return self
 
     def __exit__(self, *_: object) -> None:
-        try:
-            with suppress(Exception):
-                self._client.close()
-        finally:
-            self._quiet.__exit__(None, None, None)
+        with self._opened, suppress(Exception):
+            self._client.close()
 
     def makers(self) -> Sequence[Mapping[str, str]]:
         """What makes parts there, as of the workers that are there now; raises `EngineError` for none."""
@@ -105,7 +93,8 @@ class Cluster:
         run = uuid.uuid4().hex
         try:
             while True:
-                for part in islice(rest, max(0, self._window() - len(flying))):
+                window = max(IN_FLIGHT, IN_FLIGHT * sum(self._threads().values()))
+                for part in islice(rest, max(0, window - len(flying))):
                     future = self._client.submit(
                         _made_by, self._make, self._plan, part, key=f"sweep-{run}-{part}", pure=False
                     )
@@ -119,9 +108,6 @@ class Cluster:
         finally:
             with suppress(Exception):
                 self._client.cancel(list(flying), force=True)
-
-    def _window(self) -> int:
-        return max(IN_FLIGHT, IN_FLIGHT * sum(self._threads().values()))
 
     def _threads(self) -> Mapping[str, int]:
         try:
@@ -156,44 +142,43 @@ class Cluster:
                 return list(known.done)
 
     def _result(self, future: Any, part: int) -> tuple[bytes, Mapping[str, str]]:
+        """What a worker made; it is made again where its worker left before this was fetched."""
         from distributed.scheduler import KilledWorker
 
-        try:
-            content, by = self._fetched(future)
-        except SevenbarError:
-            raise
-        except KilledWorker:
-            first = self._plan.linkages(part)
-            raise EngineError(
-                f"scheduler: part {part} (linkages {first.start} to {first.stop - 1}) ended every worker "
-                "that took it; check their memory and their logs, and go on with --resume"
-            ) from None
-        except (CancelledError, OSError) as error:
-            self._lost(error)
-        except Exception as error:
-            reason = f"{type(error).__name__}: {error}".splitlines()[0]
-            raise EngineError(
-                f"scheduler: a worker cannot make part {part}: {reason}; "
-                "give workers the same modules and versions as here, and go on with --resume"
-            ) from None
-        return content, by
-
-    def _fetched(self, future: Any) -> Any:
-        """What a worker made; it is made again where its worker left before this was fetched."""
         while True:
             try:
-                return future.result(timeout=ANSWER_TIME)
+                content, by = future.result(timeout=ANSWER_TIME)
+                return content, by
             except TimeoutError:
                 self._wait_for_workers()
+            except SevenbarError:
+                raise
+            except KilledWorker:
+                first = self._plan.linkages(part)
+                raise EngineError(
+                    f"scheduler: part {part} (linkages {first.start} to {first.stop - 1}) ended every worker "
+                    "that took it; check their memory and their logs, and go on with --resume"
+                ) from None
+            except (CancelledError, OSError) as error:
+                self._lost(error)
+            except Exception as error:
+                raise EngineError(
+                    f"scheduler: a worker cannot make part {part}: {_reason(error)}; "
+                    "give workers the same modules and versions as here, and go on with --resume"
+                ) from None
 
     def _lost(self, error: BaseException) -> NoReturn:
-        reason = f"{type(error).__name__}: {error}".splitlines()[0]
         raise EngineError(
-            f"scheduler: '{self._address}' is lost ({reason}); start it again, and go on with --resume"
+            f"scheduler: '{self._address}' is lost ({_reason(error)}); "
+            "start it again, and go on with --resume"
         ) from None
 
 
-def _made_by(make: Callable[[Any, int], bytes], plan: Divided, part: int) -> tuple[bytes, Mapping[str, str]]:
+def _reason(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}".splitlines()[0]
+
+
+def _made_by(make: Callable[[Any, int], bytes], plan: Parted, part: int) -> tuple[bytes, Mapping[str, str]]:
     """A part and what made it: run by a worker."""
     return make(plan, part), maker()
 

@@ -16,16 +16,17 @@ ASIDE = ".aside"
 
 
 class Parted(Protocol):
-    """What is made in parts."""
+    """Work on many linkages that is done part by part."""
 
     @property
     def parts(self) -> int:
         """The number of parts."""
-        ...
 
     def request(self) -> dict[str, Any]:
         """What it is, as plain values."""
-        ...
+
+    def linkages(self, part: int) -> range:
+        """The linkages of a part."""
 
 
 class HeldFolder:

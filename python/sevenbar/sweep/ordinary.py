@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.measures import Measure, rows_of
-from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
+from sevenbar.sweep.block import NO_CIRCUIT, OK, Block
 from sevenbar.sweep.plan import SweepPlan
 
 #: Measures of a linkage or circuit, by name.
@@ -25,12 +25,13 @@ def analysed(plan: SweepPlan, values: Floats, first: int, which: Integers) -> Bl
     Raises `RequestError` for a function of the caller that does not take a motion.
     """
     measures = plan.measured
-    limits = limit_names(plan)
+    limits = plan.limit_names
     linkage: list[int] = []
     status: list[str] = []
     rows: list[Row] = []
     for index in which:
-        outcome, found = OK, _nothing(measures)
+        outcome: str = OK
+        found: list[Row] = [{"circuit": None, **{measure.name: None for measure in measures}}]
         try:
             linkage_there = plan.draft_of(values[:, index]).linkage
             motion = linkage_there.motion(plan.samples, input=plan.input, output=plan.output)
@@ -56,11 +57,6 @@ def analysed(plan: SweepPlan, values: Floats, first: int, which: Integers) -> Bl
         np.array(status, dtype=object),
         columns,
     )
-
-
-def _nothing(measures: tuple[Measure, ...]) -> list[Row]:
-    row: Row = {"circuit": None, **{measure.name: None for measure in measures}}
-    return [row]
 
 
 def _measured(motion: Motion, measures: tuple[Measure, ...], linkage: int) -> Iterator[Row]:

@@ -32,6 +32,9 @@ PART_OF_TYPES, PART_OF_CIRCUITS, PART_OF_LOOPS = 65536, 16384, 256
 #: Most linkages of a part: some dozens of parts are in memory at once.
 MOST_IN_A_PART = 2**20
 
+#: Limits of an RSSR's input: the zeros of a quartic.
+MOST_LIMITS = 4
+
 #: Measures of an RSSR that follow from its dimensions without its circuits.
 OF_TYPES = frozenset({"motion_type", "limits"})
 
@@ -91,6 +94,18 @@ class SweepPlan:
     def measured(self) -> tuple[Measure, ...]:
         """The measures themselves."""
         return tuple(MEASURES[m] if isinstance(m, str) else m for m in self.measures)
+
+    @property
+    def per_circuit(self) -> bool:
+        """Whether a linkage has a row for each of its circuits."""
+        return any(measure.per == "circuit" for measure in self.measured)
+
+    @property
+    def limit_names(self) -> tuple[str, ...]:
+        """Columns that hold the limits themselves, where those are requested: of an RSSR at most four."""
+        if "limits" not in self.measures or self.draft.linkage.kind != "RSSR":
+            return ()
+        return tuple(f"limit_{place}" for place in range(1, MOST_LIMITS + 1))
 
     @property
     def held(self) -> HeldDimensions:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, of_extra, shown
 from sevenbar.sweep.batches import batched
-from sevenbar.sweep.block import NO_CIRCUIT, Block, limit_names, per_circuit
+from sevenbar.sweep.block import NO_CIRCUIT, Block
 from sevenbar.sweep.ordinary import analysed
 from sevenbar.sweep.plan import SweepPlan
 
@@ -43,17 +43,16 @@ def schema(plan: SweepPlan) -> pa.Schema:
     """
     import pyarrow as pa
 
-    linkage, measures = plan.draft.linkage, plan.measured
     fields = [("linkage", pa.int64()), *((a.dimension.column, pa.float64()) for a in plan.space.axes)]
     fields.append(("status", pa.string()))
-    if per_circuit(measures):
+    if plan.per_circuit:
         fields.append(("circuit", pa.int32()))
     types = {"word": pa.string(), "count": pa.int32()}
-    for measure in measures:
-        name = measure.column(linkage, plan.output)
+    for measure in plan.measured:
+        name = measure.column(plan.draft.linkage, plan.output)
         fields.append((name, types.get(measure.quantity, pa.float64())))
         if measure.name == "limits":
-            fields += [(f"{limit}_deg", pa.float64()) for limit in limit_names(plan)]
+            fields += [(f"{limit}_deg", pa.float64()) for limit in plan.limit_names]
     names = [name for name, _ in fields]
     for name in names:
         if names.count(name) > 1:
@@ -90,11 +89,11 @@ def _table(plan: SweepPlan, first: int, values: Floats, block: Block) -> pa.Tabl
 
     linkage = block.linkage
     arrays: list[Any] = [linkage + first, *values[:, linkage], block.status]
-    if per_circuit(plan.measured):
+    if plan.per_circuit:
         arrays.append(block.circuit.astype(np.float64))
         arrays[-1][arrays[-1] == NO_CIRCUIT] = np.nan
     for measure in plan.measured:
-        names = (measure.name, *(limit_names(plan) if measure.name == "limits" else ()))
+        names = (measure.name, *(plan.limit_names if measure.name == "limits" else ()))
         arrays += [block.columns[name] for name in names]
     wanted = schema(plan)
     columns = [_array(array, field.type) for array, field in zip(arrays, wanted, strict=True)]

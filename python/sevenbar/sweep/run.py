@@ -127,7 +127,9 @@ def carry_out(
             f"give a folder, or at most {MOST_IN_MEMORY} linkages"
         )
     if scheduler is None:
-        on_threads = partial(_on_threads, plan, number)
+        at_once = min(number, plan.parts)
+        make = partial(part_bytes, plan, threads=number // at_once)
+        on_threads = partial(made_on_threads, make, at_once)
         return _filled(plan, [maker()], on_threads, out, resume=resume, mixed=mixed, progress=progress)
     from sevenbar.sweep.cluster import Cluster
 
@@ -184,12 +186,6 @@ def _filled(
     if folder is not None:
         return Sweep.of_folder(folder.path)
     return Sweep(plan.description(known), None, [contents[part] for part in range(plan.parts)])
-
-
-def _on_threads(plan: SweepPlan, threads: int, parts: Iterable[int]) -> Generator[Made, None, None]:
-    """The parts as they are finished, by threads of this process."""
-    at_once = min(threads, plan.parts)
-    return made_on_threads(partial(part_bytes, plan, threads=threads // at_once), at_once, parts)
 
 
 def made_on_threads(

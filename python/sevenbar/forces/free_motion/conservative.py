@@ -103,80 +103,66 @@ class Conservative:
         return place + rounds * self.advance, speed
 
 
+def _whole(begin: float, run: Run, way: int) -> Leg:
+    """A leg that is a whole run one way."""
+    return Leg(begin, run, way, 0.0 if way > 0 else run.time)
+
+
 def conservative(course: EnergyCourse, place: float, speed: float, duration: float) -> Conservative:
     """The motion from a place with s' = `speed`, for a time [s] at least."""
     mass, slope = (float(part[0]) for part in course.at(np.array([place]))[:2])
-    kinetic = mass * speed**2 / 2
-    reference = (place, kinetic)
-    if speed == 0.0:
-        if abs(slope) <= BALANCED * course.steepest:
-            return Conservative("rest", (), None, (), rests_at=place)
-        way = -1 if slope > 0 else 1
-    else:
-        way = 1 if speed > 0 else -1
-    seeker = _Seeker(course, reference, way if speed == 0.0 else 0)
-    if course.repeats:
-        ahead = seeker.end(place, way, place + way * course.length)
-        if ahead is None:
-            low = min(place, place + way * course.length)
-            run = run_between(course, low, low + course.length, (False, False), reference)
-            leg = Leg(0.0, run, way, 0.0 if way > 0 else run.time)
-            return Conservative("rotation", (leg,), run.time, (), advance=way * course.length)
-        behind = (place, "turn") if speed == 0.0 else seeker.end(place, -way, place - way * course.length)
-        return _between(course, reference, place, way, ahead, behind)
-    return _passing(course, reference, place, way, duration, seeker, rests=speed == 0.0)
-
-
-def _between(
-    course: EnergyCourse,
-    reference: tuple[float, float],
-    place: float,
-    way: int,
-    ahead: tuple[float, str],
-    behind: tuple[float, str] | None,
-) -> Conservative:
-    """A motion that has an end ahead; it swings if both ends are turning points."""
+    rests = speed == 0.0
+    if rests and abs(slope) <= BALANCED * course.steepest:
+        return Conservative("rest", (), None, (), rests_at=place)
+    rises = slope <= 0 if rests else speed > 0
+    way = 1 if rises else -1
+    seeker = _Seeker(course, (place, mass * speed**2 / 2))
+    if not course.repeats:
+        return _passing(seeker, place, way, duration, rests=rests)
+    ahead = seeker.end(place, way, place + way * course.length)
+    if ahead is None:
+        low = min(place, place + way * course.length)
+        leg = _whole(0.0, seeker.run(low, low + course.length), way)
+        return Conservative("rotation", (leg,), leg.run.time, (), advance=way * course.length)
+    behind = (place, "turn") if rests else seeker.end(place, -way, place - way * course.length)
     if ahead[1] == "top":
-        return _to_the_top(course, reference, place, way, ahead[0], ())
-    if behind is None or behind[1] == "top":
+        return _to_the_top(seeker, place, way, ahead[0], ())
+    assert behind is not None
+    if behind[1] == "top":
         # it turns once and comes back for ever towards the other side
         low, high = sorted((place, ahead[0]))
-        run = run_between(course, low, high, (way < 0, way > 0), reference)
-        first = Leg(0.0, run, way, 0.0 if way > 0 else run.time)
-        back = Leg(first.end, run, -way, run.time if way > 0 else 0.0)
-        assert behind is not None
-        return _to_the_top(course, reference, place, -way, behind[0], (first, back), turned=ahead[0])
-    low, high = sorted((ahead[0], behind[0]))
-    run = run_between(course, low, high, (True, True), reference)
-    entry = run.time_at(place)
-    if place == behind[0]:
-        entry = 0.0 if way > 0 else run.time
-    first = Leg(0.0, run, way, entry)
-    back = Leg(first.end, run, -way, run.time if way > 0 else 0.0)
-    again = Leg(back.end, run, way, 0.0 if way > 0 else run.time)
+        first = _whole(0.0, seeker.run(low, high, (way < 0, way > 0)), way)
+        back = _whole(first.end, first.run, -way)
+        return _to_the_top(seeker, place, -way, behind[0], (first, back), turned=ahead[0])
+    return _swing(seeker, place, way, (ahead[0], behind[0]), at_end=place == behind[0])
+
+
+def _swing(
+    seeker: _Seeker, place: float, way: int, ends: tuple[float, float], *, at_end: bool
+) -> Conservative:
+    """A motion to and fro between two turning points, from a place between them or `at_end`."""
+    low, high = sorted(ends)
+    run = seeker.run(low, high, (True, True))
+    first = _whole(0.0, run, way) if at_end else Leg(0.0, run, way, run.time_at(place))
+    back = _whole(first.end, run, -way)
+    again = _whole(back.end, run, way)
     return Conservative("oscillation", (first, back, again), 2 * run.time, (low, high))
 
 
 def _to_the_top(
-    course: EnergyCourse,
-    reference: tuple[float, float],
-    place: float,
-    way: int,
-    top: float,
-    before: tuple[Leg, ...],
-    turned: float | None = None,
+    seeker: _Seeker, place: float, way: int, top: float, before: tuple[Leg, ...], turned: float | None = None
 ) -> Conservative:
+    """A motion from a place, after some legs, that comes ever nearer to a top."""
+    course = seeker.course
     course.refuse_massless(min(place, top), max(place, top))
     off = NEAR_TOP * course.length
-    # seen from the top, little energy loses no digits
-    reference = (top, 0.0)
     near = top - way * off
     begin = before[-1].end if before else 0.0
     legs = before
     if way * (near - place) > 0:
         low, high = sorted((place, near))
-        run = run_between(course, low, high, (False, False), reference)
-        legs = (*before, Leg(begin, run, way, 0.0 if way > 0 else run.time))
+        # seen from the top, little energy loses no digits
+        legs = (*before, _whole(begin, _Seeker(course, (top, 0.0)).run(low, high), way))
         begin = legs[-1].end
     step = 1e-4 * course.length
     slopes = course.slope(np.array([top - step, top + step]))
@@ -186,19 +172,12 @@ def _to_the_top(
     return Conservative("asymptotic", legs, None, turning, top=(top, begin, way * off, rate))
 
 
-def _passing(
-    course: EnergyCourse,
-    reference: tuple[float, float],
-    place: float,
-    way: int,
-    duration: float,
-    seeker: _Seeker,
-    *,
-    rests: bool,
-) -> Conservative:
+def _passing(seeker: _Seeker, place: float, way: int, duration: float, *, rests: bool) -> Conservative:
     """A motion that no lap repeats: lap by lap until it turns twice, time is up, or the circuit ends."""
+    course = seeker.course
     legs: list[Leg] = []
-    here, time, turned = place, 0.0, rests
+    here, time = place, 0.0
+    # a start at rest is a turning point
     first_turn = place if rests else None
     ahead, laps = 1, 0
     while laps < MOST_LAPS:
@@ -206,54 +185,34 @@ def _passing(
         aim = here + way * ahead * course.length if course.closed else (course.length if way > 0 else 0.0)
         laps, ahead = laps + ahead, min(2 * ahead, MOST_AT_ONCE)
         end = seeker.end(here, way, aim)
-        if end is not None and end[1] == "turn" and turned and first_turn is not None:
-            low, high = sorted((first_turn, end[0]))
-            swing = run_between(course, low, high, (True, True), reference)
-            entry = swing.time_at(place)
-            if rests:
-                entry = 0.0 if way > 0 else swing.time
-                way_at_start = way
-            else:
-                way_at_start = -way
-            first = Leg(0.0, swing, way_at_start, entry)
-            back = Leg(first.end, swing, -way_at_start, swing.time if way_at_start > 0 else 0.0)
-            again = Leg(back.end, swing, way_at_start, 0.0 if way_at_start > 0 else swing.time)
-            return Conservative("oscillation", (first, back, again), 2 * swing.time, (low, high))
+        if end is not None and end[1] == "turn" and first_turn is not None:
+            return _swing(seeker, place, way if rests else -way, (first_turn, end[0]), at_end=rests)
         if end is not None and end[1] == "top":
-            return _to_the_top(course, reference, here, way, end[0], tuple(legs), first_turn)
+            return _to_the_top(seeker, here, way, end[0], tuple(legs), first_turn)
         stop = aim if end is None else end[0]
+        turns = (here == first_turn and not (rests and legs), end is not None)
         low, high = sorted((here, stop))
-        starts_still = rests and not legs
-        turns = (
-            (starts_still and way > 0)
-            or (end is not None and way < 0)
-            or (turned and not rests and here == first_turn and way > 0),
-            (starts_still and way < 0)
-            or (end is not None and way > 0)
-            or (turned and not rests and here == first_turn and way < 0),
-        )
-        run = run_between(course, low, high, turns, reference)
-        legs.append(Leg(time, run, way, 0.0 if way > 0 else run.time))
+        legs.append(_whole(time, seeker.run(low, high, turns if way > 0 else turns[::-1]), way))
         time, here = legs[-1].end, stop
-        if time >= duration:
-            turning = () if first_turn is None else (first_turn,)
-            return Conservative("passing", tuple(legs), None, turning)
-        if end is not None:
-            turned, first_turn, way, ahead = True, here, -way, 1
-            if rests:
-                first_turn = place
-        elif not course.closed:
-            return Conservative("ends", tuple(legs), None, () if first_turn is None else (first_turn,))
+        if end is not None and time < duration:
+            first_turn, way, ahead = here, -way, 1
+        elif time >= duration or not course.closed:
+            kind: Course = "passing" if time >= duration else "ends"
+            return Conservative(kind, tuple(legs), None, () if first_turn is None else (first_turn,))
     raise RequestError(
         f"duration: the motion goes round more than {MOST_LAPS} times and repeats nothing; give a shorter one"
     )
 
 
 class _Seeker:
-    """Finds where a motion of known energy ends."""
+    """Finds where a motion of known energy ends; `reference` is a place and T there [J]."""
 
-    def __init__(self, course: EnergyCourse, reference: tuple[float, float], still: int) -> None:
-        self.course, self.reference, self.still = course, reference, still
+    def __init__(self, course: EnergyCourse, reference: tuple[float, float]) -> None:
+        self.course, self.reference = course, reference
+
+    def run(self, low: float, high: float, turns: tuple[bool, bool] = (False, False)) -> Run:
+        """The run between two places, of which it may turn at either."""
+        return run_between(self.course, low, high, turns, self.reference)
 
     def kinetic(self, s: Floats) -> Floats:
         """T (j,) [J] at places (j,); below zero where the motion does not come."""

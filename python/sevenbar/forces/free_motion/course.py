@@ -10,7 +10,7 @@ Source: docs/theory_free.md, (4) and (5).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -71,9 +71,7 @@ class EnergyCourse:
             return self
         series = self.quantities.series.copy()
         series[:, :, SLOPE] -= torque * series[:, :, INPUT]
-        return EnergyCourse(
-            Along(self.quantities.edges, series), self.closed, self.breaks, self.start, self.tail
-        )
+        return replace(self, quantities=Along(self.quantities.edges, series))
 
     @cached_property
     def _all(self) -> Along:
@@ -150,6 +148,11 @@ class EnergyCourse:
         off = np.abs(starts - before - edges[piece]) + np.abs(ends - before - edges[piece + 1])
         return piece, off <= 1e-13 * np.maximum(self.length, np.abs(middle))
 
+    def slope_on(self, lap: float) -> Along:
+        """U' on a lap, by places on the first one."""
+        series = self.quantities.series
+        return Along(self.quantities.edges, series[:, :, [SLOPE]] + lap * series[:, :, [WINDING]])
+
     @cached_property
     def _slopes(self) -> Along:
         return self.quantities.part(*((SLOPE, WINDING) if self.winds else (SLOPE,)))
@@ -173,12 +176,12 @@ class EnergyCourse:
         """Whether a break lies between places (j,), where no polynomial leads across."""
         if not self.breaks.size:
             return np.zeros(a.shape, dtype=bool)
-        sides = [
-            np.searchsorted(self.breaks, s - lap * self.length) + len(self.breaks) * lap
-            for s in (a, b)
-            for lap in (self.laps(s),)
-        ]
-        return np.asarray(sides[0] != sides[1])
+        count, laps = len(self.breaks), (self.laps(a), self.laps(b))
+        first, second = (
+            np.searchsorted(self.breaks, s - lap * self.length) + count * lap
+            for s, lap in zip((a, b), laps, strict=True)
+        )
+        return np.asarray(first != second)
 
     def mean_slope(self, a: Floats, b: Floats) -> Floats:
         """The mean of U' (j,) over short ways from a to b, (j,) each."""
@@ -231,24 +234,15 @@ class EnergyCourse:
         return self._marked(0.0)
 
     def _marked(self, lap: float) -> Floats:
-        series = self.quantities.series[:, :, [SLOPE]] + lap * self.quantities.series[:, :, [WINDING]]
-        own = Along(self.quantities.edges, series)
-        edges = own.edges
-        heights = np.abs(series).max(initial=0.0)
-        if not heights:
-            return edges
-        found = [edges]
-        turning = own.stationary(0)
-        places = np.union1d(edges, turning)
-        zeros = own.crossings(0, 0.0, places)
-        return np.unique(np.concatenate([*found, zeros]))
+        own = self.slope_on(lap)
+        if not own.series.any():
+            return own.edges
+        zeros = own.crossings(0, 0.0, np.union1d(own.edges, own.stationary(0)))
+        return np.unique(np.concatenate([own.edges, zeros]))
 
     def marks(self, laps: Floats) -> Floats:
         """Places on laps (j,), edges among them, between which U rises or falls all the way, in order."""
-        if self.winds:
-            found = [self._marked(lap) if lap else self._first_marks for lap in laps.tolist()]
-        else:
-            found = [self._first_marks] * len(laps)
+        found = [self._marked(lap) if self.winds and lap else self._first_marks for lap in laps.tolist()]
         return np.unique(np.concatenate(found) + np.repeat(laps, [len(own) for own in found]) * self.length)
 
 

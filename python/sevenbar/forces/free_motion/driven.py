@@ -97,7 +97,7 @@ def driven(
     if not course.closed:
         stops = stops[(stops > 0) & (stops < length)]
     for _ in range(MOST_STRETCHES):
-        low, high = _stretch(course, stops, np.array([place, speed]), start)
+        low, high = _stretch(course, stops, place, upwards=place == start and speed >= 0)
         moments, steps, (place, speed), stopped, whole = driven_rows(
             edges,
             course.pushing,
@@ -126,9 +126,8 @@ def driven(
     return Driven(Along(np.concatenate(times), np.concatenate(series)), ended)
 
 
-def _stretch(course: EnergyCourse, breaks: Floats, state: Floats, start: float) -> tuple[float, float]:
-    """The breaks on both sides of a place."""
-    place = float(state[0])
+def _stretch(course: EnergyCourse, breaks: Floats, place: float, *, upwards: bool) -> tuple[float, float]:
+    """The breaks on both sides of a place; one at the place is below where the motion begins `upwards`."""
     if not course.closed:
         inner = np.concatenate([[0.0], breaks, [course.length]])
     elif not breaks.size:
@@ -137,8 +136,7 @@ def _stretch(course: EnergyCourse, breaks: Floats, state: Floats, start: float) 
         lap = math.floor(place / course.length)
         inner = np.concatenate([breaks + (lap + k) * course.length for k in (-1, 0, 1)])
     inner = np.unique(inner)
-    off = PUSH * course.length
-    below, above = inner[inner < place + (off if place == start and state[1] >= 0 else 0)], inner
-    low = float(below[-1]) if below.size else float(inner[0])
+    below = inner[inner < place + (PUSH * course.length if upwards else 0)]
+    low = float(below[-1] if below.size else inner[0])
     above = inner[inner > low]
-    return low, float(above[0]) if above.size else float(inner[-1])
+    return low, float(above[0] if above.size else inner[-1])

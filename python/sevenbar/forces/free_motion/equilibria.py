@@ -12,14 +12,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.curves.along import Along
-from sevenbar.forces.free_motion.course import MASS, SAME, SLOPE, WINDING, EnergyCourse
+from sevenbar.curves.along import Along, zero_between
+from sevenbar.forces.free_motion.course import MASS, SAME, EnergyCourse
 from sevenbar.text.printing import Printed
 
 #: A curvature of U below this part of its greatest is zero: neither stable nor unstable to the first order.
@@ -71,17 +71,11 @@ def resting_places(course: EnergyCourse, first: float = 0.0) -> list[Resting]:
     return [one for one in found if begin <= one[0] < begin + length]
 
 
-def _slope_on(course: EnergyCourse, lap: int) -> Along:
-    """U' on a lap, by places on the first one."""
-    series = course.quantities.series
-    return Along(course.quantities.edges, series[:, :, [SLOPE]] + lap * series[:, :, [WINDING]])
-
-
 def _on_lap(course: EnergyCourse, lap: int) -> list[Resting]:
     """The equilibria on a lap, by places on the first one."""
     quantities = course.quantities
     edges = quantities.edges
-    own = _slope_on(course, lap)
+    own = course.slope_on(lap)
     if not own.series.any():
         return []
     turning = own.stationary(0)
@@ -97,7 +91,7 @@ def _on_lap(course: EnergyCourse, lap: int) -> list[Resting]:
         before = i - 1 if i else last
         if i or course.closed:
             # the first piece goes on from the lap before, on which a spring is wound up less
-            there = own if i else _slope_on(course, lap - 1)
+            there = own if i else course.slope_on(lap - 1)
             left = float(there.on(np.array([before]), edges[before + 1 : before + 2])[0, 0])
             if left * heights[0] < 0:
                 jumps[float(a)] = left
@@ -129,20 +123,9 @@ def _zeros(own: Along, piece: int, marks: Floats, heights: Floats) -> list[float
     """Zeros of a piece's polynomial between its marks, those that only touch zero among them."""
     touch = 1e-13 * float(own.reach[0])
     found = [float(s) for s, h in zip(marks, heights, strict=True) if abs(h) <= touch]
-    whole: npt.NDArray[np.int64] = np.array([piece])
-    for k in range(len(marks) - 1):
-        if heights[k] * heights[k + 1] >= 0 or min(abs(heights[k]), abs(heights[k + 1])) <= touch:
-            continue
-        low, high, rising = marks[k], marks[k + 1], heights[k + 1] > 0
-        at = (low + high) / 2
-        for _ in range(100):
-            here = np.array([at])
-            height, slope = own.on(whole, here)[0, 0], own.slope.on(whole, here)[0, 0]
-            low, high = (low, at) if (height > 0) == rising else (at, high)
-            step = at - height / slope if slope else math.inf
-            after = step if low < step < high else (low + high) / 2
-            if abs(after - at) <= 2 * np.spacing(abs(at)):
-                break
-            at = after
-        found.append(float(at))
+    # alone, so that no neighbour has a say at its ends
+    alone = Along(own.edges[piece : piece + 2], own.series[piece : piece + 1])
+    for (low, high), (first, last) in zip(pairwise(marks), pairwise(heights), strict=True):
+        if first * last < 0 and min(abs(first), abs(last)) > touch:
+            found.append(zero_between(alone, 0.0, low, high))
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy.typing as npt
@@ -101,8 +101,6 @@ class FreeMotion(Drawable):
 
         Raises `RequestError` for a time before the start, or after the end of what was solved.
         """
-        from dataclasses import replace
-
         asked = finite_array("times", times)
         if asked.size and asked.min() < 0:
             raise RequestError(f"times: {asked.min():g} lies before the start; give times from 0 on")

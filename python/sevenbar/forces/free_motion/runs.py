@@ -52,13 +52,12 @@ class Run:
 
     low: float
     high: float
-    kind: npt.NDArray[np.int64]
+    kind: Floats
     starts: Floats
     ends: Floats
     first: Floats
     last: Floats
     rates: Floats
-    tail: float
 
     @property
     def time(self) -> float:
@@ -115,7 +114,7 @@ class Run:
         return place, by_w / (terms * series).sum(axis=1)
 
 
-def _place(kind: npt.NDArray[np.int64], start: Floats, end: Floats, w: Floats) -> tuple[Floats, Floats]:
+def _place(kind: Floats, start: Floats, end: Floats, w: Floats) -> tuple[Floats, Floats]:
     """The place s of w, and ds/dw."""
     way = end - start
     place = np.where(
@@ -145,45 +144,39 @@ def run_between(
         panels.insert(0, (LOW, low, low_end))
     if turns_high:
         panels.append((HIGH, high_end, high))
-    kind = np.array([p[0] for p in panels])
-    starts, ends = (np.array([p[k] for p in panels]) for k in (1, 2))
-    first, last = np.zeros(len(kind)), np.ones(len(kind))
+    # what each does, its places, and from which w to which
+    own = np.array([(*panel, 0.0, 1.0) for panel in panels]).T
     done = []
-    tail = 0.0
     # far laps have fewer digits left for the place on them
     resolved = max(RESOLVED, ROUNDING * max(abs(low), abs(high)) / course.shortest)
     for halving in range(HALVINGS + 1):
+        _, starts, ends, first, last = own
         w = (first + last)[:, None] / 2 + (last - first)[:, None] / 2 * nodes(TERMS)
-        rates, noise = _rates(course, kind, starts, ends, w, reference)
+        rates, noise = _rates(course, own, w, reference)
         ends_of = np.abs(rates @ _SERIES[[0, -2, -1]].T)
         worst = ends_of[:, 1:].max(axis=1) / ends_of[:, 0]
-        rough = worst > np.maximum(resolved, noise) if halving < HALVINGS else np.zeros(len(kind), dtype=bool)
+        rough = (
+            worst > np.maximum(resolved, noise) if halving < HALVINGS else np.zeros(len(first), dtype=bool)
+        )
         # no finer than places are known
         rough &= (last - first) * (ends - starts) > 1e-14 * course.length
-        tail = max(tail, float(worst[~rough].max(initial=0.0)))
-        done.append((kind[~rough], starts[~rough], ends[~rough], first[~rough], last[~rough], rates[~rough]))
+        done.append(np.vstack([own, rates.T])[:, ~rough])
         if not rough.any():
             break
-        middle = (first + last)[rough] / 2
-        kind, starts, ends = (np.repeat(part[rough], 2) for part in (kind, starts, ends))
-        first = np.stack([first[rough], middle], axis=1).ravel()
-        last = np.stack([middle, last[rough]], axis=1).ravel()
-    kind, starts, ends, first, last, rates = (np.concatenate(part) for part in zip(*done, strict=True))
-    order = np.lexsort((first, starts))
-    return Run(
-        low, high, kind[order], starts[order], ends[order], first[order], last[order], rates[order], tail
-    )
+        own = np.repeat(own[:, rough], 2, axis=1)
+        own[4, ::2] = own[3, 1::2] = (first + last)[rough] / 2
+    whole = np.concatenate(done, axis=1)
+    whole = whole[:, np.lexsort((whole[3], whole[1]))]
+    kind, starts, ends, first, last = whole[:5]
+    rates = np.ascontiguousarray(whole[5:].T)
+    return Run(low, high, kind, starts, ends, first, last, rates)
 
 
 def _rates(
-    course: EnergyCourse,
-    kind: npt.NDArray[np.int64],
-    starts: Floats,
-    ends: Floats,
-    w: Floats,
-    reference: tuple[float, float],
+    course: EnergyCourse, panels: Floats, w: Floats, reference: tuple[float, float]
 ) -> tuple[Floats, Floats]:
-    """dt/dw (m, terms) on panels (m,) at w (m, terms), and what part of it rounding may be (m,)."""
+    """dt/dw (m, terms) on panels (5, m) at w (m, terms), and what part of it rounding may be (m,)."""
+    kind, starts, ends = panels[:3]
     rates, noise = np.empty(w.shape), np.empty(len(kind))
     piece, whole = course.whole_pieces(starts, ends)
     origin, there = reference
