@@ -12,9 +12,10 @@ Source: docs/theory_design.md, (29).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -23,17 +24,18 @@ from sevenbar.design.candidates import Fault
 from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.match import STILL, Placing, placed
-from sevenbar.design.task.musts import FAULTS, pose_rooms
+from sevenbar.design.task.musts import FAULTS, Rooms, pose_rooms
 from sevenbar.design.task.rssr import loop_of
 from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
 from sevenbar.design.task.task import (
     DesignTask,
+    DwellWant,
     FigureMust,
     FigureWant,
+    FunctionWant,
     Most,
     PathWant,
     PoseWant,
-    SampledWant,
     StraightWant,
 )
 from sevenbar.design.task.wants.figures import Figures, figure_left
@@ -47,6 +49,15 @@ LONGEST_STEP = 1.2
 
 #: Poses of a want, with those between its stations, at which musts are held.
 HELD = 73
+
+#: What each kind of want is in a loop.
+WANTED: Mapping[type, Callable[[TaskLoop, Any], Wanted]] = {
+    FunctionWant: ReadingsWanted,
+    DwellWant: ReadingsWanted,
+    PathWant: PlacesWanted,
+    PoseWant: PlacesWanted,
+    StraightWant: LineWanted,
+}
 
 #: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
 FLAT = 1e-9
@@ -94,12 +105,10 @@ class TaskModel:
     def __init__(self, task: DesignTask, margins: Mapping[int, float] | None = None) -> None:
         self.task, self.margins = task, margins or {}
         self.loop = loop = loop_of(task)
-        self.wanted: list[Wanted] = [
-            self._wanted(loop, want) for want in task.wants if not isinstance(want, FigureWant)
-        ]
+        self.wanted: list[Wanted] = [WANTED[type(want)](loop, want) for _, want in task.sampled]
         self.figure_wants = [want for want in task.wants if isinstance(want, FigureWant)]
         #: The places among the task's wants of those at poses.
-        self.sampled = [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
+        self.sampled = [i for i, _ in task.sampled]
         self.figure_musts = [must for must in task.musts if isinstance(must, FigureMust)]
         names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
         self.figures = Figures(loop, list(dict.fromkeys(names)))
@@ -112,14 +121,6 @@ class TaskModel:
         #: Wants, by their places among the sampled, whose residuals have been asked to stay small.
         self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, Most)]
 
-    @staticmethod
-    def _wanted(loop: TaskLoop, want: SampledWant) -> Wanted:
-        if isinstance(want, (PathWant, PoseWant)):
-            return PlacesWanted(loop, want)
-        if isinstance(want, StraightWant):
-            return LineWanted(loop, want)
-        return ReadingsWanted(loop, want)
-
     @property
     def holds(self) -> bool:
         """Whether anything must hold at poses between the stations."""
@@ -130,7 +131,7 @@ class TaskProblem:
     """A task about a seed; `minimax` for the greatest residual, with the placing among the unknowns."""
 
     def __init__(self, model: TaskModel, seed: TaskSeed, *, minimax: bool = False) -> None:
-        self.model, self.loop = model, model.loop
+        self.model, self.loop, self.minimax = model, model.loop, minimax
         self._poses, self._anchor = seed.poses, seed.anchor
         self._period = seed.period
         self._base, self._turned = seed.placing, minimax and model.placed
@@ -166,27 +167,21 @@ class TaskProblem:
 
     def _all_stations(self) -> Stations:
         """Those of the wants, then those between them where something must hold there."""
-        width = len(self.start)
-        fixed, by = [np.empty(0)], [np.empty((0, width))]
-        held: list[tuple[Floats, Floats]] = []
+        width, count = len(self.start), 0
+        own, held = [(np.empty(0), np.empty((0, width)))], []
         self._rows: list[slice] = []
-        count = 0
-        for one, place in zip(self.model.wanted, self._own, strict=True):
+        for one, place, period in zip(self.model.wanted, self._own, self._periods, strict=True):
             steady = one.stations.fixed
-            matrix = np.zeros((len(steady), width))
-            matrix[:, place] = one.stations.by * one.stations.scales
-            fixed.append(steady)
-            by.append(matrix)
+            by = np.zeros((len(steady), width))
+            by[:, place] = one.stations.by * one.stations.scales
+            own.append((steady, by))
             self._rows.append(slice(count, count + len(steady)))
             count += len(steady)
-            if self.model.holds:
-                held += _spread(steady, matrix, one.stations, self._periods[len(self._rows) - 1])
+            if self.model.holds and len(steady) > 1:
+                held.append(_spread(steady, by, one.stations, period))
         self._count = count
-        return Stations(
-            np.concatenate([*fixed, *(part for part, _ in held)]),
-            np.concatenate([*by, *(part for _, part in held)]),
-            np.ones(width),
-        )
+        fixed, slopes = zip(*own, *held, strict=True)
+        return Stations(np.concatenate(fixed), np.concatenate(slopes), np.ones(width))
 
     def _between(self, seed: TaskSeed) -> Floats:
         """Poses of all stations, those between followed from the nearest."""
@@ -195,6 +190,10 @@ class TaskProblem:
         more = inputs[self._count :]
         from_row = np.abs(more[:, None] - inputs[: self._count]).argmin(axis=1)
         return np.concatenate([known, self.loop.closed(seed.values, more, known[from_row])])
+
+    def within(self, z: Floats) -> Floats:
+        """The unknowns within their bounds."""
+        return np.clip(z, self.low, self.high)
 
     def size(self, z: Floats) -> float:
         """The root of the weighted mean squares at z; infinite where there are none."""
@@ -248,15 +247,8 @@ class TaskProblem:
         found = self.at(z)
         self.take(z)
         placing = STILL if found is None else found.placing
-        return TaskSeed(
-            self.values(z),
-            self.own(z),
-            self._poses[: self._count],
-            self._anchor,
-            math.nan,
-            placing,
-            self._period,
-        )
+        poses = self._poses[: self._count]
+        return TaskSeed(self.values(z), self.own(z), poses, self._anchor, math.nan, placing, self._period)
 
     # ---- what is left there
 
@@ -290,21 +282,22 @@ class TaskProblem:
             parts.append((left, by))
         placing = self._placing(z, [left for left, _ in parts])
         lefts, lefts_by = self._placed(z, parts, placing)
-        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True)))
         figures = self._figures(values, slopes=slopes)
         if figures is None:
             return None
-        least: dict[Fault, float] = {"figure": float(figures[2].min(initial=math.inf))}
+        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True)))
+        rooms.append(("figure", *figures[1]))
+        least: dict[Fault, float] = {"figure": math.inf}
         for fault, own_room, _ in rooms:
             least[fault] = min(least.get(fault, math.inf), float(own_room.min(initial=math.inf)))
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
-        left = np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]])
-        room = np.concatenate([*(own_room for _, own_room, _ in rooms), figures[2]])
+        left = np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0][0]])
+        room = np.concatenate([own_room for _, own_room, _ in rooms])
         left_by, room_by = np.empty((len(left), 0)), np.empty((len(room), 0))
         if slopes:
             by_all = (w * r for w, r in zip(weights, lefts_by, strict=True))
-            left_by = np.concatenate([*by_all, self._wide(figures[1])])
-            room_by = np.concatenate([*(by for _, _, by in rooms), self._wide(figures[3])])
+            left_by = np.concatenate([*by_all, figures[0][1]])
+            room_by = np.concatenate([by for _, _, by in rooms])
         good = all(np.isfinite(part).all() for part in (left, left_by, room, room_by))
         return TaskValues(left, left_by, room, room_by, placing, least) if good else None
 
@@ -455,30 +448,32 @@ class TaskProblem:
             found.append(("motion type", room, wide(by_row)))
         return found
 
-    def _figures(self, values: Floats, *, slopes: bool) -> tuple[Floats, Floats, Floats, Floats] | None:
-        """Residuals of figures, rooms of figures, each with its slopes by the free numbers."""
+    def _figures(self, values: Floats, *, slopes: bool) -> tuple[Rooms, Rooms] | None:
+        """Residuals of figures, and their rooms, each with its slopes."""
         model = self.model
-        none = np.empty((0, self._k))
-        if not model.figures.names:
-            return np.empty(0), none, np.empty(0), none
-        found = model.figures.at(values, self._anchor, slopes=slopes)
+        found = model.figures.at(values, self._anchor, slopes=slopes) if model.figures.names else ((), ())
         if found is None:
             return None
-        read, by = found
-        place = {name: i for i, name in enumerate(model.figures.names)}
-        left, left_by, rooms, rooms_by = [], [none], [], [none]
-        for want in model.figure_wants:
-            value, own = figure_left(want, read[place[want.name]], by[place[want.name]])
-            left.append(want.weight * value)
-            left_by.append(want.weight * own[None])
-        for must in model.figure_musts:
-            value, own = read[place[must.name]], by[place[must.name]]
-            for way, end in ((1.0, must.least), (-1.0, must.most)):
-                if end is not None:
-                    unit = max(abs(end), 1e-3)
-                    rooms.append(way * (value - end) / unit)
-                    rooms_by.append(way * own[None] / unit)
-        return np.array(left), np.concatenate(left_by), np.array(rooms), np.concatenate(rooms_by)
+        read = {name: own for name, *own in zip(model.figures.names, *found, strict=True)}
+        lefts = [
+            (want.weight * value, want.weight * by)
+            for want in model.figure_wants
+            for value, by in [figure_left(want, *read[want.name])]
+        ]
+        rooms = [
+            (way * (value - end) / unit, way * by / unit)
+            for must in model.figure_musts
+            for value, by in [read[must.name]]
+            for way, end in ((1.0, must.least), (-1.0, must.most))
+            if end is not None
+            for unit in [max(abs(end), 1e-3)]
+        ]
+        return self._stacked(lefts), self._stacked(rooms)
+
+    def _stacked(self, rows: Sequence[tuple[float, Floats]]) -> Rooms:
+        """Single values with slopes (k,) by the free numbers, as (r,) with those by all unknowns."""
+        by = np.array([own for _, own in rows]).reshape(-1, self._k)
+        return np.array([value for value, _ in rows]), self._wide(by)
 
 
 def _sense(inputs: Floats) -> float:
@@ -486,21 +481,14 @@ def _sense(inputs: Floats) -> float:
     return 1.0 if (np.diff(inputs) >= 0).sum() * 2 >= len(inputs) - 1 else -1.0
 
 
-def _spread(steady: Floats, by: Floats, stations: Stations, period: float) -> list[tuple[Floats, Floats]]:
+def _spread(steady: Floats, by: Floats, stations: Stations, period: float) -> tuple[Floats, Floats]:
     """Inputs between those of a want, as many between any two: their fixed parts and slopes."""
     n = len(steady)
-    if n < 2:
-        return []
+    first = np.arange(n if stations.round else n - 1)
+    then = (first + 1) % n
     each = math.ceil(HELD / n)
-    found = []
-    for j in range(n if stations.round else n - 1):
-        then = (j + 1) % n
-        gain = 0.0 if then else period
-        for share in np.arange(1, each) / each:
-            found.append(
-                (
-                    np.array([(1 - share) * steady[j] + share * (steady[then] + gain)]),
-                    ((1 - share) * by[j] + share * by[then])[None],
-                )
-            )
-    return found
+    share = (np.arange(1, each) / each)[:, None]
+    inputs = (1 - share) * steady[first] + share * (steady[then] + np.where(then == 0, period, 0.0))
+    slopes = (1 - share)[:, :, None] * by[first] + share[:, :, None] * by[then]
+    # between the first two, then between the next
+    return inputs.T.ravel(), slopes.swapaxes(0, 1).reshape(-1, by.shape[1])
