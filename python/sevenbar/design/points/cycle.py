@@ -110,13 +110,17 @@ class Cycle:
         """The mean by time of values (n,); over a closed cycle exact to rounding."""
         return float(self.shares @ values)
 
+    def sizes(self, order: str, at: Floats) -> Floats:
+        """The sizes (n,) of a point's velocities, accelerations or jerks at the rows."""
+        return np.asarray(np.linalg.norm(self.rates.of(order, at), axis=1))
+
     def peaks(self, order: str, at: Floats) -> tuple[Floats, Floats]:
         """Inputs and sizes of the greatest velocities, accelerations or jerks of a point, (k,) each.
 
         Every row that is greater than its neighbours and near the greatest is followed between the rows; of a
         law's rows the greatest is returned as it is.
         """
-        sizes = np.linalg.norm(self.rates.of(order, at), axis=1)
+        sizes = self.sizes(order, at)
         if not self.closed:
             top = np.flatnonzero(sizes == sizes.max())[:1]
             return self.rates.input[top], sizes[top]
@@ -171,11 +175,6 @@ def driven(
         motion.linkage, circuit, inputs, speed=motion.speed if speed is None else speed, agree=motion.agree
     )
     return again, again.branch == branch
-
-
-def shown_inputs(cycle: Cycle, inputs: Floats) -> Floats:
-    """Inputs as people read them: degrees, or lengths."""
-    return np.degrees(inputs) if cycle.motion.linkage.unit_of(cycle.motion.input) == "rad" else inputs
 
 
 def input_text(motion: Motion, value: float) -> str:

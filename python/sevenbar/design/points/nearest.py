@@ -19,9 +19,8 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, Integers, finite_array
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.idle_link import refuse_idle_link
-from sevenbar.design.points.cone import least_greatest
+from sevenbar.design.points.box import least_greatest, least_squares_in
 from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, input_text
-from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, check_word
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.printing import Printed
@@ -170,8 +169,7 @@ def _timed(
     rates = _at(cycle, inputs)
     constant, gradient = rates.constant[0] - wanted, rates.gradient[0]
     if measure == "greatest":
-        solved = least_greatest(constant, gradient, *box)
-        at, bound = solved.at, solved.bound
+        at, bound, _ = least_greatest(constant, gradient, *box)
     else:
         at, bound = least_squares_in(constant, gradient, *box)
     return NearestPath(cycle, measure, at, wanted, rates.of("position", at), inputs, bound, 1, 1)
@@ -181,10 +179,8 @@ def _untimed(cycle: Cycle, wanted: Floats, low: Floats, high: Floats, progress: 
     """Nearest rows and least squares in turn from a grid of starts; the best ends followed between rows."""
     grid = np.stack(np.meshgrid(*np.linspace(low, high, STARTS).T, indexing="ij"), axis=-1).reshape(-1, 3)
     starts = np.unique(grid, axis=0)
-    course, unit = (
-        SearchCourse(len(starts) + min(FOLLOWED, len(starts)), progress),
-        cycle.motion.linkage.length_unit,
-    )
+    course = SearchCourse(len(starts) + min(FOLLOWED, len(starts)), progress)
+    unit = cycle.motion.linkage.length_unit
     ends: list[tuple[float, Floats]] = []
     for start in starts:
         ends.append(_alternated(cycle, wanted, start, low, high))

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Booleans, Floats
-from sevenbar.design.points.cone import lower_bound
+from sevenbar.design.points.box import lower_bound
 from sevenbar.design.points.cycle import ORDERS, Cycle
 
 #: Steps of Newton's method; each doubles the digits, of which the interior-point method gives the first four.

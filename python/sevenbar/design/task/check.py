@@ -21,11 +21,10 @@ from sevenbar.design.candidates import (
     within_limits,
 )
 from sevenbar.design.task.loop import TaskLoop
-from sevenbar.design.task.match import Placing
 from sevenbar.design.task.musts import FAULTS, pose_rooms, room_unit
+from sevenbar.design.task.placing import Placing, moved, standing
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.solve import Solved
-from sevenbar.design.task.standing import moved, standing
 from sevenbar.design.task.task import FigureMust, Most
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted

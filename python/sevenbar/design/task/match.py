@@ -1,11 +1,4 @@
-"""Wanted points and a curve of rows: the best order-keeping match, and the best place in space.
-
-The rigid motion that brings points P_j nearest to others w_j has the rotation of the singular vectors of
-`sum (w_j - w)(P_j - P)^T` (Kabsch); with s the singular values, the last with the sign of the determinant,
-the squares left are `|w|^2 + |P|^2 - 2 s`, s = s1 + s2 + s3, and with a free scale `|w|^2 - s^2 / |P|^2`.
-
-Source: docs/theory_design.md, (28).
-"""
+"""The best order-keeping match of wanted points with a curve of rows, placed in space where it may be."""
 
 from __future__ import annotations
 
@@ -15,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
+from sevenbar.design.task.placing import STILL, Placing, placed, turns
 
 #: Places along the wanted path, and along a curve, at which shapes are compared.
 SHAPE, CURVE = 24, 96
@@ -30,58 +24,12 @@ ROUNDS = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Placing:
-    """A similarity: `scale * rotation @ P + shift`."""
-
-    rotation: Floats
-    shift: Floats
-    scale: float = 1.0
-
-    def put(self, places: Floats) -> Floats:
-        """Places (.., 3) as they are moved."""
-        return np.asarray(self.scale * places @ self.rotation.T + self.shift)
-
-    def back(self, places: Floats) -> Floats:
-        """Places (.., 3) as they were before."""
-        return np.asarray((places - self.shift) @ self.rotation / self.scale)
-
-
-STILL = Placing(np.eye(3), np.zeros(3))
-
-
-@dataclass(frozen=True, eq=False)
 class Match:
     """Rows (n,) of a curve matched with the wanted points, the placing, and the mean square left."""
 
     rows: Integers
     placing: Placing
     error: float
-
-
-def placed(wanted: Floats, found: Floats, *, scaled: bool = False, shares: Floats | None = None) -> Placing:
-    """The similarity that brings `found` (n, 3) nearest to `wanted` (n, 3); `scaled` where it may scale.
-
-    Squares count by their `shares` (n,), alike where none are given.
-    """
-    share = np.ones((len(wanted), 1)) if shares is None else shares[:, None]
-    far, near = ((share * places).sum(axis=0) / share.sum() for places in (wanted, found))
-    root = np.sqrt(share)
-    rotation, scale, _ = _turns((root * (wanted - far))[None], (root * (found - near))[None], scaled=scaled)
-    turn, size = rotation[0], float(scale[0])
-    return Placing(turn, far - size * turn @ near, size)
-
-
-def _turns(wanted: Floats, found: Floats, *, scaled: bool) -> tuple[Floats, Floats, Floats]:
-    """Rotations (m, 3, 3), scales (m,) and squares left (m,) for centred sets (m or 1, n, 3)."""
-    left, sizes, right = np.linalg.svd(np.swapaxes(wanted, 1, 2) @ found)
-    sign = np.sign(np.linalg.det(left @ right))
-    left[:, :, 2] *= sign[:, None]
-    total = sizes[:, 0] + sizes[:, 1] + sign * sizes[:, 2]
-    own, other = (wanted**2).sum(axis=(1, 2)), (found**2).sum(axis=(1, 2))
-    if scaled:
-        spread = np.maximum(other, np.finfo(float).tiny)
-        return left @ right, total / spread, own - total**2 / spread
-    return left @ right, np.ones_like(total), own + other - 2 * total
 
 
 def in_order(curve: Floats, wanted: Floats, *, closed: bool) -> tuple[Integers, float]:
@@ -206,7 +154,7 @@ def _by_shape(
     every = np.concatenate(stretches)
     middle = every.mean(axis=1, keepdims=True)
     far = own.mean(axis=0)
-    rotation, scale, left = _turns((own - far)[None], every - middle, scaled=scaled)
+    rotation, scale, left = turns((own - far)[None], every - middle, scaled=scaled)
     i = int(left.argmin())
     turn, size = rotation[i], float(scale[i])
     return Placing(turn, far - size * turn @ middle[i, 0], size)

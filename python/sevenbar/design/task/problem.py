@@ -23,10 +23,16 @@ from sevenbar.arrays import Floats
 from sevenbar.design.candidates import Fault
 from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.match import STILL, Placing, placed
 from sevenbar.design.task.musts import FAULTS, Rooms, pose_rooms
+from sevenbar.design.task.placing import (
+    STILL,
+    Placing,
+    left_jacobian,
+    placed,
+    rigid_moves,
+    rotation_of_vector,
+)
 from sevenbar.design.task.rssr import loop_of
-from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
 from sevenbar.design.task.task import (
     DesignTask,
     DwellWant,
@@ -316,11 +322,11 @@ class TaskProblem:
         if self._turned:
             return self._moved(z)
         own = self._places()
-        shares = [np.full(len(found[i]), (one.weight / one.unit) ** 2 / one.count) for i, one in own]
+        shares = [(one.weight / one.unit) ** 2 / one.count for _, one in own]
         return placed(
             np.concatenate([one.places.reshape(-1, 3) for _, one in own]),
             np.concatenate([found[i] for i, _ in own]),
-            shares=np.concatenate(shares),
+            shares=np.repeat(shares, [len(found[i]) for i, _ in own]),
         )
 
     def _placed(
@@ -348,22 +354,17 @@ class TaskProblem:
         slopes: list[Floats],
     ) -> None:
         """Takes off the slopes what a small rigid motion of all places does."""
-        puts = [placing.put(parts[i][0]) for i, _ in own]
-        every = np.concatenate(puts)
-        weights = [
-            np.full(3 * len(put), one.weight / math.sqrt(one.count))
-            for put, (_, one) in zip(puts, own, strict=True)
-        ]
-        units = [np.full(3 * len(put), one.unit) for put, (_, one) in zip(puts, own, strict=True)]
-        weight = np.concatenate(weights)[:, None]
-        moves = weight / np.concatenate(units)[:, None] * rigid_moves(every - every.mean(axis=0))
+        counts = [one.count for _, one in own]
+        weight = np.repeat([one.weight / math.sqrt(one.count) for _, one in own], counts)[:, None]
+        unit = np.repeat([one.unit for _, one in own], counts)[:, None]
+        every = np.concatenate([placing.put(parts[i][0]) for i, _ in own])
+        moves = weight / unit * rigid_moves(every - every.mean(axis=0))
         basis, sizes, _ = np.linalg.svd(moves, full_matrices=False)
         basis = basis[:, sizes > FLAT * sizes[0]]
         joined = weight * np.concatenate([slopes[i] for i, _ in own])
         joined = (joined - basis @ (basis.T @ joined)) / weight
-        ends = np.cumsum([0, *(3 * len(put) for put in puts)])
-        for (i, _), first, last in zip(own, ends[:-1], ends[1:], strict=True):
-            slopes[i] = joined[first:last]
+        for (i, _), part in zip(own, np.split(joined, np.cumsum(counts)[:-1]), strict=True):
+            slopes[i] = part
 
     def _moved(self, z: Floats) -> Placing:
         """The placing moved by the last six unknowns: a turn about the middle of the places, and a shift."""

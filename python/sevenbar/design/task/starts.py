@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.design.task.match import STILL, Placing
 from sevenbar.design.task.passes import InputPass, passes
+from sevenbar.design.task.placing import STILL, Placing
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.wants.figures import figure_left
 from sevenbar.design.task.wants.places import PlacesWanted

@@ -6,8 +6,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.match import Placing
 from sevenbar.design.task.passes import InputPass
+from sevenbar.design.task.placing import Placing
 from sevenbar.design.task.task import DwellWant, FunctionWant
 from sevenbar.design.task.wants.wanted import Begun, Stations
 from sevenbar.kinematics.circuits.circuit import Circuit

@@ -8,14 +8,9 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.match import (
-    Placing,
-    by_length,
-    in_order,
-    matched,
-    placed,
-)
+from sevenbar.design.task.match import by_length, in_order, matched
 from sevenbar.design.task.passes import InputPass
+from sevenbar.design.task.placing import Placing, placed
 from sevenbar.design.task.task import PathWant, PoseWant
 from sevenbar.design.task.wants.wanted import Begun, Stations, Wanted
 from sevenbar.kinematics.circuits.circuit import Circuit
