@@ -249,15 +249,14 @@ class _Making:
         if len(cut) == 2:
             return [Chord(nodes[1], nodes[0], after[0], after[1])]
         if len(set(after)) == 2:
-            x, y = _middle_of(square, self.scheme.size)
-            (centre,) = self.plane.kinds_at(np.array([[x, y]])).tolist()
+            (centre,) = self.plane.kinds_at(np.array([_middle(_heart(square), self.scheme.size)])).tolist()
             if centre in after:
                 return [
                     Chord(nodes[(i + 1) % len(nodes)], node, kind, centre)
                     for i, (node, kind) in enumerate(zip(nodes, after, strict=True))
                     if kind != centre
                 ]
-        heart: Node = ((2 * square[0] + square[2], 2 * square[1] + square[2]),)
+        heart: Node = (_heart(square),)
         return [
             Chord(heart, node, kind, after[i - 1])
             for i, (node, kind) in enumerate(zip(nodes, after, strict=True))
@@ -299,12 +298,13 @@ def _quarters(square: Square) -> list[Square]:
     return [(x, y, half), (x + half, y, half), (x, y + half, half), (x + half, y + half, half)]
 
 
-def _middle_of(square: Square, size: int) -> tuple[float, float]:
-    return (square[0] + 0.5 * square[2]) / size, (square[1] + 0.5 * square[2]) / size
+def _heart(square: Square) -> Corner:
+    """The middle of a square, written twice as large."""
+    return 2 * square[0] + square[2], 2 * square[1] + square[2]
 
 
 def _middle(heart: Corner, size: int) -> tuple[float, float]:
-    """The place of a node in the middle of a square, which is written twice as large."""
+    """The place of such a node."""
     return heart[0] / (2 * size), heart[1] / (2 * size)
 
 

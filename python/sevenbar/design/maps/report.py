@@ -45,16 +45,12 @@ def as_dict(findings: MapFindings) -> dict[str, Any]:
             for axis in of.axes
         ],
         **of.held.as_dict,
-        "kinds": [
-            {"motion_type": kind.motion_type, "circuits": kind.circuits, "share": share}
-            for kind, share in of.areas.items()
-        ],
+        "kinds": [{**vars(kind), "share": share} for kind, share in of.areas.items()],
         "design": {
             x.name: design.x,
             y.name: design.y,
             "inside": design.inside,
-            "motion_type": design.kind.motion_type,
-            "circuits": design.kind.circuits,
+            **vars(design.kind),
             "changes": [_step_dict(step) for step in design.steps],
         },
         "precision": {"tolerance": of.tolerance, "widest_hidden": of.widest, "open_area": of.open},

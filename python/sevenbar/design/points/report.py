@@ -21,7 +21,7 @@ from sevenbar.kinematics.loop.columns import joint_column, unit_in_column
 from sevenbar.reporting.files import Files, Report, columns_file, figure_files, json_file, text_file
 from sevenbar.reporting.page import Facts, number_table, opening, page
 from sevenbar.reporting.shown import drive_text
-from sevenbar.text.listed import listed
+from sevenbar.text.listed import named
 from sevenbar.text.printing import text_of
 from sevenbar.text.words import retold, say
 
@@ -67,7 +67,7 @@ def least_text(found: LeastPoint) -> RenderableType:
             "{status} in {steps} steps, round {round}: primal {primal:.7g}, dual {dual:.7g} {unit} at "
             "{rows} rows; then Newton's method",
             round=found.rounds, unit=unit, rows=len(solver.duals),
-            **{key: getattr(solver, key) for key in ("status", "steps", "primal", "dual")},
+            **named(solver, "status", "steps", "primal", "dual"),
         )  # fmt: skip
         facts.add("Clarabel", what)
     facts.add_all(("note", note) for note in notes(found.cycle))
@@ -206,41 +206,36 @@ def as_dict(found: LeastPoint | NearestPath | Inertia) -> dict[str, Any]:
     }
 
 
-def _own(found: object, *keys: str) -> dict[str, Any]:
-    """Values of a result by their own names."""
-    return {key: listed(getattr(found, key)) for key in keys}
-
-
 def _least_dict(found: LeastPoint) -> dict[str, Any]:
     solver = found.solver
     return {
-        **_own(found, "link", "of", "measure"),
+        **named(found, "link", "of", "measure"),
         "box": np.stack([found.low, found.high], axis=1).tolist(),
-        **_own(found, "at", "value"),
+        **named(found, "at", "value"),
         "lower_bound": found.bound,
-        **_own(found, "gap", "relative_gap", "optimal"),
+        **named(found, "gap", "relative_gap", "optimal"),
         "whole_cycle": found.cycle.closed,
-        **_own(found, "unit", "inputs", "weights", "sides", "free"),
-        "before": [_own(point, "name", "at", "value") for point in found.before],
+        **named(found, "unit", "inputs", "weights", "sides", "free"),
+        "before": [named(point, "name", "at", "value") for point in found.before],
         "rounds": found.rounds,
-        "clarabel": solver and _own(solver, "status", "steps", "primal", "dual", "residual"),
+        "clarabel": solver and named(solver, "status", "steps", "primal", "dual", "residual"),
     }
 
 
 def _nearest_dict(found: NearestPath) -> dict[str, Any]:
     return {
-        **_own(found, "link", "measure", "at"),
+        **named(found, "link", "measure", "at"),
         "places": len(found.wanted),
-        **_own(found, "rms", "greatest"),
+        **named(found, "rms", "greatest"),
         "lower_bound": found.bound,
-        **_own(found, "starts", "agreeing"),
+        **named(found, "starts", "agreeing"),
     }
 
 
 def _inertia_dict(found: Inertia) -> dict[str, Any]:
     ends = {"highest": int(found.torque.argmax()), "lowest": int(found.torque.argmin())}
     return {
-        **_own(found, "gravity", "unit"),
+        **named(found, "gravity", "unit"),
         "period": found.cycle.period,
         **{
             word: {"value": float(found.torque[row]), "at": float(found.input[row])}
@@ -249,7 +244,7 @@ def _inertia_dict(found: Inertia) -> dict[str, Any]:
         "mean": found.mean,
         "masses": [
             {
-                **_own(mass, "name", "link", "at", "mass"),
+                **named(mass, "name", "link", "at", "mass"),
                 "greatest_force": float(sizes.max()),
                 "least_force": float(sizes.min()),
             }

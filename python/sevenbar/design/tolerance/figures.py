@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.tolerance.linear import Linear
-from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
+from sevenbar.design.tolerance.samples import MonteCarlo
 from sevenbar.design.tolerance.words import output_unit, output_values, output_words
 from sevenbar.drawing.figure import headline, key_below, page_figure, tidy
 from sevenbar.drawing.names import quantity_label, short
@@ -61,13 +61,16 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
     with styled():
         figure = page_figure(6.4 if len(passes) == 1 else 8.4, 4.6, pads=(0.04, 0.06))
         grid = figure.subplots(1, len(passes), sharey=True, squeeze=False)[0]
+        found = linear.found
+        what, unit = ("angle", "deg") if found.input_turns else ("position", found.linkage.length_unit)
+        label = quantity_label(found.input_name, what, unit)
         for axes, (name, rows) in zip(grid, passes, strict=True):
             _band(axes, linear, exact, rows)
-            axes.set_xlabel(_input_label(linear))
+            axes.set_xlabel(label)
             axes.grid(lw=0.6)
             axes.set_axisbelow(True)
             axes.margins(x=0)
-            if linear.found.input_turns:
+            if found.input_turns:
                 axes.xaxis.set_major_locator(DegreeLocator(9))
             if name:
                 axes.set_title(name, fontsize=letters())
@@ -79,13 +82,6 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
         headline(figure, f"{short(linear.found.linkage.heading, 60)}\n{what}")
         tidy(figure)
     return figure
-
-
-def _input_label(linear: Linear) -> str:
-    found = linear.found
-    if found.input_turns:
-        return quantity_label(found.input_name, "angle", "deg")
-    return quantity_label(found.input_name, "position", found.linkage.length_unit)
 
 
 def _passes(linear: Linear) -> list[tuple[str, Integers]]:
@@ -123,15 +119,12 @@ def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) 
     axes.plot(places, sigma, color=LINEAR, lw=1.5, label=say("linear, 3 standard deviations"))
     axes.plot(places, -sigma, color=LINEAR, lw=1.5)
     if exact is not None:
-        names = {
-            LEVELS[0]: say("Monte Carlo, 99.73 % between"),
-            LEVELS[1]: say("Monte Carlo, 95 % between"),
-        }
-        styles = {LEVELS[0]: (0, (4, 2)), LEVELS[1]: (0, (1.2, 1.2))}
-        for level, (low, high) in {LEVELS[0]: (0, 4), LEVELS[1]: (1, 3)}.items():
-            axes.plot(
-                places, shown(exact.quantiles[low]), color=EXACT, lw=1.2, ls=styles[level], label=names[level]
-            )
-            axes.plot(places, shown(exact.quantiles[high]), color=EXACT, lw=1.2, ls=styles[level])
+        between = (
+            (0, 4, (0, (4, 2)), say("Monte Carlo, 99.73 % between")),
+            (1, 3, (0, (1.2, 1.2)), say("Monte Carlo, 95 % between")),
+        )
+        for low, high, dashes, label in between:
+            axes.plot(places, shown(exact.quantiles[low]), color=EXACT, lw=1.2, ls=dashes, label=label)
+            axes.plot(places, shown(exact.quantiles[high]), color=EXACT, lw=1.2, ls=dashes)
         axes.plot(places, shown(exact.quantiles[2]), color=EXACT, lw=1.0, label=say("Monte Carlo, median"))
     axes.axhline(0.0, color="#505050", lw=0.6, zorder=1)
