@@ -10,7 +10,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.check import TaskDesign
-from sevenbar.design.task.musts import pose_rooms, room_unit
+from sevenbar.design.task.musts import pose_rooms, room_scale
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, Want
 from sevenbar.design.task.wants.places import PlacesWanted
@@ -85,10 +85,10 @@ class DesignAlong:
         own = self.design.solution.seed.own[place]
         first, second = want.zeros if isinstance(want, FunctionWant) else (0.0, _level(want))
         zeros = float(own[0]) if first is None else first, float(own[-1]) if second is None else second
-        drive = self.loop.linkage.drive
-        turns = self.loop.linkage.turns(drive.joint), self.loop.linkage.turns(drive.output)
+        linkage = self.loop.linkage
         first, second = (
-            float(short_way(zero)) if turn else zero for zero, turn in zip(zeros, turns, strict=True)
+            float(short_way(zero)) if linkage.turns(column) else zero
+            for zero, column in zip(zeros, (linkage.drive.joint, linkage.drive.output), strict=True)
         )
         return first, second
 
@@ -130,13 +130,13 @@ class DesignAlong:
         for number, way in enumerate(self.ways):
             here = self.loop.here(self.values, way.q)
             for place, room in pose_rooms(self.loop, self.task.musts):
-                scale = math.degrees(1) if self.room_unit(place) == "deg" else self.loop.size
+                _, scale = room_scale(self.task.musts[place], self.loop)  # type: ignore[arg-type]
                 found.append((place, number, way.inputs, scale * room(here)[0].min(axis=1)))
         return found
 
     def room_unit(self, place: int) -> str:
         """The unit of the room of a must about poses: "deg", or the length unit."""
-        return room_unit(self.task.musts[place], self.loop.linkage)  # type: ignore[arg-type]
+        return room_scale(self.task.musts[place], self.loop)[0]  # type: ignore[arg-type]
 
 
 def _level(want: Want) -> float | None:

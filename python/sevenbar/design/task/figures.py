@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.path_page import PathPage, path_page
 from sevenbar.design.task.task import DwellWant, FunctionWant, PathWant, PoseWant
-from sevenbar.design.task.words import must_words
+from sevenbar.design.task.words import must_words, shown_in
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, OTHER, styled
@@ -52,8 +52,7 @@ def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -
         wanted = np.zeros(want.samples)
     order = np.argsort(x)
     errors = np.interp(at, x[order], y[order]) - wanted
-    across, up = (_scale(linkage.turns(column)) for column in (drive.joint, drive.output))
-    units = [_unit(along, column) for column in (drive.joint, drive.output)]
+    (x_unit, across), (y_unit, up) = (shown_in(linkage, column) for column in (drive.joint, drive.output))
     points = len(at) <= MANY
     mark = (
         {"ls": "", "marker": "o", "mfc": "white", "ms": 5.0} if points else {"ls": (0, (4, 2.5)), "lw": 1.3}
@@ -69,9 +68,9 @@ def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -
         below.plot(across * at, up * errors, color=COMPUTED, **line)
         if np.abs(up * errors).max() < 1e-9:
             below.set_ylim(-1.0, 1.0)
-        top.set_ylabel(say("output reading [{unit}]", unit=units[1]))
-        below.set_ylabel(say("generated less\nwanted [{unit}]", unit=units[1]))
-        below.set_xlabel(say("input reading [{unit}]", unit=units[0]))
+        top.set_ylabel(say("output reading [{unit}]", unit=y_unit))
+        below.set_ylabel(say("generated less\nwanted [{unit}]", unit=y_unit))
+        below.set_xlabel(say("input reading [{unit}]", unit=x_unit))
         for axes in (top, below):
             axes.grid(lw=0.6)
             axes.xaxis.set_major_locator(MaxNLocator(9))
@@ -79,7 +78,7 @@ def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -
         figure.align_ylabels()
         reached = say(
             "error at most {greatest:.3g} {unit}, RMS {rms:.3g} {unit}",
-            greatest=up * met.greatest, rms=up * met.rms, unit=units[1],
+            greatest=up * met.greatest, rms=up * met.rms, unit=y_unit,
         )  # fmt: skip
         headline(figure, f"{_title(along)}\n{say('want {number}', number=place + 1)}: {reached}")
         handles, labels = top.get_legend_handles_labels()
@@ -123,7 +122,8 @@ def musts_figure(along: DesignAlong) -> Figure | None:
         return None
     linkage, task = along.task.draft.linkage, along.task
     units = list(dict.fromkeys(along.room_unit(place) for place, *_ in rooms))
-    across = _scale(linkage.turns(linkage.drive.joint))
+    joint = linkage.drive.joint
+    x_unit, across = shown_in(linkage, joint)
     with styled():
         figure = page_figure(6.4, 2.6 + 2.4 * len(units), pads=(0.05, 0.06))
         every = figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]
@@ -141,21 +141,10 @@ def musts_figure(along: DesignAlong) -> Figure | None:
             axes.grid(lw=0.6)
             axes.yaxis.set_major_locator(MaxNLocator(5))
             axes.legend(loc="best", frameon=True)
-        every[-1].set_xlabel(
-            say("input: {joint}", joint=f"{linkage.drive.joint} [{_unit(along, linkage.drive.joint)}]")
-        )
+        every[-1].set_xlabel(say("input: {joint}", joint=f"{joint} [{x_unit}]"))
         headline(figure, f"{_title(along)}\n{say('what must hold, with its room')}")
     return figure
 
 
 def _title(along: DesignAlong) -> str:
     return short(along.design.candidate.name, 60)
-
-
-def _scale(turns: bool) -> float:
-    return math.degrees(1.0) if turns else 1.0
-
-
-def _unit(along: DesignAlong, column: str) -> str:
-    linkage = along.task.draft.linkage
-    return "deg" if linkage.turns(column) else linkage.length_unit

@@ -16,11 +16,10 @@ from sevenbar.design.tables import design_table
 from sevenbar.design.task.front import ParetoFront
 from sevenbar.design.task.report import TaskDesigns, as_dict, task_report
 from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
-from sevenbar.design.task.words import task_facts, want_words
+from sevenbar.design.task.words import measure_unit, shown_in, task_facts, want_words
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, styled
-from sevenbar.kinematics.measures import measures_named
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, page
@@ -55,11 +54,11 @@ class FrontFound(TaskDesigns):
 def _axis(task: DesignTask, place: int) -> tuple[str, str]:
     want, linkage = task.wants[place], task.draft.linkage
     if isinstance(want, FigureWant):
-        (measure,) = measures_named([want.name])
         off = "" if isinstance(want.value, str) else "off_"
-        return f"{off}{want.name}", measure.unit(linkage, linkage.drive.output).replace("_", " ")
-    turns = isinstance(want, FunctionWant | DwellWant) and linkage.turns(linkage.drive.output)
-    return f"want_{place + 1}_greatest", "deg" if turns else linkage.length_unit
+        return f"{off}{want.name}", measure_unit(want.name, linkage)
+    of_output = isinstance(want, FunctionWant | DwellWant)
+    unit = shown_in(linkage, linkage.drive.output)[0] if of_output else linkage.length_unit
+    return f"want_{place + 1}_greatest", unit
 
 
 def front_report(
@@ -126,12 +125,10 @@ def front_figure(found: FrontFound) -> Any:
         axes.plot(values[:, 0], values[:, 1], color=COMPUTED, lw=0.8, ls=":", marker="o", ms=5.0, mfc="white")
         for i, (x, y) in enumerate(values, 1):
             axes.annotate(str(i), (x, y), xytext=(5, 5), textcoords="offset points")
-        labels = [
-            _label(front.task, place, name, unit)
-            for place, (name, unit) in zip(front.wants, found.axes, strict=True)
-        ]
-        axes.set_xlabel(labels[0])
-        axes.set_ylabel(labels[1])
+        pairs = zip(front.wants, found.axes, strict=True)
+        x_label, y_label = (_label(front.task, place, *axis) for place, axis in pairs)
+        axes.set_xlabel(x_label)
+        axes.set_ylabel(y_label)
         axes.xaxis.set_major_locator(MaxNLocator(7))
         axes.grid(lw=0.6)
         headline(figure, f"{short(found.name, 60)}\n{say('none is better in both')}")

@@ -12,7 +12,6 @@ from sevenbar.arrays import Floats
 from sevenbar.design.candidates import Fault
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.task import Apart, InBox, InCone, InRange, Must, PoseMust
-from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.rods import distance_slopes
 from sevenbar.kinematics.loop.stops import Three
 from sevenbar.kinematics.ranges.ball_angle import has_length, line_angles, rod
@@ -32,10 +31,10 @@ def pose_rooms(loop: TaskLoop, musts: Sequence[Must]) -> list[tuple[int, Callabl
     return [(i, _ROOMS[type(must)](loop, must)) for i, must in enumerate(musts) if type(must) in _ROOMS]
 
 
-def room_unit(must: PoseMust, linkage: Linkage) -> str:
-    """The unit in which people read the room of a must about poses: "deg", or the length unit."""
-    turns = isinstance(must, InCone) or (isinstance(must, InRange) and linkage.turns(must.column))
-    return "deg" if turns else linkage.length_unit
+def room_scale(must: PoseMust, loop: TaskLoop) -> tuple[str, float]:
+    """The unit in which people read the room of a must about poses, and what 1 of the room is there."""
+    turns = isinstance(must, InCone) or (isinstance(must, InRange) and loop.linkage.turns(must.column))
+    return ("deg", math.degrees(1.0)) if turns else (loop.linkage.length_unit, float(loop.size))
 
 
 def _range(loop: TaskLoop, must: InRange) -> Callable[[Here], Rooms]:
@@ -107,7 +106,6 @@ def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
 def _apart(loop: TaskLoop, must: Apart) -> Callable[[Here], Rooms]:
     count = len(loop.linkage.joints)
     rods = [(loop.joint(k - 1, ahead=True), loop.joint(k % count, ahead=False)) for k in must.links]
-
     ends = [*rods[0], *rods[1]]
 
     def rooms(here: Here) -> Rooms:

@@ -22,7 +22,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.candidates import Fault
 from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
-from sevenbar.design.task.loop import Here, TaskLoop
+from sevenbar.design.task.loop import Here, TaskLoop, loop_of
 from sevenbar.design.task.musts import FAULTS, Rooms, pose_rooms
 from sevenbar.design.task.placing import (
     STILL,
@@ -32,7 +32,6 @@ from sevenbar.design.task.placing import (
     rigid_moves,
     rotation_of_vector,
 )
-from sevenbar.design.task.rssr import loop_of
 from sevenbar.design.task.task import (
     DesignTask,
     DwellWant,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
@@ -19,7 +19,7 @@ from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
 from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust
-from sevenbar.design.task.words import must_words, task_facts, want_words
+from sevenbar.design.task.words import must_words, shown_in, task_facts, want_words
 from sevenbar.drawing.configuration import configuration
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.page import Facts, page
@@ -74,20 +74,16 @@ def design_figures(task: DesignTask, design: TaskDesign) -> dict[str, float]:
     along = DesignAlong(task, design)
     linkage = task.draft.linkage
     for number, ((place, want, _), met) in enumerate(zip(along.wants, design.met, strict=True)):
-        unit, scale = ("deg", 180 / math.pi) if met.unit == "rad" else (met.unit, 1.0)
+        unit, scale = met.shown
         own = f"want_{place + 1}_" if len(task.wants) > 1 else ""
         if own:
             figures[f"{own}greatest_{unit}"] = met.greatest * scale
             figures[f"{own}rms_{unit}"] = met.rms * scale
         if isinstance(want, FunctionWant):
-            zeros = along.zeros(number)
-            for key, zero, column in zip(
-                ("input_zero", "output_zero"), zeros, (linkage.drive.joint, linkage.drive.output), strict=True
-            ):
-                turns = linkage.turns(column)
-                figures[f"{own}{key}_{'deg' if turns else linkage.length_unit}"] = (
-                    math.degrees(zero) if turns else zero
-                )
+            ends = (("input", linkage.drive.joint), ("output", linkage.drive.output))
+            for (key, column), zero in zip(ends, along.zeros(number), strict=True):
+                of_column, times = shown_in(linkage, column)
+                figures[f"{own}{key}_zero_{of_column}"] = zero * times
         if isinstance(want, DwellWant):
             figures[f"{own}level_{unit}"] = along.zeros(number)[1] * scale
     figures |= design.figures
@@ -106,33 +102,31 @@ def task_report(
     for place in range(count):
         name = f"design_{place + 1}"
         files[f"{name}.toml"] = toml[f"{name}.toml"]
-        files |= figure_files(f"{name}_linkage", formats, partial(_of_linkage, place=place))
-        for number, (want, _) in enumerate(task.sampled):
-            files |= figure_files(
-                f"{name}_want_{want + 1}", formats, partial(_of_want, place=place, number=number)
-            )
+        drawn: dict[str, Callable[[DesignTask, TaskDesign], Any]] = {"linkage": _linkage}
+        drawn |= {f"want_{want + 1}": partial(_want, number=i) for i, (want, _) in enumerate(task.sampled)}
         if any(isinstance(must, PoseMust) for must in task.musts):
-            files |= figure_files(f"{name}_musts", formats, partial(_of_musts, place=place))
+            drawn["musts"] = _musts
+        for what, draw in drawn.items():
+            files |= figure_files(f"{name}_{what}", formats, partial(_drawn, place=place, draw=draw))
     return Report(text, as_dict, files | {name: toml[name] for name in ("summary.csv", "summary.json")})
 
 
-def _of_linkage(found: TaskDesigns, *, place: int) -> Any:
-    if place >= len(found.found.designs):
-        return None
-    own = found.found.designs[place].candidate
-    return configuration(own.draft.linkage.motion(CHECK_SAMPLES), own.circuit)
+def _drawn(found: TaskDesigns, *, place: int, draw: Callable[[DesignTask, TaskDesign], Any]) -> Any:
+    """A figure of a design, if there are as many."""
+    designs = found.found.designs
+    return draw(found.task, designs[place]) if place < len(designs) else None
 
 
-def _of_want(found: TaskDesigns, *, place: int, number: int) -> Any:
-    if place >= len(found.found.designs):
-        return None
-    return want_figure(DesignAlong(found.task, found.found.designs[place]), number)
+def _linkage(task: DesignTask, design: TaskDesign) -> Any:  # noqa: ARG001
+    return configuration(design.draft.linkage.motion(CHECK_SAMPLES), design.candidate.circuit)
 
 
-def _of_musts(found: TaskDesigns, *, place: int) -> Any:
-    if place >= len(found.found.designs):
-        return None
-    return musts_figure(DesignAlong(found.task, found.found.designs[place]))
+def _want(task: DesignTask, design: TaskDesign, *, number: int) -> Any:
+    return want_figure(DesignAlong(task, design), number)
+
+
+def _musts(task: DesignTask, design: TaskDesign) -> Any:
+    return musts_figure(DesignAlong(task, design))
 
 
 def _facts(found: TaskDesigns) -> list[tuple[str, str]]:
@@ -208,7 +202,7 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
     met: list[tuple[str, list[str]]] = []
     for number, (place, _) in enumerate(task.sampled):
         mets = [design.met[number] for design in designs]
-        own, scale = ("deg", 180 / math.pi) if mets[0].unit == "rad" else (mets[0].unit, 1.0)
+        own, scale = mets[0].shown
         met += [
             (f"want {place + 1}\ngreatest\n[{own}]", [f"{one.greatest * scale:.4g}" for one in mets]),
             (f"want {place + 1}\nRMS\n[{own}]", [f"{one.rms * scale:.4g}" for one in mets]),

@@ -78,7 +78,7 @@ def want_words(want: Want, linkage: Linkage) -> str:
         case FigureWant():
             if isinstance(want.value, str):
                 return f"{want.name} {want.value}"
-            return f"{want.name} {want.value:g}{_unit_of(want.name, linkage)}"
+            return f"{want.name} {want.value:g} {measure_unit(want.name, linkage)}".rstrip()
         case DwellWant():
             level = "" if want.level is None else f" at {_value(want.level, linkage, drive.output)}"
             return f"{drive.output} still{level} over {_ends(np.array(want.inputs), linkage, drive.joint)}"
@@ -105,7 +105,8 @@ def must_words(must: Must, linkage: Linkage) -> str:
             return f"links {must.links[0]} and {must.links[1]} at least {must.least:g} {unit} apart"
         case FigureMust():
             ends = [(">=", must.least), ("<=", must.most)]
-            each = [f"{sign} {end:g}{_unit_of(must.name, linkage)}" for sign, end in ends if end is not None]
+            own = measure_unit(must.name, linkage)
+            each = [f"{sign} {end:g} {own}".rstrip() for sign, end in ends if end is not None]
             return f"{must.name} {' and '.join(each)}"
         case Most():
             return f"each residual of want {must.want + 1} at most {must.most:.3g}"
@@ -117,18 +118,22 @@ def _timed(want: PathWant | PoseWant) -> str:
     return ", at given inputs" + (" from a free start" if want.phase else "")
 
 
+def shown_in(linkage: Linkage, column: str) -> tuple[str, float]:
+    """The unit in which people read a column, and what 1 of it is there: degrees for angles."""
+    return ("deg", math.degrees(1.0)) if linkage.turns(column) else (linkage.length_unit, 1.0)
+
+
+def measure_unit(name: str, linkage: Linkage) -> str:
+    """The unit in which a measure is read; empty without one."""
+    (measure,) = measures_named([name])
+    return measure.unit(linkage, linkage.drive.output).replace("_", " ")
+
+
 def _ends(values: Floats, linkage: Linkage, column: str) -> str:
     first, last = (_value(float(v), linkage, column) for v in values)
     return f"{first.split()[0]} to {last}" if first != last else last
 
 
 def _value(value: float, linkage: Linkage, column: str) -> str:
-    if linkage.turns(column):
-        return f"{math.degrees(value):.6g} deg"
-    return f"{value:.6g} {linkage.length_unit}"
-
-
-def _unit_of(name: str, linkage: Linkage) -> str:
-    (measure,) = measures_named([name])
-    unit = measure.unit(linkage, linkage.drive.output).replace("_", " ")
-    return f" {unit}" if unit else ""
+    unit, scale = shown_in(linkage, column)
+    return f"{value * scale:.6g} {unit}"

@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import MonteCarlo
-from sevenbar.design.tolerance.words import output_unit, output_values, output_words
 from sevenbar.drawing.figure import headline, key_below, page_figure, tidy
 from sevenbar.drawing.names import quantity_label, short
 from sevenbar.drawing.space import measuring
@@ -42,9 +41,7 @@ def shares_figure(linear: Linear) -> Figure:
         for place, share in enumerate(shares):
             axes.annotate(f"{share:.1f} %", (share, place), (3, 0), textcoords="offset points", va="center")
         axes.set_xlim(0, 1.14 * max([*shares, 1e-9]))
-        axes.set_xlabel(
-            say("share in the variance over the cycle, {output} [%]", output=output_words(linear))
-        )
+        axes.set_xlabel(say("share in the variance over the cycle, {output} [%]", output=linear.words))
         label = axes.xaxis.label
         if label.get_window_extent(measuring(figure)).width > 0.7 * figure.bbox.width:
             label.set_text(label.get_text().replace(", ", ",\n", 1))
@@ -74,9 +71,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
                 axes.xaxis.set_major_locator(DegreeLocator(9))
             if name:
                 axes.set_title(name, fontsize=letters())
-        grid[0].set_ylabel(
-            say("deviation, {output} [{unit}]", output=output_words(linear), unit=output_unit(linear))
-        )
+        grid[0].set_ylabel(say("deviation, {output} [{unit}]", output=linear.words, unit=linear.shown_unit))
         key_below(figure, grid[0].get_legend_handles_labels()[0])
         what = say("what the tolerances do, circuit {number}", number=linear.found.circuit.index)
         headline(figure, f"{short(linear.found.linkage.heading, 60)}\n{what}")
@@ -110,7 +105,7 @@ def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) 
     )
 
     def shown(values: Floats) -> Floats:
-        return np.insert(output_values(linear, values)[rows], gaps, np.nan)
+        return np.insert(linear.shown(values)[rows], gaps, np.nan)
 
     turns = found.input_turns
     places = np.insert(np.degrees(x) if turns else x, gaps, np.nan)

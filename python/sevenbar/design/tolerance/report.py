@@ -16,7 +16,6 @@ from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.tolerances import CUT
-from sevenbar.design.tolerance.words import output_unit, output_values, output_words, shown_input
 from sevenbar.design.tolerance.worst import WorstCase
 from sevenbar.kinematics.loop.columns import unit_in_column
 from sevenbar.kinematics.measures import MEASURES
@@ -48,7 +47,7 @@ def text(findings: Findings) -> RenderableType:
     found = linear.found
     facts = Facts()
     circuit, turns = found.circuit, say(found.circuit.motion_type)
-    output = {"output": output_words(linear), "number": circuit.index, "motion_type": turns}
+    output = {"output": linear.words, "number": circuit.index, "motion_type": turns}
     facts.add("output", say("{output}, circuit {number} ({motion_type})", **output))
     unit = found.linkage.unit_of(found.input_name)
     facts.add("drive", drive_text(found.input_name, found.speed, unit))
@@ -58,13 +57,13 @@ def text(findings: Findings) -> RenderableType:
     if linear.distribution == "normal":
         errors = say("{errors}, the tolerance being {count:g} standard deviations", errors=errors, count=CUT)
     facts.add("errors", errors)
-    most = float(output_values(linear, linear.worst)[worst.at])
+    most = float(linear.shown(linear.worst)[worst.at])
     facts.add("worst case", _linear_text(linear, most, worst.at))
     facts.add("", _corner_text(worst))
     if tried := _tried_text(worst):
         facts.add("", tried)
     row = int(np.argmax(linear.deviation))
-    three = 3 * float(output_values(linear, linear.deviation)[row])
+    three = 3 * float(linear.shown(linear.deviation)[row])
     facts.add("3 sigma", _linear_text(linear, three, row))
     if exact is not None:
         facts.add("Monte Carlo", _samples_text(exact))
@@ -150,7 +149,7 @@ def tolerance_report(figures: Sequence[str] = ("png",)) -> Report[Findings]:
 def _dimensions(findings: Findings) -> dict[str, Any]:
     linear = findings.linear
     effects = linear.effects
-    greatest = output_values(linear, [effect.greatest for effect in effects])
+    greatest = linear.shown([effect.greatest for effect in effects])
     return {
         "dimension": [effect.dimension.name for effect in effects],
         "unit": [effect.dimension.unit for effect in effects],
@@ -167,16 +166,16 @@ def _deviation(findings: Findings) -> dict[str, Any]:
     unit = _suffix(linear)
     columns = {
         "input": linear.input,
-        f"worst_case_{unit}": output_values(linear, linear.worst),
-        f"corner_high_{unit}": output_values(linear, worst.high),
-        f"corner_low_{unit}": output_values(linear, worst.low),
-        f"deviation_{unit}": output_values(linear, linear.deviation),
+        f"worst_case_{unit}": linear.shown(linear.worst),
+        f"corner_high_{unit}": linear.shown(worst.high),
+        f"corner_low_{unit}": linear.shown(worst.low),
+        f"deviation_{unit}": linear.shown(linear.deviation),
     }
     if exact is not None:
-        columns[f"monte_carlo_mean_{unit}"] = output_values(linear, exact.mean)
-        columns[f"monte_carlo_deviation_{unit}"] = output_values(linear, exact.deviation)
+        columns[f"monte_carlo_mean_{unit}"] = linear.shown(exact.mean)
+        columns[f"monte_carlo_deviation_{unit}"] = linear.shown(exact.deviation)
         for level, quantile in zip(LEVELS, exact.quantiles, strict=True):
-            columns[f"monte_carlo_q{100 * level:g}_{unit}"] = output_values(linear, quantile)
+            columns[f"monte_carlo_q{100 * level:g}_{unit}"] = linear.shown(quantile)
     return columns
 
 
@@ -185,18 +184,18 @@ def _sensitivities(findings: Findings) -> dict[str, Any]:
     slopes = {"input": linear.input}
     for dimension, column in zip(linear.found.dimensions, linear.slopes.T, strict=True):
         per = f"{_suffix(linear)}_per_{unit_in_column(dimension.unit) or 'one'}"
-        slopes[f"{dimension.name}_{per}"] = output_values(linear, column)
+        slopes[f"{dimension.name}_{per}"] = linear.shown(column)
     return slopes
 
 
 def _suffix(linear: Linear) -> str:
-    return unit_in_column(output_unit(linear))
+    return unit_in_column(linear.shown_unit)
 
 
 def _linear_text(linear: Linear, value: float, row: int) -> str:
     """An estimate by derivatives at a row."""
-    shown = f"± {value:.4g} {output_unit(linear)}"
-    return say("{value} at {input}, linear", value=shown, input=shown_input(linear, linear.input[row]))
+    shown = f"± {value:.4g} {linear.shown_unit}"
+    return say("{value} at {input}, linear", value=shown, input=linear.shown_input(linear.input[row]))
 
 
 def _corner_text(worst: WorstCase) -> str:
@@ -207,7 +206,7 @@ def _corner_text(worst: WorstCase) -> str:
     design = ", ".join(named)
     if more:
         design = say("{dimensions} and {count} more", dimensions=design, count=more)
-    high, low = (float(output_values(linear, side)[worst.at]) for side in (worst.high, worst.low))
+    high, low = (float(linear.shown(side)[worst.at]) for side in (worst.high, worst.low))
     if not (math.isfinite(high) and math.isfinite(low)):
         return say(
             "{open} of {tried} designs with every dimension at an end of its tolerance do not close there, "
@@ -243,13 +242,13 @@ def _tried_text(worst: WorstCase) -> str:
 
 def _samples_text(exact: MonteCarlo) -> str:
     linear = exact.linear
-    three = 3 * float(output_values(linear, exact.deviation).max())
+    three = 3 * float(linear.shown(exact.deviation).max())
     return say(
         "{count} designs (seed {seed}): 3 sigma ± {sigma}, greatest {seen:.4g}; exact over linear deviation "
         "{ratio}, bias {bias} of one",
         **named(exact, "count", "seed"),
-        sigma=f"{three:.4g} {output_unit(linear)}",
-        seen=float(output_values(linear, exact.greatest)),
+        sigma=f"{three:.4g} {linear.shown_unit}",
+        seen=float(linear.shown(exact.greatest)),
         ratio=_with_error(exact.ratio, exact.ratio_error),
         bias=_with_error(exact.bias, exact.bias_error),
     )
@@ -269,10 +268,10 @@ def _effects_table(linear: Linear) -> Table:
             effect.dimension.name,
             f"{effect.dimension.value:.7g}",
             f"± {effect.width:.4g} {effect.dimension.unit}".rstrip(),
-            f"± {float(output_values(linear, effect.greatest)):.4g} {output_unit(linear)}"
+            f"± {float(linear.shown(effect.greatest)):.4g} {linear.shown_unit}"
             if effect.greatest > least
             else say("none"),
-            shown_input(linear, effect.at) if effect.greatest > least else "-",
+            linear.shown_input(effect.at) if effect.greatest > least else "-",
             f"{100 * effect.share:.1f} %",
             effect.source,
         )

@@ -1,9 +1,9 @@
-"""Wants of a task file as values of a task."""
+"""The tables of a task file as values of a task: wants, musts, and values whose unit the linkage decides."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal, TypeVar, cast
 
@@ -13,33 +13,51 @@ from sevenbar.arrays import Floats
 from sevenbar.design.curve_table import read_curve
 from sevenbar.design.pose_table import read_poses
 from sevenbar.design.task.file.schema import (
+    ApartMust,
+    BoxMust,
+    ConeMust,
     DwellForm,
     FigureForm,
+    FigureMustForm,
     FunctionForm,
+    MostMust,
+    MustForm,
     PathForm,
     PoseForm,
     PosesForm,
+    RangeMust,
     StraightForm,
     WantForm,
 )
-from sevenbar.design.task.file.units import figure_value, reading, reading_span
 from sevenbar.design.task.file.values import Given
 from sevenbar.design.task.task import (
+    Apart,
     DwellWant,
+    FigureMust,
     FigureWant,
     FunctionWant,
+    InBox,
+    InCone,
+    InRange,
+    Most,
+    Must,
     PathWant,
     PoseWant,
     StraightWant,
     Want,
     linkage_size,
+    residual_unit,
 )
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.design.wish import chebyshev, read_pairs, wish_of_function
-from sevenbar.errors import RequestError, TableError
+from sevenbar.errors import RequestError, TableError, shown
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.kinematics.loop.rigid import inverse, pose, turns_about, unit
+from sevenbar.kinematics.measures import measures_named
+from sevenbar.text.amounts import amount_in
 from sevenbar.text.expression import function_of
+from sevenbar.text.units import examples_of
 
 T = TypeVar("T")
 
@@ -233,3 +251,85 @@ def _read(key: str, reader: Callable[[Path], T], path: Path) -> T:
         return reader(path)
     except TableError as error:
         raise RequestError(f"{key}: {error}") from None
+
+
+# ---- what must hold
+
+
+def must_of(form: MustForm, linkage: Linkage, wants: Sequence[Want]) -> Must:
+    """The must of a table; raises `RequestError` with the key at fault."""
+    match form:
+        case RangeMust():
+            column = linkage.column(form.joint, "joint")
+            return InRange(linkage.columns[column], *reading_span("range", form.range, linkage, column))
+        case ConeMust():
+            return InCone(form.joint, form.angle, form.seat, form.stud)
+        case BoxMust():
+            return InBox(form.low, form.high, _everything(linkage) if form.names is None else form.names)
+        case ApartMust():
+            return Apart(form.links, form.least)
+        case FigureMustForm():
+            ends = [
+                None if end is None else figure_value(key, end, linkage, form.name)
+                for key, end in (("least", form.least), ("most", form.most))
+            ]
+            return FigureMust(form.name, *ends)
+        case MostMust():
+            return Most(form.want - 1, _most(form, linkage, wants))
+
+
+def _everything(linkage: Linkage) -> tuple[str, ...]:
+    """All points and joints that are not of the ground alone."""
+    points = [point.name for point in linkage.points if point.link < len(linkage.joints)]
+    return tuple(dict.fromkeys([*points, *(joint.name for joint in linkage.joints)]))
+
+
+def _most(form: MostMust, linkage: Linkage, wants: Sequence[Want]) -> float:
+    """The most of a want's residuals, relative to what they are relative to."""
+    if form.want > len(wants):
+        # the task is checked for it
+        return 1.0
+    want = wants[form.want - 1]
+    unit = residual_unit(want, linkage)
+    match want:
+        case FunctionWant() | DwellWant():
+            return reading("most", form.most, linkage, _output(linkage)) / unit
+        case FigureWant():
+            # the task is checked for it
+            return 1.0
+        case _:
+            return amount("most", form.most, linkage.length_unit) / unit
+
+
+# ---- values whose unit the linkage decides
+
+
+def reading(key: str, value: Given, linkage: Linkage, column: int) -> float:
+    """A value of a joint [rad, or length]; a plain number is in degrees where it turns."""
+    return joint_value(value if isinstance(value, str) else repr(value), key, linkage, column)
+
+
+def reading_span(key: str, ends: tuple[Given, Given], linkage: Linkage, column: int) -> tuple[float, float]:
+    """The two ends of a joint's range [rad, or length]."""
+    return reading(key, ends[0], linkage, column), reading(key, ends[1], linkage, column)
+
+
+def figure_value(key: str, value: Given, linkage: Linkage, name: str) -> float:
+    """A value of a measure in the unit that it is read in; a number stays as it is."""
+    if not isinstance(value, str):
+        return value
+    try:
+        (measure,) = measures_named([name])
+    except RequestError:
+        # the name is checked with the task
+        return 0.0
+    unit = measure.unit(linkage, linkage.drive.output)
+    return amount(key, value, unit if unit in ("deg", linkage.length_unit) else "")
+
+
+def amount(key: str, value: Given, unit: str) -> float:
+    """A value in a unit; a number stays as it is."""
+    found = amount_in(value, unit) if isinstance(value, str) else value
+    if found is None:
+        raise RequestError(f"{key}: {shown(value)} does not fit; give {examples_of(unit)}")
+    return found
