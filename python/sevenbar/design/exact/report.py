@@ -18,6 +18,7 @@ from sevenbar.design.files import design_files
 from sevenbar.design.tables import design_table, plain_designs
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table, page
+from sevenbar.text.listed import named
 
 #: Closure errors, relative to the size of the linkage, below which nothing is to be seen but rounding.
 ROUNDING = 1e-9
@@ -79,11 +80,7 @@ def as_dict(designs: ExactDesigns) -> dict[str, Any]:
         "format": 1,
         "task": found.task,
         "source": designs.source,
-        "counted": found.counted,
-        "theory": found.theory,
-        "found": found.found,
-        "real": found.real,
-        "how": found.how,
+        **named(found, "counted", "theory", "found", "real", "how"),
         "dyads": [
             {
                 "joints": dyad.kind,

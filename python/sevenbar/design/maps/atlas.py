@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -24,20 +24,27 @@ from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress
 from sevenbar.text.words import say
 
-#: Lines of the grid along each dimension: of an RSSR, and of loops that take some 10 ms a point.
-GRID, LOOP_GRID = 61, 25
-
 #: Fewest and most lines of a grid.
 GRID_ENDS = (3, 1001)
 
-#: Inputs in a turn: an RSSR's extremes do not depend on them, a loop's are refined from them.
-SAMPLES, LOOP_SAMPLES = 8, 72
 
-#: Squares along a range where boundaries are followed: an RSSR's, and a loop's, whose points are dear.
-FINE, LOOP_FINE = 800, 0
+class Fineness(NamedTuple):
+    """A plane, and how finely it is searched.
 
-#: How near chords keep to boundaries [share of the ranges]: a bend of half the window's radius at `FINE`.
-TOLERANCE, LOOP_TOLERANCE = 1e-6, 1e-3
+    `lines` of the grid along each dimension; `fine` squares along a range where boundaries are followed, none
+    where points are dear; how near chords keep to boundaries [share of the ranges]; inputs in a turn.
+    """
+
+    plane: type[Plane]
+    lines: int
+    fine: int
+    tolerance: float
+    samples: int
+
+
+#: An RSSR, whose extremes do not depend on the inputs: boundaries to a bend of half the window's radius. And
+#: loops that take some 10 ms a point, whose extremes are refined from the inputs.
+RSSR, LOOP = Fineness(RssrPlane, 61, 800, 1e-6, 8), Fineness(LoopPlane, 25, 0, 1e-3, 72)
 
 #: Regions, holes and boundaries not wider than this are not drawn [tolerances]: where a boundary is a double
 #: one, as of a symmetric linkage, rounding leaves such specks on it.
@@ -178,17 +185,13 @@ def motion_map(
     column = linkage.input_column(input)
     driver = linkage.columns[column]
     places = {axis.dimension.place[0] for axis in axes}
-    plane: Plane
-    if draft.linkage.form == "rssr" and places <= {"rssr", "drive", "point"}:
-        lines = _lines(grid, GRID)
-        scheme = _scheme(lines, FINE, TOLERANCE)
-        plane = RssrPlane(draft, axes, driver, SAMPLES, progress)
-    else:
-        lines = _lines(grid, LOOP_GRID)
-        scheme = _scheme(lines, LOOP_FINE, LOOP_TOLERANCE)
-        plane = LoopPlane(draft, axes, driver, LOOP_SAMPLES, progress)
+    closed_form = linkage.form == "rssr" and places <= {"rssr", "drive", "point"}
+    kind, usual, fine, tolerance, samples = RSSR if closed_form else LOOP
+    lines = usual if grid is None else whole_number("grid", grid, *GRID_ENDS, "a count of lines")
+    scheme = _scheme(lines, fine, tolerance)
+    plane: Plane = kind(draft, axes, driver, samples, progress)
     # what is not covered is reported of the design itself
-    motion = linkage.motion(SAMPLES, input=driver)
+    motion = linkage.motion(RSSR.samples, input=driver)
     mesh = meshed(plane, scheme)
     speck = SPECK * scheme.tolerance
     lines_between = tuple(line for line in boundaries(mesh) if np.ptp(line.places, axis=0).max() > speck)
@@ -207,11 +210,6 @@ def motion_map(
         open=mesh.open,
         plane=plane,
     )
-
-
-def _lines(grid: int | None, default: int) -> int:
-    """How many lines a grid has, checked."""
-    return default if grid is None else whole_number("grid", grid, *GRID_ENDS, "a count of lines")
 
 
 def _scheme(lines: int, fine: int, tolerance: float) -> Scheme:

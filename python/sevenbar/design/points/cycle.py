@@ -93,12 +93,6 @@ class Cycle:
         """The rates at any inputs (n,) [rad, or length], at the motion's constant speed."""
         return link_rates(*driven(self.motion, self.circuit, self.branch, inputs), self.link)
 
-    def geometry(self) -> LinkRates:
-        """The rates at the cycle's rows for an input that moves by 1 in 1 s: derivatives by the input."""
-        return link_rates(
-            *driven(self.motion, self.circuit, self.branch, self.rates.input, speed=1.0), self.link
-        )
-
     @property
     def shares(self) -> Floats:
         """The share of each row (n,) in a mean by time: alike in a closed cycle, by trapezoids over a law."""
@@ -167,13 +161,9 @@ def cycle_of(
     return Cycle(motion, chosen, int(link), int(branch), rates)
 
 
-def driven(
-    motion: Motion, circuit: Circuit, branch: int, inputs: Floats, *, speed: float | None = None
-) -> tuple[Circuit, Booleans]:
+def driven(motion: Motion, circuit: Circuit, branch: int, inputs: Floats) -> tuple[Circuit, Booleans]:
     """A circuit at these inputs (n,) at constant speed, and which of its rows are those of a pass."""
-    again = driven_circuit(
-        motion.linkage, circuit, inputs, speed=motion.speed if speed is None else speed, agree=motion.agree
-    )
+    again = driven_circuit(motion.linkage, circuit, inputs, speed=motion.speed, agree=motion.agree)
     return again, again.branch == branch
 
 

@@ -117,7 +117,7 @@ def _drawn(found: TaskDesigns, *, place: int, draw: Callable[[DesignTask, TaskDe
     return draw(found.task, designs[place]) if place < len(designs) else None
 
 
-def _linkage(task: DesignTask, design: TaskDesign) -> Any:  # noqa: ARG001
+def _linkage(_: DesignTask, design: TaskDesign) -> Any:
     return configuration(design.draft.linkage.motion(CHECK_SAMPLES), design.candidate.circuit)
 
 

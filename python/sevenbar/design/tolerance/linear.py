@@ -22,7 +22,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, Integers, Words, counted
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
-from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
+from sevenbar.design.tolerance.tolerances import Tolerances
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.numbers.dimensions import Dimension
@@ -177,10 +177,7 @@ def linear_estimate(
     """
     found = of if isinstance(of, Sensitivities) else sensitivities(of)
     if not isinstance(given, Tolerances):
-        unit = found.linkage.length_unit
-        given = tolerances(
-            found.dimensions, given, length_unit=unit, opening=found.opening, following=found.followers
-        )
+        given = found.tolerances(given)
     given.deviations(distribution)
     status = found.clear(given.widths)
     place = found.place(output, quantity)
@@ -196,13 +193,5 @@ def linear_estimate(
             "tolerance: these are so great that the dead centres of the input may move past every row; "
             "give smaller ones"
         )
-    return Linear(
-        found,
-        given,
-        distribution,
-        one.owner if one.joint else one.name,
-        one.quantity,
-        status,
-        rows,
-        slopes[rows],
-    )
+    name = one.owner if one.joint else one.name
+    return Linear(found, given, distribution, name, one.quantity, status, rows, slopes[rows])

@@ -162,20 +162,16 @@ def monte_carlo(
     else:
         linear = linear_estimate(of, given, distribution=distribution, output=output, quantity=quantity)
     changes = linear.tolerances.drawn(count, linear.distribution, np.random.default_rng(seed))
-    designs = ChangedDesigns(linear)
     exact = np.empty((changes.shape[1], len(linear.rows)))
     gap = np.zeros(changes.shape[1], dtype=bool)
-    whole_turn = linear.found.circuit.goes_round
+    whole_turn = linear.found.circuit.goes_round and len(linear.rows) == len(linear.status)
     block = max(1, BLOCK // len(linear.rows))
     course = SearchCourse(len(exact), progress)
-    for start in range(0, len(exact), block):
-        part = slice(start, start + block)
-        moved = changes[:, part].T
-        q, determinants = designs.followed(moved)
-        exact[part] = designs.deviations(moved, q)
-        if whole_turn and len(linear.rows) == len(linear.status):
+    for part, found, determinants in ChangedDesigns(linear).in_blocks(changes.T, block):
+        exact[part] = found
+        if whole_turn:
             gap[part] = _gaps(determinants)
-        course.step(done=len(moved))
+        course.step(done=len(determinants))
     lost = gap | np.isnan(exact).any(axis=1)
     kept = exact[~lost]
     reasons, looked_at = _reasons(linear, changes.T[lost])

@@ -48,13 +48,7 @@ class ReadingsWanted:
             by[:, -1:] -= 1.0
         return self._apart(here.q[:, self._column] - self.readings - zero) / self.unit, by / self.unit
 
-    def begun(
-        self,
-        one: InputPass,
-        placing: Placing | None,
-        *,
-        scaled: bool,  # noqa: ARG002
-    ) -> list[Begun]:
+    def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:  # noqa: ARG002
         """From the best starts of the inputs."""
         fixed, inputs, outputs = self.stations.fixed, one.inputs, one.outputs
         phases, rows = one.begins(fixed, free=self._input_free)
@@ -75,13 +69,7 @@ class ReadingsWanted:
             for k in np.argsort(errors, kind="stable")[:TRIED]
         ]
 
-    def errors(
-        self,
-        circuit: Circuit,
-        rows: slice,
-        u: Floats,
-        placing: Placing,  # noqa: ARG002
-    ) -> Floats:
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:  # noqa: ARG002
         """What the output is off (n,) on rows of an analysis [rad, or length]."""
         return self._apart(
             circuit.output[rows] - self.readings - (u[-1] if self._output_free else self._zero)

@@ -131,13 +131,7 @@ class PlacesWanted:
         """Placings that bring every other row of a curve (rows, p, 3) to the first pose."""
         return [placed(self.places[0], curve[row]) for row in range(0, len(curve), FIRST_AT)]
 
-    def errors(
-        self,
-        circuit: Circuit,
-        rows: slice,
-        u: Floats,  # noqa: ARG002
-        placing: Placing,
-    ) -> Floats:
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:  # noqa: ARG002
         """The distances (n p,) on rows of an analysis [length]."""
         one = InputPass(circuit, np.arange(len(circuit.q))[rows], closed=False, turns=True)
         off = placing.put(self.curve(one)) - self.places

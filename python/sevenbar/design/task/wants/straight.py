@@ -58,13 +58,7 @@ class LineWanted:
             slopes = np.concatenate([slopes, (short * gone @ (by[-1] - by[0]) / size)[None]])
         return left / self.unit, slopes / self.unit
 
-    def begun(
-        self,
-        one: InputPass,
-        placing: Placing | None,
-        *,
-        scaled: bool,  # noqa: ARG002
-    ) -> list[Begun]:
+    def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:  # noqa: ARG002
         """On a pass that has the range of inputs, with the best line of its rows."""
         curve = one.named(self._name)
         found = []
@@ -78,13 +72,7 @@ class LineWanted:
             found.append(Begun(u, rows, error, placing))
         return found
 
-    def errors(
-        self,
-        circuit: Circuit,
-        rows: slice,
-        u: Floats,
-        placing: Placing,  # noqa: ARG002
-    ) -> Floats:
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:  # noqa: ARG002
         """The distances (n,) from the line on rows of an analysis [length]."""
         way = (u[3:] - u[:3]) / np.linalg.norm(u[3:] - u[:3])
         off = np.cross(circuit.point(self._name).position[rows] - u[:3], way)
