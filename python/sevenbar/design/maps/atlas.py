@@ -238,17 +238,17 @@ def _design(
     steps: list[NearestChange] = []
     for place, axis in enumerate(axes) if inside else ():
         crossings = _crossings(lines, here, place)
-        for way, sign in (("down", -1), ("up", 1)):
-            ahead = [
-                (sign * (at - here[place]), at, k) for at, *k in crossings if sign * (at - here[place]) > 0
-            ]
+        ways: tuple[tuple[Literal["down", "up"], int], ...] = (("down", -1), ("up", 1))
+        for way, sign in ways:
+            far = [(sign * (at - here[place]), at, k) for at, *k in crossings]
+            ahead = [one for one in far if one[0] > 0]
             if not ahead:
-                steps.append(NearestChange(axis, way, None, None))  # type: ignore[arg-type]
+                steps.append(NearestChange(axis, way, None, None))
                 continue
             _, at, (low, high) = min(ahead)
             exact = _exact(plane, here, place, at, tolerance)
             beyond = plane.kinds[high if sign > 0 else low]
-            steps.append(NearestChange(axis, way, float(axis.value(exact)), beyond))  # type: ignore[arg-type]
+            steps.append(NearestChange(axis, way, float(axis.value(exact)), beyond))
     return Design(values[0], values[1], inside, kind, tuple(steps))
 
 

@@ -145,7 +145,10 @@ def cycle_of(
     constant speed where rates are needed, and rows without a value.
     """
     chosen = chosen_circuit(motion, circuit)
-    _refuse_link(motion, link)
+    count = len(motion.linkage.joints)
+    if link == count:
+        raise RequestError(f"link: {link} is the ground, which stands still; give 1 to {count - 1}")
+    whole_number("link", link, 1, count - 1, "a link")
     if motion.law is None and order != "position" and not chosen.goes_round:
         raise RequestError(_unbounded(motion, chosen))
     branches = int(chosen.branch.max(initial=0)) + 1
@@ -171,13 +174,6 @@ def input_text(motion: Motion, value: float) -> str:
     """A value of the input as people read it: degrees, or lengths."""
     slides = not motion.linkage.turns(motion.input)
     return f"{value:.6g} {motion.linkage.length_unit}" if slides else f"{math.degrees(value):.6g} deg"
-
-
-def _refuse_link(motion: Motion, link: object) -> None:
-    count = len(motion.linkage.joints)
-    if link == count:
-        raise RequestError(f"link: {link} is the ground, which stands still; give 1 to {count - 1}")
-    whole_number("link", link, 1, count - 1, "a link")
 
 
 def link_rates(circuit: Circuit, rows: Booleans, link: int) -> LinkRates:

@@ -83,7 +83,8 @@ class DesignAlong:
         """
         want = self.task.wants[self.wants[place][0]]
         own = self.design.solution.seed.own[place]
-        first, second = want.zeros if isinstance(want, FunctionWant) else (0.0, _level(want))
+        level = want.level if isinstance(want, DwellWant) else 0.0
+        first, second = want.zeros if isinstance(want, FunctionWant) else (0.0, level)
         zeros = float(own[0]) if first is None else first, float(own[-1]) if second is None else second
         linkage = self.loop.linkage
         first, second = (
@@ -137,7 +138,3 @@ class DesignAlong:
     def room_unit(self, place: int) -> str:
         """The unit of the room of a must about poses: "deg", or the length unit."""
         return room_scale(self.task.musts[place], self.loop)[0]  # type: ignore[arg-type]
-
-
-def _level(want: Want) -> float | None:
-    return want.level if isinstance(want, DwellWant) else 0.0

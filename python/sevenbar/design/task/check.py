@@ -169,9 +169,9 @@ def _candidate(
         torn = _torn(model, number, solution, own)
         if torn is not None:
             return torn
-        places = isinstance(one, PlacesWanted)
-        figures = standing(solution.seed.placing, linkage.length_unit) if places and model.placed else {}
-        if places and model.placed and linkage.form == "drawn":
+        placed = isinstance(one, PlacesWanted) and model.placed
+        figures = standing(solution.seed.placing, linkage.length_unit) if placed else {}
+        if placed and linkage.form == "drawn":
             draft, figures = moved(draft, solution.seed.placing), {}
         unit = "deg" if one.turns else linkage.length_unit
         claim = Claim(solution.inputs[number], own[0].outputs, own[0].errors, unit, figures)

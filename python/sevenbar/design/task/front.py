@@ -25,15 +25,7 @@ from sevenbar.design.course import SearchCourse
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.contradictions import refuse_contradictions
 from sevenbar.design.task.search import STARTS, DesignsFound, designed, named
-from sevenbar.design.task.task import (
-    DesignTask,
-    FigureMust,
-    FigureWant,
-    Most,
-    Must,
-    Want,
-    residual_unit,
-)
+from sevenbar.design.task.task import DesignTask, FigureMust, FigureWant, Most, Must, Want, residual_unit
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.progress import Progress, silent
 

@@ -32,6 +32,12 @@ class Match:
     error: float
 
 
+def _with_lengths(curve: Floats, *, closed: bool) -> tuple[Floats, Floats]:
+    """The places of a curve, a closed one to its first place again, and the lengths along it."""
+    whole = np.concatenate([curve, curve[:1]]) if closed else curve
+    return whole, np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(whole, axis=0), axis=1))])
+
+
 def in_order(curve: Floats, wanted: Floats, *, closed: bool) -> tuple[Integers, float]:
     """Rows (n,) of a curve (rows, 3) nearest to wanted points while they follow each other, either way.
 
@@ -101,10 +107,8 @@ def by_length(curve: Floats, wanted: Floats, *, curve_closed: bool, closed: bool
     Near a sharp turn, where the nearest rows of points before and after it are the same, lengths tell which
     side is which. The best of all begins, both ways; `None` where the curve is too short.
     """
-    steps = np.linalg.norm(np.diff(wanted, axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(steps)])
-    whole = np.concatenate([curve, curve[:1]]) if curve_closed else curve
-    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(whole, axis=0), axis=1))])
+    _, along = _with_lengths(wanted, closed=False)
+    _, length = _with_lengths(curve, closed=curve_closed)
     if closed:
         # the lengths of a closed path are those of the curve, from its first point to its first again
         along *= length[-1] / (along[-1] + float(np.linalg.norm(wanted[-1] - wanted[0])))
@@ -162,7 +166,6 @@ def _by_shape(
 
 def _evenly(curve: Floats, count: int, *, closed: bool) -> tuple[Floats, float]:
     """Places (count, 3) at even lengths along a curve (rows, 3), and its length."""
-    whole = np.concatenate([curve, curve[:1]]) if closed else curve
-    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(whole, axis=0), axis=1))])
+    whole, length = _with_lengths(curve, closed=closed)
     at = np.linspace(0.0, length[-1], count, endpoint=not closed)
     return np.column_stack([np.interp(at, length, whole[:, k]) for k in range(3)]), float(length[-1])

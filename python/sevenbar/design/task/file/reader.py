@@ -120,6 +120,10 @@ class _Mistakes:
 def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) -> Draft:
     """The linkage that a task is about; `DescriptionError` where there is none."""
     given = raw.get("linkage")
+
+    def wrong(message: str) -> DescriptionError:
+        return DescriptionError([Problem("linkage", message)], source)
+
     if isinstance(given, dict):
         try:
             return Draft.of_tables(given, source, agree=agree)
@@ -137,22 +141,16 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
             "give a file in the folder of this one, as in 'rssr.toml', a name of the gallery, "
             "or a table [linkage]"
         )
-        raise DescriptionError([Problem("linkage", f"{what}; {hint}")], source)
+        raise wrong(f"{what}; {hint}")
     name = given.strip()
     path = folder / name
     if not path.exists() and name in gallery_names():
         return Draft.of(toml_text(name), name, agree=agree)
     if not path.is_file():
         near = suggestion(name, gallery_names())
-        raise DescriptionError(
-            [
-                Problem(
-                    "linkage",
-                    f"{shown(name)}: no such file in the folder of this one, nor such a name in the "
-                    f"gallery; {near}give one",
-                )
-            ],
-            source,
+        raise wrong(
+            f"{shown(name)}: no such file in the folder of this one, nor such a name in the gallery; {near}"
+            "give one"
         )
     return Draft.of(toml_text(path), str(path), agree=agree)
 

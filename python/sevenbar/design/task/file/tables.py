@@ -94,15 +94,11 @@ def _goal(form: FigureForm, linkage: Linkage) -> Way | float:
 
 
 def _function(form: FunctionForm, linkage: Linkage, folder: Path) -> FunctionWant:
-    ways = {"y": form.y, "pairs": form.pairs, "table": form.table}
-    given = [name for name, value in ways.items() if value is not None]
-    if len(given) != 1:
-        what = "y, pairs and table are missing" if not given else f"{' and '.join(given)} are given"
-        raise RequestError(f"{what}; give one of the three")
+    given = _one_of(form, "y", "pairs", "table")
     if form.y is None:
         for name in ("input", "output", "points"):
             if getattr(form, name) is not None:
-                raise RequestError(f"{name}: belongs to y; {given[0]} says it all, so leave it out")
+                raise RequestError(f"{name}: belongs to y; {given} says it all, so leave it out")
     columns = linkage.columns.index(linkage.drive.joint), _output(linkage)
     if form.y is not None:
         x, y = _of_formula(form, linkage, columns)
@@ -160,7 +156,7 @@ def _of_formula(form: FunctionForm, linkage: Linkage, columns: tuple[int, int]) 
 
 
 def _path(form: PathForm, linkage: Linkage, folder: Path) -> PathWant:
-    _one_of({"places": form.places, "table": form.table})
+    _one_of(form, "places", "table")
     inputs: Floats | None = None
     if form.table is not None:
         drive = linkage.drive.joint
@@ -185,7 +181,7 @@ def _of_key(error: RequestError, key: str) -> str:
 
 
 def _poses(form: PosesForm, linkage: Linkage, folder: Path) -> PoseWant:
-    _one_of({"poses": form.poses, "table": form.table})
+    _one_of(form, "poses", "table")
     inputs: Floats | None = None
     if form.table is not None:
         poses, inputs = _read("table", lambda path: read_poses(path, linkage), folder / form.table)
@@ -210,11 +206,16 @@ def _pose(key: str, form: PoseForm) -> Floats:
     return pose(Rotation.from_matrix(np.array(form.matrix)).as_matrix(), form.at)
 
 
-def _one_of(ways: dict[str, object]) -> None:
-    given = [name for name, value in ways.items() if value is not None]
+def _one_of(form: WantForm, *names: str) -> str:
+    """The one of some keys that a table has."""
+    given = [name for name in names if getattr(form, name) is not None]
     if len(given) != 1:
-        both = " and ".join(ways)
-        raise RequestError(f"{both} are {'both given' if given else 'missing'}; give one of the two")
+        how_many = {2: "two", 3: "three"}[len(names)]
+        both = "both " if len(names) == 2 else ""
+        missing = f"{', '.join(names[:-1])} and {names[-1]} are missing"
+        what = f"{' and '.join(given)} are {both}given" if given else missing
+        raise RequestError(f"{what}; give one of the {how_many}")
+    return given[0]
 
 
 def _timing(given: object, of_table: Floats | None, linkage: Linkage) -> Floats | None:

@@ -85,10 +85,10 @@ class PlacesWanted:
 
     def _timed(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
         assert self.timing is not None
-        found: list[Begun] = []
-        for phase, rows in zip(*one.begins(self.timing, free=self.phase), strict=True):
-            u = np.array([phase] if self.phase else [])
-            found.append(self._begun(u, rows, curve, placing))
+        found = [
+            self._begun(np.array([phase] * self.phase), rows, curve, placing)
+            for phase, rows in zip(*one.begins(self.timing, free=self.phase), strict=True)
+        ]
         return sorted(found, key=lambda begun: begun.error)[:1]
 
     def _begun(self, u: Floats, rows: Integers, curve: Floats, placing: Placing | None) -> Begun:
@@ -115,7 +115,9 @@ class PlacesWanted:
     def _poses(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
         """In order, the linkage placed so that some row takes the first pose."""
         n = len(self.places)
-        tried = [placing] if placing is not None else self._firsts(curve)
+        # that bring every other row of the curve to the first pose
+        firsts = (placed(self.places[0], curve[row]) for row in range(0, len(curve), FIRST_AT))
+        tried = firsts if placing is None else [placing]
         best: Begun | None = None
         for put in tried:
             rows, error = in_order(
@@ -126,10 +128,6 @@ class PlacesWanted:
         if best is None:
             return []
         return [self._begun(best.u, best.rows, curve, placing)]
-
-    def _firsts(self, curve: Floats) -> list[Placing]:
-        """Placings that bring every other row of a curve (rows, p, 3) to the first pose."""
-        return [placed(self.places[0], curve[row]) for row in range(0, len(curve), FIRST_AT)]
 
     def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:  # noqa: ARG002
         """The distances (n p,) on rows of an analysis [length]."""
