@@ -11,6 +11,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.idle_link import refuse_idle_link
+from sevenbar.design.task import task as kinds
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.must_contradictions import (
     NOT_RISING,
@@ -21,21 +22,7 @@ from sevenbar.design.task.must_contradictions import (
     value_flaw,
 )
 from sevenbar.design.task.musts import places_in
-from sevenbar.design.task.task import (
-    DesignTask,
-    DwellWant,
-    FigureMust,
-    FigureWant,
-    FunctionWant,
-    InBox,
-    InCone,
-    Most,
-    PathWant,
-    PoseMust,
-    PoseWant,
-    StraightWant,
-    Want,
-)
+from sevenbar.design.task.task import DesignTask, Want
 from sevenbar.design.task.wanted_path import turning_back, wanted_inputs, wanted_places
 from sevenbar.errors import NotCoveredError, Problem, RequestError, shown, suggestion
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -74,19 +61,19 @@ def contradictions(task: DesignTask) -> Iterator[Problem]:
     for table, number, flaws in found:
         for key, message in flaws:
             yield Problem(f"{table}[{number}]{key and '.' + key}", message)
-    about_poses = [i for i, must in enumerate(task.musts) if isinstance(must, PoseMust)]
+    about_poses = [i for i, must in enumerate(task.musts) if isinstance(must, kinds.PoseMust)]
     if task.wants and about_poses and not task.sampled:
         yield Problem(
             f"must[{about_poses[0] + 1}]",
             "is about poses, and measures alone are wanted; bound a measure of the whole circuit, as "
             "range:JOINT, ball_angle:JOINT or clearance, by a must with kind = 'figure'",
         )
-    places = [want for want in task.wants if isinstance(want, (PathWant, PoseWant))]
+    places = [want for want in task.wants if isinstance(want, (kinds.PathWant, kinds.PoseWant))]
     if task.placement != "fixed" and task.wants and not places:
         yield Problem(
             "placement", f"{task.placement!r} changes nothing: no path and no poses are wanted; leave it out"
         )
-    boxes = [i for i, must in enumerate(task.musts) if isinstance(must, InBox)]
+    boxes = [i for i, must in enumerate(task.musts) if isinstance(must, kinds.InBox)]
     if task.placement != "fixed" and boxes:
         yield Problem(
             f"must[{boxes[0] + 1}]",
@@ -105,7 +92,7 @@ def start_flaws(task: DesignTask) -> Iterator[Problem]:
     loop = TaskLoop(task.draft.holding(task.follow), task.names)
     circuits = loop.linkage.motion(OPENINGS).circuits
     for i, must in enumerate(task.musts):
-        if isinstance(must, InCone):
+        if isinstance(must, kinds.InCone):
             yield from _far_side(f"must[{i + 1}]", must, loop.linkage, circuits)
     q = closed_poses(loop, circuits)
     if q is None:
@@ -136,7 +123,7 @@ def closed_poses(loop: TaskLoop, circuits: Sequence[Circuit]) -> Floats | None:
 def _outside(task: DesignTask, loop: TaskLoop, q: Floats) -> Iterator[Problem]:
     """Points and joints that nothing moves, outside of the box in which they are to stay."""
     for i, must in enumerate(task.musts):
-        if not isinstance(must, InBox):
+        if not isinstance(must, kinds.InBox):
             continue
         numbers = places_in(loop, must)
         here = loop.here(loop.start, q)
@@ -152,7 +139,9 @@ def _outside(task: DesignTask, loop: TaskLoop, q: Floats) -> Iterator[Problem]:
                 )
 
 
-def _far_side(place: str, must: InCone, linkage: Linkage, circuits: Sequence[Circuit]) -> Iterator[Problem]:
+def _far_side(
+    place: str, must: kinds.InCone, linkage: Linkage, circuits: Sequence[Circuit]
+) -> Iterator[Problem]:
     """That a direction was left out of a cone and its rod is on the far side of the joint all along."""
     bend = ball_angle(linkage, must.joint, must.seat, must.stud)
     bends = [bend.at(circuit.q)[np.isfinite(circuit.q[:, bend.own]).all(axis=1)] for circuit in circuits]
@@ -225,12 +214,13 @@ def _owner(task: DesignTask, place: tuple[object, ...]) -> str | None:
 
 
 def _figure_names(task: DesignTask) -> list[str]:
-    return [one.name for one in (*task.wants, *task.musts) if isinstance(one, (FigureWant, FigureMust))]
+    figures = kinds.FigureWant, kinds.FigureMust
+    return [one.name for one in (*task.wants, *task.musts) if isinstance(one, figures)]
 
 
 def _used_points(task: DesignTask) -> set[str]:
-    used = {want.point for want in task.wants if isinstance(want, (PathWant, StraightWant))}
-    return used | {name for must in task.musts if isinstance(must, InBox) for name in must.names}
+    used = {want.point for want in task.wants if isinstance(want, (kinds.PathWant, kinds.StraightWant))}
+    return used | {name for must in task.musts if isinstance(must, kinds.InBox) for name in must.names}
 
 
 def _of_want(task: DesignTask, want: Want) -> Flaws:
@@ -238,7 +228,7 @@ def _of_want(task: DesignTask, want: Want) -> Flaws:
     yield from _FLAWS[type(want)](task, want)
 
 
-def _function(task: DesignTask, want: FunctionWant) -> Flaws:
+def _function(task: DesignTask, want: kinds.FunctionWant) -> Flaws:
     linkage = task.draft.linkage
     x, y = want.input, want.output
     if x.ndim != 1 or x.shape != y.shape or x.size < 2 or not np.isfinite([x, y]).all():
@@ -251,7 +241,7 @@ def _function(task: DesignTask, want: FunctionWant) -> Flaws:
     yield from _too_many(task, want, x.size, free)
 
 
-def _path(task: DesignTask, want: PathWant) -> Flaws:
+def _path(task: DesignTask, want: kinds.PathWant) -> Flaws:
     yield from _point(task.draft.linkage, want.point)
     rows = np.concatenate([want.places, want.places[:1]]) if want.closed else want.places
     try:
@@ -266,7 +256,7 @@ def _path(task: DesignTask, want: PathWant) -> Flaws:
     yield from _too_many(task, want, count, _placing(task) + want.phase)
 
 
-def _poses(task: DesignTask, want: PoseWant) -> Flaws:
+def _poses(task: DesignTask, want: kinds.PoseWant) -> Flaws:
     linkage = task.draft.linkage
     count = len(linkage.joints)
     if not 1 <= want.link < count:
@@ -294,12 +284,12 @@ def _poses(task: DesignTask, want: PoseWant) -> Flaws:
     yield from _too_many(task, want, count, _placing(task) + want.phase)
 
 
-def _phase(want: PathWant | PoseWant) -> Flaws:
+def _phase(want: kinds.PathWant | kinds.PoseWant) -> Flaws:
     if want.phase and want.timing is None:
         yield "phase", "there are no inputs whose start could be free; give timing, too"
 
 
-def _figure(task: DesignTask, want: FigureWant) -> Flaws:
+def _figure(task: DesignTask, want: kinds.FigureWant) -> Flaws:
     flaw = figure_flaw(task.draft.linkage, want.name)
     if flaw:
         yield "name", flaw
@@ -315,18 +305,18 @@ def _figure(task: DesignTask, want: FigureWant) -> Flaws:
         if flaw := value_flaw(task.draft.linkage, want.name, float(want.value)):
             yield "value", flaw
         for i, other in enumerate(task.wants[: task.wants.index(want)]):
-            if isinstance(other, FigureWant) and other.name == want.name and other.value != want.value:
+            if isinstance(other, kinds.FigureWant) and other.name == want.name and other.value != want.value:
                 yield "name", f"want {i + 1} wants {want.name}, too, and another value; leave one out"
 
 
-def _straight(task: DesignTask, want: StraightWant) -> Flaws:
+def _straight(task: DesignTask, want: kinds.StraightWant) -> Flaws:
     yield from _point(task.draft.linkage, want.point)
     yield from _range(task, want)
     if want.length is not None:
         yield from not_positive("length", want.length, "length")
 
 
-def _range(task: DesignTask, want: DwellWant | StraightWant) -> Flaws:
+def _range(task: DesignTask, want: kinds.DwellWant | kinds.StraightWant) -> Flaws:
     linkage, (low, high) = task.draft.linkage, want.inputs
     if want.samples < FEWEST_SAMPLES:
         yield "samples", f"{want.samples} are too few; give {FEWEST_SAMPLES} or more"
@@ -337,12 +327,12 @@ def _range(task: DesignTask, want: DwellWant | StraightWant) -> Flaws:
 
 
 _FLAWS: Mapping[type, Callable[[DesignTask, Any], Flaws]] = {
-    FunctionWant: _function,
-    PathWant: _path,
-    PoseWant: _poses,
-    FigureWant: _figure,
-    DwellWant: _range,
-    StraightWant: _straight,
+    kinds.FunctionWant: _function,
+    kinds.PathWant: _path,
+    kinds.PoseWant: _poses,
+    kinds.FigureWant: _figure,
+    kinds.DwellWant: _range,
+    kinds.StraightWant: _straight,
 }
 
 
@@ -380,7 +370,7 @@ def _placing(task: DesignTask) -> int:
 def _too_many(task: DesignTask, want: Want, conditions: int, own: int) -> Flaws:
     """More that must be met exactly than numbers could meet; `own` are the want's own free numbers."""
     place = [other is want for other in task.wants].index(True)
-    mosts = [must for must in task.musts if isinstance(must, Most)]
+    mosts = [must for must in task.musts if isinstance(must, kinds.Most)]
     if not any(must.want == place and must.most <= EXACT for must in mosts):
         return
     count = len(task.free) + own

@@ -9,19 +9,8 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.task.task import (
-    Apart,
-    DesignTask,
-    FigureMust,
-    FigureWant,
-    FunctionWant,
-    InBox,
-    InCone,
-    InRange,
-    Most,
-    Must,
-    PathWant,
-)
+from sevenbar.design.task import task as kinds
+from sevenbar.design.task.task import DesignTask, Must
 from sevenbar.errors import RequestError, no_joint, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.stops import Cone
@@ -114,7 +103,7 @@ def value_flaw(linkage: Linkage, name: str, value: float, key: str = "value") ->
     return ""
 
 
-def _range(task: DesignTask, must: InRange) -> Flaws:
+def _range(task: DesignTask, must: kinds.InRange) -> Flaws:
     linkage = task.draft.linkage
     try:
         column = linkage.column(must.column, "joint")
@@ -129,7 +118,7 @@ def _range(task: DesignTask, must: InRange) -> Flaws:
     # angles may be a turn further
     turn = math.tau if linkage.turns(column) else 0.0
     for i, want in enumerate(task.wants):
-        if not isinstance(want, FunctionWant) or name not in drive:
+        if not isinstance(want, kinds.FunctionWant) or name not in drive:
             continue
         which = drive.index(name)
         zero = want.zeros[which]
@@ -137,7 +126,7 @@ def _range(task: DesignTask, must: InRange) -> Flaws:
             yield "range", f"want {i + 1} needs {name} outside it; widen it, or want less"
     before = task.musts[: task.musts.index(must)]
     for i, other in enumerate(before):
-        if isinstance(other, InRange) and other.column == must.column:
+        if isinstance(other, kinds.InRange) and other.column == must.column:
             one, own = np.array([other.low]), np.array([must.low])
             if _beyond(one, must.low, must.high, turn) and _beyond(own, other.low, other.high, turn):
                 yield "range", f"has nothing in common with that of must {i + 1}; widen one of the two"
@@ -151,7 +140,7 @@ def _beyond(values: Floats, low: float, high: float, turn: float) -> bool:
     return bool(((values < low - slack) | (values > high + slack)).any())
 
 
-def _cone(task: DesignTask, must: InCone) -> Flaws:
+def _cone(task: DesignTask, must: kinds.InCone) -> Flaws:
     try:
         chosen(task.draft.linkage, must.joint, Cone(must.angle, must.seat, must.stud))
     except RequestError as error:
@@ -159,7 +148,7 @@ def _cone(task: DesignTask, must: InCone) -> Flaws:
         yield {"cone": "angle"}.get(key, key), message
 
 
-def _box(task: DesignTask, must: InBox) -> Flaws:
+def _box(task: DesignTask, must: kinds.InBox) -> Flaws:
     linkage = task.draft.linkage
     for axis, low, high in zip("xyz", must.low, must.high, strict=True):
         if not low < high:
@@ -175,14 +164,14 @@ def _box(task: DesignTask, must: InBox) -> Flaws:
                 f"this linkage has {', '.join(known)}",
             )
     for i, want in enumerate(task.wants):
-        if isinstance(want, PathWant) and want.point in must.names and task.placement == "fixed":
+        if isinstance(want, kinds.PathWant) and want.point in must.names and task.placement == "fixed":
             out = ((want.places < must.low) | (want.places > must.high)).any(axis=1)
             if out.any():
                 place = int(np.flatnonzero(out)[0]) + 1
                 yield "names", f"place {place} of want {i + 1} lies outside the box; widen it, or want less"
 
 
-def _apart(task: DesignTask, must: Apart) -> Flaws:
+def _apart(task: DesignTask, must: kinds.Apart) -> Flaws:
     count = len(task.draft.linkage.joints)
     first, second = must.links
     outside = [link for link in must.links if not 1 <= link <= count]
@@ -195,7 +184,7 @@ def _apart(task: DesignTask, must: Apart) -> Flaws:
     yield from not_positive("least", must.least, "distance", "a length")
 
 
-def _figure(task: DesignTask, must: FigureMust) -> Flaws:
+def _figure(task: DesignTask, must: kinds.FigureMust) -> Flaws:
     if flaw := figure_flaw(task.draft.linkage, must.name):
         yield "name", flaw
         return
@@ -208,37 +197,38 @@ def _figure(task: DesignTask, must: FigureMust) -> Flaws:
         if end is not None and (flaw := value_flaw(task.draft.linkage, must.name, end, key)):
             yield key, flaw
     for i, other in enumerate(task.musts[: task.musts.index(must)]):
-        if isinstance(other, FigureMust) and other.name == must.name:
+        if isinstance(other, kinds.FigureMust) and other.name == must.name:
             low, high = _ends(other)
             if max(least, low) > min(most, high):
                 yield "name", f"must {i + 1} wants {must.name} outside these ends; leave one out, or widen it"
     for i, want in enumerate(task.wants):
-        same = isinstance(want, FigureWant) and want.name == must.name and not isinstance(want.value, str)
-        if same and not least <= want.value <= most:  # type: ignore[union-attr, operator]
+        if not isinstance(want, kinds.FigureWant) or want.name != must.name or isinstance(want.value, str):
+            continue
+        if not least <= want.value <= most:
             yield "name", f"want {i + 1} wants it outside these ends; widen them, or want another value"
 
 
-def _ends(must: FigureMust) -> tuple[float, float]:
+def _ends(must: kinds.FigureMust) -> tuple[float, float]:
     return (
         -math.inf if must.least is None else must.least,
         math.inf if must.most is None else must.most,
     )
 
 
-def _most(task: DesignTask, must: Most) -> Flaws:
+def _most(task: DesignTask, must: kinds.Most) -> Flaws:
     count = len(task.wants)
     if not 0 <= must.want < count:
         yield "want", f"{must.want + 1} is not a want; give its place, 1 to {count}"
-    elif isinstance(task.wants[must.want], FigureWant):
+    elif isinstance(task.wants[must.want], kinds.FigureWant):
         yield "want", "is a figure; bound it by a must with kind = 'figure', least and most"
     yield from not_positive("most", must.most, "bound")
 
 
 _FLAWS: Mapping[type, Callable[[DesignTask, Any], Flaws]] = {
-    InRange: _range,
-    InCone: _cone,
-    InBox: _box,
-    Apart: _apart,
-    FigureMust: _figure,
-    Most: _most,
+    kinds.InRange: _range,
+    kinds.InCone: _cone,
+    kinds.InBox: _box,
+    kinds.Apart: _apart,
+    kinds.FigureMust: _figure,
+    kinds.Most: _most,
 }

@@ -22,6 +22,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.candidates import Fault
 from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
+from sevenbar.design.task import task as kinds
 from sevenbar.design.task.loop import Here, TaskLoop, loop_of
 from sevenbar.design.task.musts import FAULTS, Rooms, pose_rooms
 from sevenbar.design.task.placing import (
@@ -32,17 +33,7 @@ from sevenbar.design.task.placing import (
     rigid_moves,
     rotation_of_vector,
 )
-from sevenbar.design.task.task import (
-    DesignTask,
-    DwellWant,
-    FigureMust,
-    FigureWant,
-    FunctionWant,
-    Most,
-    PathWant,
-    PoseWant,
-    StraightWant,
-)
+from sevenbar.design.task.task import DesignTask
 from sevenbar.design.task.wants.figures import Figures, figure_left
 from sevenbar.design.task.wants.joints import ReadingsWanted
 from sevenbar.design.task.wants.places import PlacesWanted, heights_of
@@ -57,11 +48,11 @@ HELD = 73
 
 #: What each kind of want is in a loop.
 WANTED: Mapping[type, Callable[[TaskLoop, Any], Wanted]] = {
-    FunctionWant: ReadingsWanted,
-    DwellWant: ReadingsWanted,
-    PathWant: PlacesWanted,
-    PoseWant: PlacesWanted,
-    StraightWant: LineWanted,
+    kinds.FunctionWant: ReadingsWanted,
+    kinds.DwellWant: ReadingsWanted,
+    kinds.PathWant: PlacesWanted,
+    kinds.PoseWant: PlacesWanted,
+    kinds.StraightWant: LineWanted,
 }
 
 #: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
@@ -111,10 +102,10 @@ class TaskModel:
         self.task, self.margins = task, margins or {}
         self.loop = loop = loop_of(task)
         self.wanted: list[Wanted] = [WANTED[type(want)](loop, want) for _, want in task.sampled]
-        self.figure_wants = [want for want in task.wants if isinstance(want, FigureWant)]
+        self.figure_wants = [want for want in task.wants if isinstance(want, kinds.FigureWant)]
         #: The places among the task's wants of those at poses.
         self.sampled = [i for i, _ in task.sampled]
-        self.figure_musts = [must for must in task.musts if isinstance(must, FigureMust)]
+        self.figure_musts = [must for must in task.musts if isinstance(must, kinds.FigureMust)]
         names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
         self.figures = Figures(loop, list(dict.fromkeys(names)))
         self.rooms = pose_rooms(loop, task.musts)
@@ -124,7 +115,7 @@ class TaskModel:
         self.transmits = closed_form and (task.limits.transmission_lowest > 0 or task.goal == "transmission")
         self.turns = closed_form and task.limits.motion_type in INPUT_TURNS
         #: Wants, by their places among the sampled, whose residuals have been asked to stay small.
-        self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, Most)]
+        self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, kinds.Most)]
 
     @property
     def holds(self) -> bool:

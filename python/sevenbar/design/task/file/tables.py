@@ -12,42 +12,10 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.curve_table import read_curve
 from sevenbar.design.pose_table import read_poses
-from sevenbar.design.task.file.schema import (
-    ApartMust,
-    BoxMust,
-    ConeMust,
-    DwellForm,
-    FigureForm,
-    FigureMustForm,
-    FunctionForm,
-    MostMust,
-    MustForm,
-    PathForm,
-    PoseForm,
-    PosesForm,
-    RangeMust,
-    StraightForm,
-    WantForm,
-)
+from sevenbar.design.task import task as kinds
+from sevenbar.design.task.file import schema
 from sevenbar.design.task.file.values import Given
-from sevenbar.design.task.task import (
-    Apart,
-    DwellWant,
-    FigureMust,
-    FigureWant,
-    FunctionWant,
-    InBox,
-    InCone,
-    InRange,
-    Most,
-    Must,
-    PathWant,
-    PoseWant,
-    StraightWant,
-    Want,
-    linkage_size,
-    residual_unit,
-)
+from sevenbar.design.task.task import Must, Want, linkage_size, residual_unit
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.design.wish import chebyshev, read_pairs, wish_of_function
 from sevenbar.errors import RequestError, TableError, shown
@@ -65,26 +33,26 @@ T = TypeVar("T")
 Way = Literal["small", "great"]
 
 
-def want_of(form: WantForm, linkage: Linkage, folder: Path) -> Want:
+def want_of(form: schema.WantForm, linkage: Linkage, folder: Path) -> Want:
     """The want of a table; files lie in `folder`. Raises `RequestError` with the key at fault."""
     match form:
-        case FunctionForm():
+        case schema.FunctionForm():
             return _function(form, linkage, folder)
-        case PathForm():
+        case schema.PathForm():
             return _path(form, linkage, folder)
-        case PosesForm():
+        case schema.PosesForm():
             return _poses(form, linkage, folder)
-        case FigureForm():
-            return FigureWant(form.name, _goal(form, linkage), form.unit, form.weight)
-        case DwellForm():
+        case schema.FigureForm():
+            return kinds.FigureWant(form.name, _goal(form, linkage), form.unit, form.weight)
+        case schema.DwellForm():
             level = _zero("level", form.level, linkage, _output(linkage))
-            return DwellWant(_of_input("range", form.range, linkage), level, form.samples, form.weight)
-        case StraightForm():
+            return kinds.DwellWant(_of_input("range", form.range, linkage), level, form.samples, form.weight)
+        case schema.StraightForm():
             ends = _of_input("range", form.range, linkage)
-            return StraightWant(form.point, ends, form.length, form.samples, form.weight)
+            return kinds.StraightWant(form.point, ends, form.length, form.samples, form.weight)
 
 
-def _goal(form: FigureForm, linkage: Linkage) -> Way | float:
+def _goal(form: schema.FigureForm, linkage: Linkage) -> Way | float:
     if form.value in ("small", "great"):
         return cast(Way, form.value)
     try:
@@ -93,7 +61,7 @@ def _goal(form: FigureForm, linkage: Linkage) -> Way | float:
         raise RequestError(f"{error}, or 'small' or 'great'") from None
 
 
-def _function(form: FunctionForm, linkage: Linkage, folder: Path) -> FunctionWant:
+def _function(form: schema.FunctionForm, linkage: Linkage, folder: Path) -> kinds.FunctionWant:
     given = _one_of(form, "y", "pairs", "table")
     if form.y is None:
         for name in ("input", "output", "points"):
@@ -117,10 +85,12 @@ def _function(form: FunctionForm, linkage: Linkage, folder: Path) -> FunctionWan
         _zero("input_zero", form.input_zero, linkage, columns[0]),
         _zero("output_zero", form.output_zero, linkage, columns[1]),
     )
-    return FunctionWant(x, y, zeros, form.weight)
+    return kinds.FunctionWant(x, y, zeros, form.weight)
 
 
-def _of_formula(form: FunctionForm, linkage: Linkage, columns: tuple[int, int]) -> tuple[Floats, Floats]:
+def _of_formula(
+    form: schema.FunctionForm, linkage: Linkage, columns: tuple[int, int]
+) -> tuple[Floats, Floats]:
     """Readings of input and output that y(x) wants, over the ranges of both or as x and y are."""
     y = str(form.y)
     low, high = form.x
@@ -155,7 +125,7 @@ def _of_formula(form: FunctionForm, linkage: Linkage, columns: tuple[int, int]) 
     return a + (b - a) * share, c + (d - c) * wish.function(share)
 
 
-def _path(form: PathForm, linkage: Linkage, folder: Path) -> PathWant:
+def _path(form: schema.PathForm, linkage: Linkage, folder: Path) -> kinds.PathWant:
     _one_of(form, "places", "table")
     inputs: Floats | None = None
     if form.table is not None:
@@ -171,7 +141,7 @@ def _path(form: PathForm, linkage: Linkage, folder: Path) -> PathWant:
         timing = wanted_inputs(timing, rows, closed)
     except RequestError as error:
         raise RequestError(_of_key(error, "table" if form.table is not None else "places")) from None
-    return PathWant(form.point, rows[:-1] if closed else rows, closed, timing, form.phase, form.weight)
+    return kinds.PathWant(form.point, rows[:-1] if closed else rows, closed, timing, form.phase, form.weight)
 
 
 def _of_key(error: RequestError, key: str) -> str:
@@ -180,7 +150,7 @@ def _of_key(error: RequestError, key: str) -> str:
     return f"{key}: {text.removeprefix('points: ')}" if text.startswith("points: ") else text
 
 
-def _poses(form: PosesForm, linkage: Linkage, folder: Path) -> PoseWant:
+def _poses(form: schema.PosesForm, linkage: Linkage, folder: Path) -> kinds.PoseWant:
     _one_of(form, "poses", "table")
     inputs: Floats | None = None
     if form.table is not None:
@@ -191,10 +161,10 @@ def _poses(form: PosesForm, linkage: Linkage, folder: Path) -> PoseWant:
         poses = poses @ inverse(_pose("frame", form.frame))
     arm = linkage_size(linkage) if form.arm is None else form.arm
     timing = _timing(form.timing, inputs, linkage)
-    return PoseWant(form.link, poses, arm, timing, form.phase, form.weight)
+    return kinds.PoseWant(form.link, poses, arm, timing, form.phase, form.weight)
 
 
-def _pose(key: str, form: PoseForm) -> Floats:
+def _pose(key: str, form: schema.PoseForm) -> Floats:
     """A pose (4, 4)."""
     if form.matrix is None:
         return pose(turns_about(unit(form.axis), np.array([form.angle]))[0], form.at)
@@ -206,7 +176,7 @@ def _pose(key: str, form: PoseForm) -> Floats:
     return pose(Rotation.from_matrix(np.array(form.matrix)).as_matrix(), form.at)
 
 
-def _one_of(form: WantForm, *names: str) -> str:
+def _one_of(form: schema.WantForm, *names: str) -> str:
     """The one of some keys that a table has."""
     given = [name for name in names if getattr(form, name) is not None]
     if len(given) != 1:
@@ -257,26 +227,28 @@ def _read(key: str, reader: Callable[[Path], T], path: Path) -> T:
 # ---- what must hold
 
 
-def must_of(form: MustForm, linkage: Linkage, wants: Sequence[Want]) -> Must:
+def must_of(form: schema.MustForm, linkage: Linkage, wants: Sequence[Want]) -> Must:
     """The must of a table; raises `RequestError` with the key at fault."""
     match form:
-        case RangeMust():
+        case schema.RangeMust():
             column = linkage.column(form.joint, "joint")
-            return InRange(linkage.columns[column], *reading_span("range", form.range, linkage, column))
-        case ConeMust():
-            return InCone(form.joint, form.angle, form.seat, form.stud)
-        case BoxMust():
-            return InBox(form.low, form.high, _everything(linkage) if form.names is None else form.names)
-        case ApartMust():
-            return Apart(form.links, form.least)
-        case FigureMustForm():
+            return kinds.InRange(linkage.columns[column], *reading_span("range", form.range, linkage, column))
+        case schema.ConeMust():
+            return kinds.InCone(form.joint, form.angle, form.seat, form.stud)
+        case schema.BoxMust():
+            return kinds.InBox(
+                form.low, form.high, _everything(linkage) if form.names is None else form.names
+            )
+        case schema.ApartMust():
+            return kinds.Apart(form.links, form.least)
+        case schema.FigureMustForm():
             ends = [
                 None if end is None else figure_value(key, end, linkage, form.name)
                 for key, end in (("least", form.least), ("most", form.most))
             ]
-            return FigureMust(form.name, *ends)
-        case MostMust():
-            return Most(form.want - 1, _most(form, linkage, wants))
+            return kinds.FigureMust(form.name, *ends)
+        case schema.MostMust():
+            return kinds.Most(form.want - 1, _most(form, linkage, wants))
 
 
 def _everything(linkage: Linkage) -> tuple[str, ...]:
@@ -285,7 +257,7 @@ def _everything(linkage: Linkage) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*points, *(joint.name for joint in linkage.joints)]))
 
 
-def _most(form: MostMust, linkage: Linkage, wants: Sequence[Want]) -> float:
+def _most(form: schema.MostMust, linkage: Linkage, wants: Sequence[Want]) -> float:
     """The most of a want's residuals, relative to what they are relative to."""
     if form.want > len(wants):
         # the task is checked for it
@@ -293,9 +265,9 @@ def _most(form: MostMust, linkage: Linkage, wants: Sequence[Want]) -> float:
     want = wants[form.want - 1]
     unit = residual_unit(want, linkage)
     match want:
-        case FunctionWant() | DwellWant():
+        case kinds.FunctionWant() | kinds.DwellWant():
             return reading("most", form.most, linkage, _output(linkage)) / unit
-        case FigureWant():
+        case kinds.FigureWant():
             # the task is checked for it
             return 1.0
         case _:
