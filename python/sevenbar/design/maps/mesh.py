@@ -204,22 +204,16 @@ class _Making:
 
     def _sides(self, square: Square) -> list[Edge]:
         """The edges round a square, anticlockwise."""
-        lower_left, lower_right, upper_right, upper_left = _corners(square)
-        ring = (lower_left, lower_right, upper_right, upper_left, lower_left)
-        edges: list[Edge] = []
-        for start, end in pairwise(ring):
-            self._pieces(start, end, edges)
-        return edges
+        lower_left, *others = _corners(square)
+        ring = (lower_left, *others, lower_left)
+        return [piece for start, end in pairwise(ring) for piece in self._pieces(start, end)]
 
-    def _pieces(self, start: Corner, end: Corner, edges: list[Edge]) -> None:
-        """Adds the pieces of a side between the corners that stand on it."""
-        if abs(end[0] - start[0]) + abs(end[1] - start[1]) > 1:
-            middle = ((start[0] + end[0]) // 2, (start[1] + end[1]) // 2)
-            if middle in self.kinds:
-                self._pieces(start, middle, edges)
-                self._pieces(middle, end, edges)
-                return
-        edges.append((start, end))
+    def _pieces(self, start: Corner, end: Corner) -> list[Edge]:
+        """The pieces of a side between the corners on it."""
+        middle = ((start[0] + end[0]) // 2, (start[1] + end[1]) // 2)
+        if abs(end[0] - start[0]) + abs(end[1] - start[1]) > 1 and middle in self.kinds:
+            return self._pieces(start, middle) + self._pieces(middle, end)
+        return [(start, end)]
 
     def _cut(self, edges: Iterable[Edge]) -> None:
         """Finds where edges are cut, by halving."""

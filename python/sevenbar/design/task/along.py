@@ -46,13 +46,10 @@ class DesignAlong:
     @cached_property
     def ways(self) -> list[UsedWay]:
         """The used way of each want that has one."""
-        ends = np.cumsum([0, *(len(inputs) for inputs in self.design.solution.inputs)])
-        poses = self.design.solution.seed.poses
+        solution = self.design.solution
         return [
-            self._way(inputs, poses[first:last], round=one.stations.round)
-            for inputs, first, last, one in zip(
-                self.design.solution.inputs, ends[:-1], ends[1:], self.model.wanted, strict=True
-            )
+            self._way(inputs, solution.poses_of(i), round=one.stations.round)
+            for i, (inputs, one) in enumerate(zip(solution.inputs, self.model.wanted, strict=True))
         ]
 
     def _way(self, inputs: Floats, poses: Floats, *, round: bool) -> UsedWay:
@@ -110,9 +107,7 @@ class DesignAlong:
 
     def stations(self, place: int) -> Floats:
         """Where these points are at the stations (n, points, 3)."""
-        first = sum(len(inputs) for inputs in self.design.solution.inputs[:place])
-        count = len(self.design.solution.inputs[place])
-        return self._put(self.model.wanted[place], self.design.solution.seed.poses[first : first + count])
+        return self._put(self.model.wanted[place], self.design.solution.poses_of(place))
 
     def _put(self, one: Wanted, q: Floats) -> Floats:
         assert isinstance(one, PlacesWanted | LineWanted)

@@ -197,9 +197,7 @@ def _candidate(
 
 def _torn(model: TaskModel, number: int, solution: Solved, own: list[_Way]) -> Refusal | None:
     """Why no pass holds all poses that were solved for, each of which some pass comes near."""
-    loop, q = model.loop, solution.seed.poses
-    begin = sum(len(inputs) for inputs in solution.inputs[:number])
-    poses = q[begin : begin + len(solution.inputs[number])]
+    loop, poses = model.loop, solution.poses_of(number)
     one = model.wanted[number]
     here = loop.here(solution.seed.values, poses)
     left, _ = one.left(here.along(one.stations.by), solution.seed.own[number])

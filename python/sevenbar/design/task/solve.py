@@ -91,6 +91,11 @@ class Solved:
     room: float
     ended: Ended = "optimum"
 
+    def poses_of(self, place: int) -> Floats:
+        """The poses (n, columns) at the inputs of a want, by its place among those at poses."""
+        first = sum(len(inputs) for inputs in self.inputs[:place])
+        return self.seed.poses[first : first + len(self.inputs[place])]
+
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
