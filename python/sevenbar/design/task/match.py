@@ -1,4 +1,4 @@
-"""The best order-keeping match of wanted points with a curve of rows, placed in space where it may be."""
+"""The best order-keeping match of wanted points with a curve of rows, as it is and placed in space."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.design.task.placing import STILL, Placing, placed, turns
+from sevenbar.design.task.placing import Placing, placed, turns
 
 #: Places along the wanted path, and along a curve, at which shapes are compared.
 SHAPE, CURVE = 24, 96
@@ -25,11 +25,11 @@ ROUNDS = 3
 
 @dataclass(frozen=True, eq=False)
 class Match:
-    """Rows (n,) of a curve matched with the wanted points, the placing, and the mean square left."""
+    """Rows (n,) of a curve matched with the wanted points, the mean square left, and the placing."""
 
     rows: Integers
-    placing: Placing
     error: float
+    placing: Placing
 
 
 def _with_lengths(curve: Floats, *, closed: bool) -> tuple[Floats, Floats]:
@@ -78,13 +78,8 @@ def _followed(cost: Floats) -> tuple[Integers, Floats]:
     return rows, total.min(axis=1) / count
 
 
-def matched(
-    curve: Floats, wanted: Floats, *, curve_closed: bool, closed: bool, place: bool, scaled: bool
-) -> Match | None:
-    """The best order-keeping match of a curve with the wanted points, placed in space where it may be."""
-    if not place:
-        rows, error = in_order(curve, wanted, closed=curve_closed)
-        return Match(rows, STILL, error) if math.isfinite(error) else None
+def matched(curve: Floats, wanted: Floats, *, curve_closed: bool, closed: bool, scaled: bool) -> Match | None:
+    """The best order-keeping match of a curve with the wanted points, placed where it is best in space."""
     if closed and not curve_closed:
         return None
     placing = _by_shape(curve, wanted, curve_closed=curve_closed, closed=closed, scaled=scaled)
@@ -96,7 +91,7 @@ def matched(
         if not math.isfinite(error):
             break
         if best is None or error < best.error:
-            best = Match(rows, placing, error)
+            best = Match(rows, error, placing)
         placing = placed(wanted, curve[rows], scaled=scaled)
     return best
 

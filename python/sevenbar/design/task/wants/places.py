@@ -8,7 +8,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.match import by_length, in_order, matched
+from sevenbar.design.task.match import Match, by_length, in_order, matched
 from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.placing import Placing, placed
 from sevenbar.design.task.task import PathWant, PoseWant
@@ -99,18 +99,18 @@ class PlacesWanted:
 
     def _path(self, one: InputPass, curve: Floats, placing: Placing | None, *, scaled: bool) -> list[Begun]:
         wanted = self.places[:, 0]
-        own = curve if placing is None else placing.put(curve)
         ways = {"curve_closed": one.closed, "closed": self.closed}
-        match = matched(own, wanted, **ways, place=placing is None, scaled=scaled)
-        if match is None:
+        if placing is not None:
+            match: Match | None = Match(*in_order(placing.put(curve), wanted, closed=one.closed), placing)
+        else:
+            match = matched(curve, wanted, **ways, scaled=scaled)
+        if match is None or not math.isfinite(match.error):
             return []
-        put = match.placing if placing is None else placing
         # the same as before, and by lengths along the curve, which tell the sides of a cusp apart
-        other = by_length(put.put(curve), wanted, **ways)
+        other = by_length(match.placing.put(curve), wanted, **ways)
         error = match.error / 3 / self.unit**2
-        return [
-            Begun(one.unwound(rows), rows, error, put) for rows in (match.rows, other) if rows is not None
-        ]
+        found = (match.rows, other) if other is not None else (match.rows,)
+        return [Begun(one.unwound(rows), rows, error, match.placing) for rows in found]
 
     def _poses(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
         """In order, the linkage placed so that some row takes the first pose."""
