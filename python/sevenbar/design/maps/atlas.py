@@ -12,7 +12,7 @@ import numpy as np
 from sevenbar.arrays import Floats, Integers, whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
-from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
+from sevenbar.design.maps.mesh import Scheme, meshed
 from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane
 from sevenbar.design.maps.rssr_plane import RssrPlane
@@ -193,6 +193,7 @@ def motion_map(
     # what is not covered is reported of the design itself
     motion = linkage.motion(RSSR.samples, input=driver)
     mesh = meshed(plane, scheme)
+    ticks = range(0, scheme.size + 1, 1 << scheme.finest)
     speck = SPECK * scheme.tolerance
     lines_between = tuple(line for line in boundaries(mesh) if np.ptp(line.places, axis=0).max() > speck)
     parts = tuple(part.without(speck) for part in regions(mesh) if np.ptp(part.outline, axis=0).max() > speck)
@@ -201,7 +202,7 @@ def motion_map(
         input=driver,
         axes=axes,
         kinds=tuple(plane.kinds),
-        grid=_grid(mesh),
+        grid=np.array([[mesh.corners[x, y] for x in ticks] for y in ticks]),
         boundaries=lines_between,
         regions=parts,
         design=_design(plane, axes, motion, lines_between, scheme.tolerance),
@@ -217,12 +218,6 @@ def _scheme(lines: int, fine: int, tolerance: float) -> Scheme:
     regular = max(0, int(np.ceil(np.log2(fine / cells)))) if fine > cells else 0
     finest = max(regular, int(np.ceil(np.log2(1.0 / (tolerance * cells)))))
     return Scheme(cells, regular, finest, tolerance)
-
-
-def _grid(mesh: Mesh) -> Integers:
-    width = 1 << mesh.scheme.finest
-    count = mesh.scheme.cells + 1
-    return np.array([[mesh.corners[x * width, y * width] for x in range(count)] for y in range(count)])
 
 
 def _design(

@@ -280,7 +280,8 @@ def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: f
     keys: list[Any] = []
     for kind, share in of.areas.items():
         own = look(of, kind, faint=heights is not None) | {"lw": 0.8 * scale}
-        keys.append(Patch(label=f"{of.name(kind)}  {_percent(share)}", **own))
+        percent = f"{100 * share:.1f} %" if share >= 5e-4 else "< 0.1 %"
+        keys.append(Patch(label=f"{of.name(kind)}  {percent}", **own))
 
     def line(label: str, **look: Any) -> None:
         keys.append(Line2D([], [], label=label, **look))
@@ -309,10 +310,6 @@ def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: f
     below = legend.get_window_extent().transformed(figure.transFigure.inverted()).y0
     facts = "\n".join(_facts(of, heights))
     figure.text(left, below - 0.03, facts, fontsize=8.8 * scale, va="top", ha="left", linespacing=1.5)
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.1f} %" if share >= 5e-4 else "< 0.1 %"
 
 
 def _facts(of: Map, heights: Heights | None) -> list[str]:

@@ -153,7 +153,8 @@ class _Making:
             self.kinds.update(zip(new, found.tolist(), strict=True))
 
     def _split(self, squares: Iterable[Square]) -> list[Square]:
-        children = [child for square in squares for child in _quarters(square)]
+        halves = [(x, y, width // 2) for x, y, width in squares]
+        children = [(x + i, y + j, half) for x, y, half in halves for j in (0, half) for i in (0, half)]
         # even those that nothing is in: sides are known to be halved by the corner in their middle
         self._know(corner for child in children for corner in _corners(child))
         return children
@@ -284,12 +285,6 @@ def _sorted(edge: Edge) -> Edge:
 def _corners(square: Square) -> tuple[Corner, Corner, Corner, Corner]:
     x, y, width = square
     return (x, y), (x + width, y), (x + width, y + width), (x, y + width)
-
-
-def _quarters(square: Square) -> list[Square]:
-    x, y, width = square
-    half = width // 2
-    return [(x, y, half), (x + half, y, half), (x, y + half, half), (x + half, y + half, half)]
 
 
 def _heart(square: Square) -> Corner:

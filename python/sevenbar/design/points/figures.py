@@ -87,7 +87,9 @@ def _poles_in_the_link(
     linkage = found.cycle.motion.linkage
     width, height = figure.get_size_inches()
     room = (0.54 * width, 0.55, 0.46 * width, heads * height - 0.55)
-    view = view_of(_in_space(), linkage, places)
+    # the plane of the linkage is not that of places in a link
+    asked = asked_view()
+    view = view_of("space" if asked in (None, "plane") else asked, linkage, places)
     space = place_picture(figure, places, room, linkage.length_unit, view, letters="uvw")
     axes: Any = space.axes
     for a, b in product(corners, corners):
@@ -182,12 +184,6 @@ def _head_of_panel(figure: Figure, across: float, up: float, text: str, width: f
     """The title of a panel about a place of the page, within a width [shares of the page's]."""
     head = figure.text(across, up, text, fontsize=letters() + 1, ha="center", va="bottom")
     fit_letters(head, width * figure.get_figwidth())
-
-
-def _in_space() -> str | tuple[float, float]:
-    """The view of places in a link, whose plane is not that of the linkage."""
-    view = asked_view()
-    return "space" if view is None or view == "plane" else view
 
 
 def _other(index: int) -> str:

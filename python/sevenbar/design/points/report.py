@@ -73,7 +73,12 @@ def least_text(found: LeastPoint) -> RenderableType:
     facts.add_all(("note", note) for note in notes(found.cycle))
     tables = []
     if found.before:
-        rows = [[p.name, _place(p.at), f"{p.value:.6g}", _times(p.value, found)] for p in found.before]
+        # how many times the least; nothing where that is zero
+        times = "{:.3f}" if found.value > 1e-9 * found.scale else ""
+        rows = [
+            [p.name, _place(p.at), f"{p.value:.6g}", times and times.format(p.value / found.value)]
+            for p in found.before
+        ]
         rows.append([say("found"), _place(found.at), f"{found.value:.6g}", ""])
         size = say("root mean square") if found.measure == "rms" else say("greatest")
         head = ["point", "at", f"{size} [{unit}]", "times"]
@@ -90,11 +95,6 @@ def _met(found: LeastPoint) -> str:
     text = f"{found.cycle.motion.input} = {text}"
     more = len(found.inputs) - MOST_LISTED
     return say("{inputs} and {count} more", inputs=text, count=more) if more > 0 else text
-
-
-def _times(value: float, found: LeastPoint) -> str:
-    """How many times the least a value is; nothing where that is zero."""
-    return f"{value / found.value:.3f}" if found.value > 1e-9 * found.scale else ""
 
 
 def nearest_text(found: NearestPath) -> RenderableType:

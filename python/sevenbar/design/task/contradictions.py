@@ -166,7 +166,12 @@ def _free(task: DesignTask) -> Iterator[Problem]:
     if not task.free:
         names = ", ".join(d.name for d in task.draft.dimensions if d.kind != "speed")
         yield Problem("free", f"no number may change; give bounds of some of {names}")
-    used = _used_points(task)
+    used = {want.point for want in task.wants if isinstance(want, kinds.PathWant | kinds.StraightWant)}
+    used |= {name for must in task.musts if isinstance(must, kinds.InBox) for name in must.names}
+    measures = (
+        one for one in (*task.wants, *task.musts) if isinstance(one, kinds.FigureWant | kinds.FigureMust)
+    )
+    of_forces = any(is_of_forces(one.name) for one in measures)
     seen: set[str] = set()
     for one in task.free:
         place = f"free.{one.name}"
@@ -195,32 +200,18 @@ def _free(task: DesignTask) -> Iterator[Problem]:
                 f"begins at {d.value:g}{unit}, outside {low:g}:{high:g}; "
                 "give bounds that hold it, or another start",
             )
-        if d.kind == "mass" and not any(is_of_forces(name) for name in _figure_names(task)):
+        if d.kind == "mass" and not of_forces:
             yield Problem(
                 place, "no measure of forces is wanted or must hold, so this changes nothing; leave it out"
             )
         if d.name in task.follow:
             yield Problem(place, "is to follow from the others; leave it out here, or in follow")
-        owner = _owner(task, d.place)
+        # the point that it belongs to
+        owner = task.draft.raw["point"][int(str(d.place[1]))]["name"] if d.place[0] == "point" else None
         if owner is not None and owner not in used:
             yield Problem(
                 place, f"point '{owner}' is in no want and no must, so this changes nothing; leave it out"
             )
-
-
-def _owner(task: DesignTask, place: tuple[object, ...]) -> str | None:
-    """The point that a number belongs to."""
-    return task.draft.raw["point"][int(str(place[1]))]["name"] if place[0] == "point" else None
-
-
-def _figure_names(task: DesignTask) -> list[str]:
-    figures = kinds.FigureWant, kinds.FigureMust
-    return [one.name for one in (*task.wants, *task.musts) if isinstance(one, figures)]
-
-
-def _used_points(task: DesignTask) -> set[str]:
-    used = {want.point for want in task.wants if isinstance(want, (kinds.PathWant, kinds.StraightWant))}
-    return used | {name for must in task.musts if isinstance(must, kinds.InBox) for name in must.names}
 
 
 def _of_want(task: DesignTask, want: Want) -> Flaws:

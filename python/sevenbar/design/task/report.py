@@ -155,8 +155,6 @@ def text(found: TaskDesigns) -> RenderableType:
     if found.unfinished:
         facts.add("unfinished", found.unfinished, "bold yellow")
     tables = _tables(found) if found.found.designs else []
-    if any(_on_bound(design, found.task) for design in found.found.designs):
-        tables[-1] = Group(tables[-1], Text("* on its bound", style="dim"))
     tables += _reasons(found.found.designs)
     return page(f"Design: {found.name}", facts, *tables)
 
@@ -180,11 +178,6 @@ def _reasons(designs: Sequence[TaskDesign]) -> list[RenderableType]:
             some = f"design{'s' * (len(numbers) > 1)} {', '.join(numbers)}"
             lines.append(Text(f"KKT residual of {some}: {words}", style="yellow"))
     return lines
-
-
-def _on_bound(design: TaskDesign, task: DesignTask) -> bool:
-    gap = ON_BOUND * (task.high - task.low)
-    return bool(((design.values <= task.low + gap) | (design.values >= task.high - gap)).any())
 
 
 def _bounded(design: TaskDesign, place: int, low: float, high: float) -> str:
@@ -223,7 +216,11 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
         own = task.draft.dimension(one.name).unit
         cells = [_bounded(design, k, one.low, one.high) for design in designs]
         free.append((f"{one.name}\n[{own}]" if own else one.name, cells))
-    return [*sheets(met, ACROSS), *sheets(rest, len(rest), words=["motion type"]), *sheets(free, ACROSS)]
+    tables: list[RenderableType] = [*sheets(met, ACROSS)]
+    tables += [*sheets(rest, len(rest), words=["motion type"]), *sheets(free, ACROSS)]
+    if any(cell.endswith("*") for _, cells in free for cell in cells):
+        tables[-1] = Group(tables[-1], Text("* on its bound", style="dim"))
+    return tables
 
 
 def as_dict(found: TaskDesigns) -> dict[str, Any]:

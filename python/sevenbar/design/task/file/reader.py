@@ -80,7 +80,9 @@ def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskF
     musts = [*_musts(draft.linkage, form, known, mistakes), *exact]
     limits = Limits()
     with mistakes.of("limits", LimitsForm):
-        limits = _limits(form.limits, draft.linkage)
+        unit, size = draft.linkage.length_unit, form.limits.size
+        ends = size and (amount("size", size[0], unit), amount("size", size[1], unit))
+        limits = Limits(form.limits.transmission, ends, form.limits.motion_type)
     if not mistakes.found:
         task = DesignTask(
             draft,
@@ -203,9 +205,3 @@ def _musts(linkage: Linkage, form: TaskForm, wants: list[Want], mistakes: _Mista
         with mistakes.of(f"must[{i + 1}]", type(one)):
             found.append(must_of(one, linkage, wants))
     return found
-
-
-def _limits(form: LimitsForm, linkage: Linkage) -> Limits:
-    unit = linkage.length_unit
-    ends = form.size and (amount("size", form.size[0], unit), amount("size", form.size[1], unit))
-    return Limits(form.transmission, ends, form.motion_type)

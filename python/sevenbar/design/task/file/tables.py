@@ -236,9 +236,10 @@ def must_of(form: schema.MustForm, linkage: Linkage, wants: Sequence[Want]) -> M
         case schema.ConeMust():
             return kinds.InCone(form.joint, form.angle, form.seat, form.stud)
         case schema.BoxMust():
-            return kinds.InBox(
-                form.low, form.high, _everything(linkage) if form.names is None else form.names
-            )
+            # all points and joints that are not of the ground alone
+            points = [point.name for point in linkage.points if point.link < len(linkage.joints)]
+            every = tuple(dict.fromkeys([*points, *(joint.name for joint in linkage.joints)]))
+            return kinds.InBox(form.low, form.high, form.names or every)
         case schema.ApartMust():
             return kinds.Apart(form.links, form.least)
         case schema.FigureMustForm():
@@ -249,12 +250,6 @@ def must_of(form: schema.MustForm, linkage: Linkage, wants: Sequence[Want]) -> M
             return kinds.FigureMust(form.name, *ends)
         case schema.MostMust():
             return kinds.Most(form.want - 1, _most(form, linkage, wants))
-
-
-def _everything(linkage: Linkage) -> tuple[str, ...]:
-    """All points and joints that are not of the ground alone."""
-    points = [point.name for point in linkage.points if point.link < len(linkage.joints)]
-    return tuple(dict.fromkeys([*points, *(joint.name for joint in linkage.joints)]))
 
 
 def _most(form: schema.MostMust, linkage: Linkage, wants: Sequence[Want]) -> float:
