@@ -102,31 +102,25 @@ def task_report(
     for place in range(count):
         name = f"design_{place + 1}"
         files[f"{name}.toml"] = toml[f"{name}.toml"]
-        drawn: dict[str, Callable[[DesignTask, TaskDesign], Any]] = {"linkage": _linkage}
-        drawn |= {f"want_{want + 1}": partial(_want, number=i) for i, (want, _) in enumerate(task.sampled)}
+        drawn: dict[str, Callable[[DesignAlong], Any]] = {"linkage": _linkage}
+        for number, (want, _) in enumerate(task.sampled):
+            drawn[f"want_{want + 1}"] = partial(want_figure, number=number)
         if any(isinstance(must, PoseMust) for must in task.musts):
-            drawn["musts"] = _musts
+            drawn["musts"] = musts_figure
         for what, draw in drawn.items():
             files |= figure_files(f"{name}_{what}", formats, partial(_drawn, place=place, draw=draw))
     return Report(text, as_dict, files | {name: toml[name] for name in ("summary.csv", "summary.json")})
 
 
-def _drawn(found: TaskDesigns, *, place: int, draw: Callable[[DesignTask, TaskDesign], Any]) -> Any:
+def _drawn(found: TaskDesigns, *, place: int, draw: Callable[[DesignAlong], Any]) -> Any:
     """A figure of a design, if there are as many."""
     designs = found.found.designs
-    return draw(found.task, designs[place]) if place < len(designs) else None
+    return draw(DesignAlong(found.task, designs[place])) if place < len(designs) else None
 
 
-def _linkage(_: DesignTask, design: TaskDesign) -> Any:
-    return configuration(design.draft.linkage.motion(CHECK_SAMPLES), design.candidate.circuit)
-
-
-def _want(task: DesignTask, design: TaskDesign, *, number: int) -> Any:
-    return want_figure(DesignAlong(task, design), number)
-
-
-def _musts(task: DesignTask, design: TaskDesign) -> Any:
-    return musts_figure(DesignAlong(task, design))
+def _linkage(along: DesignAlong) -> Any:
+    own = along.design.candidate
+    return configuration(own.draft.linkage.motion(CHECK_SAMPLES), own.circuit)
 
 
 def _facts(found: TaskDesigns) -> list[tuple[str, str]]:

@@ -140,14 +140,10 @@ def _path(form: schema.PathForm, linkage: Linkage, folder: Path) -> kinds.PathWa
         rows, closed = wanted_places(rows)
         timing = wanted_inputs(timing, rows, closed)
     except RequestError as error:
-        raise RequestError(_of_key(error, "table" if form.table is not None else "places")) from None
+        key, _, message = str(error).partition(": ")
+        own = "table" if form.table is not None else "places"
+        raise RequestError(f"{own if key == 'points' else key}: {message}") from None
     return kinds.PathWant(form.point, rows[:-1] if closed else rows, closed, timing, form.phase, form.weight)
-
-
-def _of_key(error: RequestError, key: str) -> str:
-    """A message of `points` as one of the key that holds them."""
-    text = str(error)
-    return f"{key}: {text.removeprefix('points: ')}" if text.startswith("points: ") else text
 
 
 def _poses(form: schema.PosesForm, linkage: Linkage, folder: Path) -> kinds.PoseWant:
