@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -33,32 +32,30 @@ class FrontFound(TaskDesigns):
     front: ParetoFront = field(kw_only=True)
 
     @property
-    def axes(self) -> list[tuple[str, str]]:
-        """Of both wants: a name for tables, and the unit."""
+    def axes(self) -> list[tuple[str, str, float]]:
+        """Of both wants: a name for tables, the unit, and what 1 of its value is there."""
         return [_axis(self.task, place) for place in self.front.wants]
 
     @property
     def values(self) -> Floats:
         """The two values of each point (n, 2) in the units of the axes."""
-        radians = [not isinstance(self.task.wants[place], FigureWant) for place in self.front.wants]
-        degrees = [own and unit == "deg" for own, (_, unit) in zip(radians, self.axes, strict=True)]
-        return self.front.values * np.where(degrees, math.degrees(1.0), 1.0)
+        return np.asarray(self.front.values * [scale for *_, scale in self.axes])
 
     @property
     def columns(self) -> dict[str, list[float]]:
         """The values of the points by the names that they have in tables."""
-        names = (f"{name}_{unit.replace(' ', '_')}" if unit else name for name, unit in self.axes)
+        names = (f"{name}_{unit.replace(' ', '_')}" if unit else name for name, unit, _ in self.axes)
         return {name: own.tolist() for name, own in zip(names, self.values.T, strict=True)}
 
 
-def _axis(task: DesignTask, place: int) -> tuple[str, str]:
+def _axis(task: DesignTask, place: int) -> tuple[str, str, float]:
     want, linkage = task.wants[place], task.draft.linkage
     if isinstance(want, FigureWant):
         off = "" if isinstance(want.value, str) else "off_"
-        return f"{off}{want.name}", measure_unit(want.name, linkage)
+        return f"{off}{want.name}", measure_unit(want.name, linkage), 1.0
     of_output = isinstance(want, FunctionWant | DwellWant)
-    unit = shown_in(linkage, linkage.drive.output)[0] if of_output else linkage.length_unit
-    return f"want_{place + 1}_greatest", unit
+    shown = shown_in(linkage, linkage.drive.output) if of_output else (linkage.length_unit, 1.0)
+    return f"want_{place + 1}_greatest", *shown
 
 
 def front_report(
@@ -89,7 +86,7 @@ def _text(found: FrontFound) -> RenderableType:
         facts.add("", f"{front.missing} bounds had no design")
     if front.unfinished:
         facts.add("unfinished", front.unfinished, "bold yellow")
-    heads = [f"{name.replace('_', ' ')}\n[{unit}]" if unit else name for name, unit in found.axes]
+    heads = [f"{name.replace('_', ' ')}\n[{unit}]" if unit else name for name, unit, _ in found.axes]
     rows = [
         [
             *(f"{value:.5g}" for value in pair),
@@ -126,7 +123,7 @@ def front_figure(found: FrontFound) -> Any:
         for i, (x, y) in enumerate(values, 1):
             axes.annotate(str(i), (x, y), xytext=(5, 5), textcoords="offset points")
         pairs = zip(front.wants, found.axes, strict=True)
-        x_label, y_label = (_label(front.task, place, *axis) for place, axis in pairs)
+        x_label, y_label = (_label(front.task, place, *axis[:2]) for place, axis in pairs)
         axes.set_xlabel(x_label)
         axes.set_ylabel(y_label)
         axes.xaxis.set_major_locator(MaxNLocator(7))
