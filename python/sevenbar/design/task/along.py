@@ -13,8 +13,8 @@ from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.musts import pose_rooms, room_scale
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, Want
+from sevenbar.design.task.wants.at_inputs import LineWanted
 from sevenbar.design.task.wants.places import PlacesWanted
-from sevenbar.design.task.wants.straight import LineWanted
 from sevenbar.design.task.wants.wanted import Wanted
 
 #: Poses along a want, at least, and the longest step of an input from one to the next [rad].

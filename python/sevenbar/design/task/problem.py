@@ -34,10 +34,9 @@ from sevenbar.design.task.placing import (
     rotation_of_vector,
 )
 from sevenbar.design.task.task import DesignTask
+from sevenbar.design.task.wants.at_inputs import LineWanted, ReadingsWanted
 from sevenbar.design.task.wants.figures import Figures, figure_left
-from sevenbar.design.task.wants.joints import ReadingsWanted
 from sevenbar.design.task.wants.places import PlacesWanted, heights_of
-from sevenbar.design.task.wants.straight import LineWanted
 from sevenbar.design.task.wants.wanted import Stations, Wanted
 
 #: A step after which a passive joint is further away [rad, or of the size] has left its branch.
