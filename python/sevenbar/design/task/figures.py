@@ -11,7 +11,8 @@ from matplotlib.ticker import MaxNLocator
 from sevenbar.arrays import Floats
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.path_page import PathPage, path_page
-from sevenbar.design.task.task import DwellWant, FunctionWant, PathWant, PoseWant
+from sevenbar.design.task.task import DwellWant, FunctionWant
+from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.words import must_words, shown_in
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
@@ -88,16 +89,13 @@ def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -
 
 def _places(along: DesignAlong, number: int) -> Figure:
     """The path in space and from three sides, or the frames of poses, and the distance at each."""
-    place, want, _ = along.wants[number]
+    place, _, one = along.wants[number]
     way, found = along.places(number), along.stations(number)
     frames: list[tuple[Floats, str]] = []
-    if isinstance(want, PathWant):
-        wanted = want.places
-    elif isinstance(want, PoseWant):
-        ends = np.vstack([np.zeros(3), want.arm * np.eye(3)])
-        every = np.einsum("nij,pj->npi", want.poses[:, :3, :3], ends) + want.poses[:, None, :3, 3]
-        wanted = every[:, 0]
-        frames = [(every, OTHER), (found, COMPUTED)]
+    if isinstance(one, PlacesWanted):
+        wanted = one.places[:, 0]
+        if one.places.shape[1] > 1:
+            frames = [(one.places, OTHER), (found, COMPUTED)]
     else:
         # the places on the line through the ends of the way
         own = along.design.solution.seed.own[number]

@@ -123,7 +123,7 @@ class LineWanted:
 
     def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:  # noqa: ARG002
         """On a pass that has the range of inputs, with the best line of its rows."""
-        curve = one.named(self._name)
+        curve = one.point(self._name)
         found = []
         for rows in one.begins(self.stations.fixed, free=False)[1][:1]:
             p = curve[rows]

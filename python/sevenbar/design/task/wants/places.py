@@ -14,6 +14,7 @@ from sevenbar.design.task.placing import Placing, placed
 from sevenbar.design.task.task import PathWant, PoseWant
 from sevenbar.design.task.wants.wanted import Begun, Stations, Wanted
 from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.loop.stops import Three
 
 #: Of the rows of a pass one in so many is tried as the one that takes the first pose.
 FIRST_AT = 2
@@ -35,19 +36,17 @@ class PlacesWanted:
     turns = False
 
     def __init__(self, loop: TaskLoop, want: PathWant | PoseWant) -> None:
-        self._loop = loop
         self.weight = want.weight
-        self._name: str | None = None
+        #: The points as a circuit knows them: by a name, or each as a link and a place on it.
+        self._seen: list[tuple[int | str, Three | None]]
         if isinstance(want, PathWant):
-            point = next(p for p in loop.linkage.points if p.name == want.point)
-            self.link, self._name = point.link, want.point
-            self.numbers = [loop.named(want.point)]
+            self._seen, self.numbers = [(want.point, None)], [loop.named(want.point)]
             self.places = want.places[:, None, :]
             self.unit, self.closed = float(np.ptp(want.places, axis=0).max()), want.closed
         else:
-            ends = [(0.0, 0.0, 0.0), *(tuple(map(float, end)) for end in want.arm * np.eye(3))]
-            self.link, self._ends = want.link, ends
-            self.numbers = [loop.place(want.link, end) for end in ends]  # type: ignore[arg-type]
+            ends: list[Three] = [(0.0, 0.0, 0.0), *(tuple(map(float, e)) for e in want.arm * np.eye(3))]  # type: ignore[list-item]
+            self._seen = [(want.link, end) for end in ends]
+            self.numbers = [loop.place(want.link, end) for end in ends]
             self.places = np.einsum("nij,pj->npi", want.poses[:, :3, :3], ends) + want.poses[:, None, :3, 3]
             self.unit, self.closed = want.arm, False
         n = len(self.places)
@@ -68,9 +67,7 @@ class PlacesWanted:
 
     def curve(self, one: InputPass) -> Floats:
         """The points along a pass (rows, p, 3)."""
-        if self._name is not None:
-            return one.named(self._name)[:, None]
-        return np.stack([one.places(self.link, end) for end in self._ends], axis=1)  # type: ignore[arg-type]
+        return np.stack([one.point(*which) for which in self._seen], axis=1)
 
     def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
         """By the inputs of its timing, or by the best order-keeping match."""
@@ -79,7 +76,7 @@ class PlacesWanted:
             return []
         if self.timing is not None:
             return self._timed(one, curve, placing)
-        if self._name is None:
+        if len(self._seen) > 1:
             return self._poses(one, curve, placing)
         return self._path(one, curve[:, 0], placing, scaled=scaled)
 
