@@ -12,8 +12,8 @@ from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.musts import pose_rooms, room_scale
 from sevenbar.design.task.problem import TaskModel
-from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, Want
-from sevenbar.design.task.wants.at_inputs import LineWanted
+from sevenbar.design.task.task import DesignTask, Want
+from sevenbar.design.task.wants.at_inputs import LineWanted, ReadingsWanted
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted
 
@@ -78,27 +78,27 @@ class DesignAlong:
 
         Angles in (-pi, pi].
         """
-        want = self.task.wants[self.wants[place][0]]
-        own = self.design.solution.seed.own[place]
-        level = want.level if isinstance(want, DwellWant) else 0.0
-        first, second = want.zeros if isinstance(want, FunctionWant) else (0.0, level)
-        zeros = float(own[0]) if first is None else first, float(own[-1]) if second is None else second
         linkage = self.loop.linkage
+        zeros = self.readings(place).zeros(self.design.solution.seed.own[place])
         first, second = (
             float(short_way(zero)) if linkage.turns(column) else zero
             for zero, column in zip(zeros, (linkage.drive.joint, linkage.drive.output), strict=True)
         )
         return first, second
 
+    def readings(self, place: int) -> ReadingsWanted:
+        """A function or a dwell, by its place among the wants with a way."""
+        one = self.model.wanted[place]
+        assert isinstance(one, ReadingsWanted)
+        return one
+
     def outputs(self, place: int) -> Floats:
         """The output's readings (n,) along a function or a dwell, near those wanted."""
         read = self.ways[place].q[:, self.loop.output] - self.zeros(place)[1]
         if not bool(self.loop.numbers.turns[self.loop.output]):
             return read
-        want = self.task.wants[self.wants[place][0]]
-        begin = float(want.output[0]) if isinstance(want, FunctionWant) else 0.0
         read = np.unwrap(read)
-        return np.asarray(read - math.tau * np.round((read[0] - begin) / math.tau))
+        return np.asarray(read - math.tau * np.round((read[0] - self.readings(place).readings[0]) / math.tau))
 
     def places(self, place: int) -> Floats:
         """Where the points of a path or of poses, or the point of a straight line go (n, points, 3)."""

@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from sevenbar.arrays import Floats
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.path_page import PathPage, path_page
-from sevenbar.design.task.task import DwellWant, FunctionWant
+from sevenbar.design.task.wants.at_inputs import ReadingsWanted
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.words import must_words, shown_in
 from sevenbar.drawing.figure import headline, page_figure
@@ -28,29 +28,21 @@ COLOURS = (COMPUTED, OTHER, "#2a7f3f", "#8a4fa8", "#b8860b", "#404040")
 
 def want_figure(along: DesignAlong, number: int) -> Figure:
     """A want with a way, by its place among those: readings and error, or the path and its distances."""
-    want = along.wants[number][1]
-    if isinstance(want, (FunctionWant, DwellWant)):
-        return _readings(along, number, want)
-    return _places(along, number)
+    return (_readings if isinstance(along.wants[number][2], ReadingsWanted) else _places)(along, number)
 
 
-def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -> Figure:
+def _readings(along: DesignAlong, number: int) -> Figure:
     """The output's readings over the input's; below, the design's less those wanted."""
-    place = along.wants[number][0]
+    place, want = along.wants[number][0], along.readings(number)
     linkage = along.task.draft.linkage
     drive = linkage.drive
     zeros = along.zeros(number)
     x = along.ways[number].inputs - zeros[0]
     if linkage.turns(drive.joint):
         # on the turn of the readings
-        begin = float(want.input[0] if isinstance(want, FunctionWant) else want.inputs[0])
-        x = x - math.tau * np.round((x[0] - begin) / math.tau)
+        x = x - math.tau * np.round((x[0] - want.inputs[0]) / math.tau)
     y = along.outputs(number)
-    if isinstance(want, FunctionWant):
-        at, wanted = want.input, want.output
-    else:
-        at = np.linspace(*want.inputs, want.samples)
-        wanted = np.zeros(want.samples)
+    at, wanted = want.inputs, want.readings
     order = np.argsort(x)
     errors = np.interp(at, x[order], y[order]) - wanted
     (x_unit, across), (y_unit, up) = (shown_in(linkage, column) for column in (drive.joint, drive.output))

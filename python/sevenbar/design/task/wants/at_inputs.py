@@ -17,36 +17,41 @@ TRIED = 2
 
 
 class ReadingsWanted:
-    """The output's readings (n,) at n stations, from zeros of input and output that may be unknowns."""
+    """The output's `readings` (n,) at `inputs` (n,), both from zeros that may be unknowns."""
 
     def __init__(self, loop: TaskLoop, want: FunctionWant | DwellWant) -> None:
         self.weight = want.weight
         if isinstance(want, FunctionWant):
-            inputs, self.readings, (first, second) = want.input, want.output, want.zeros
+            self.inputs, self.readings, self._zeros = want.input, want.output, want.zeros
         else:
-            inputs = np.linspace(*want.inputs, want.samples)
-            self.readings, first, second = np.zeros(want.samples), 0.0, want.level
+            self.inputs, self.readings = np.linspace(*want.inputs, want.samples), np.zeros(want.samples)
+            self._zeros = 0.0, want.level
+        first, second = self._zeros
         self.turns = bool(loop.numbers.turns[loop.output])
         self.unit = float(loop.units[loop.output])
         self._column = loop.output
         self._input_free, self._output_free = first is None, second is None
         scales = [loop.units[loop.input]] * (first is None) + [self.unit] * (second is None)
-        by = np.zeros((len(inputs), len(scales)))
+        by = np.zeros((len(self.inputs), len(scales)))
         by[:, : int(first is None)] = 1.0
-        self._zero = 0.0 if second is None else second
-        self.stations = Stations(inputs + (first or 0.0), by, np.array(scales))
-        self.count = len(inputs)
+        self.stations = Stations(self.inputs + (first or 0.0), by, np.array(scales))
+        self.count = len(self.inputs)
+
+    def zeros(self, u: Floats) -> tuple[float, float]:
+        """The values of input and output at the readings 0, by its own unknowns."""
+        first, second = self._zeros
+        return float(u[0]) if first is None else first, float(u[-1]) if second is None else second
 
     def _apart(self, values: Floats) -> Floats:
         return short_way(values) if self.turns else values
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         """What the output is off (n,) at its stations, and the slopes (n, k + m)."""
-        zero = u[-1] if self._output_free else self._zero
         by = here.q_by[:, self._column].copy()
         if self._output_free:
             by[:, -1:] -= 1.0
-        return self._apart(here.q[:, self._column] - self.readings - zero) / self.unit, by / self.unit
+        off = here.q[:, self._column] - self.readings - self.zeros(u)[1]
+        return self._apart(off) / self.unit, by / self.unit
 
     def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:  # noqa: ARG002
         """From the best starts of the inputs."""
@@ -55,7 +60,7 @@ class ReadingsWanted:
         gap = fixed + phases[:, None] - inputs[rows]
         slope = np.gradient(outputs, inputs)[rows]
         off = outputs[rows] - self.readings + slope * (short_way(gap) if one.turns else gap)
-        zeros = np.full((len(rows), 1), self._zero)
+        zeros = np.full((len(rows), 1), self._zeros[1] or 0.0)
         if self._output_free:
             zeros = off[:, :1] + self._apart(off - off[:, :1]).mean(axis=1, keepdims=True)
         errors = ((self._apart(off - zeros) / self.unit) ** 2).mean(axis=1)
@@ -71,9 +76,7 @@ class ReadingsWanted:
 
     def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:  # noqa: ARG002
         """What the output is off (n,) on rows of an analysis [rad, or length]."""
-        return self._apart(
-            circuit.output[rows] - self.readings - (u[-1] if self._output_free else self._zero)
-        )
+        return self._apart(circuit.output[rows] - self.readings - self.zeros(u)[1])
 
 
 class LineWanted:
