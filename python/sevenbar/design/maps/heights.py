@@ -269,8 +269,7 @@ def _beside(loop: Floats, step: float, inside: float) -> Floats:
     piece = np.clip(np.searchsorted(distance, wanted, side="right") - 1, 0, len(length) - 1)
     part = (wanted - distance[piece]) / length[piece]
     left = np.column_stack([-along[:, 1], along[:, 0]]) / length[:, None]
-    places: Floats = np.clip(start[piece] + part[:, None] * along[piece] + inside * left[piece], 0.0, 1.0)
-    return places
+    return np.asarray(np.clip(start[piece] + part[:, None] * along[piece] + inside * left[piece], 0.0, 1.0))
 
 
 def _contours(
@@ -341,5 +340,4 @@ def _crossed(
         above[open_] = np.where(same, slower * above[open_], rest)
         below[open_] = np.where(same, rest, slower * below[open_])
         part[open_] = low[open_] - below[open_] * (high - low)[open_] / (above - below)[open_]
-    places: Floats = start + part[:, None] * along
-    return places
+    return np.asarray(start + part[:, None] * along)

@@ -164,8 +164,7 @@ def _gaps(dimensions: Floats, nearly: Floats) -> Floats:
     def polynomial(a: Floats) -> Floats:
         sin, cos = np.sin(a), np.cos(a)
         reach = D - L1 * sin
-        value: Floats = (M * sin - D * cos) ** 2 * (reach**2 + N**2) - (L3 * cos * reach) ** 2
-        return value
+        return np.asarray((M * sin - D * cos) ** 2 * (reach**2 + N**2) - (L3 * cos * reach) ** 2)
 
     # where the polynomial is greatest there is no zero, so none is near t = infinity
     circle: Floats = np.arange(SAMPLES, dtype=np.float64) * (math.tau / SAMPLES)
@@ -194,5 +193,4 @@ def _gaps(dimensions: Floats, nearly: Floats) -> Floats:
         fits = near & ((slope <= other) | (slope <= EITHER_SIGN * both))
         squared = np.maximum(2 * (middle + sign * L3 * root), 0.0)
         gaps.append(np.where(fits, np.sqrt(squared) - L2, np.nan))
-    found: Floats = np.concatenate(gaps, axis=1) * size[:, None]
-    return found
+    return np.asarray(np.concatenate(gaps, axis=1) * size[:, None])

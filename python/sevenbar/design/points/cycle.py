@@ -50,8 +50,7 @@ class LinkRates:
     def of(self, order: str, at: npt.ArrayLike) -> Floats:
         """The position, velocity, acceleration or jerk of a point as it is written, (n, 3)."""
         index = ORDERS.index(order)
-        value: Floats = self.constant[index] + self.gradient[index] @ np.asarray(at, dtype=np.float64)
-        return value
+        return np.asarray(self.constant[index] + self.gradient[index] @ np.asarray(at, dtype=np.float64))
 
 
 @dataclass(frozen=True, eq=False)

@@ -279,8 +279,7 @@ def _value(cycle: Cycle, of: str, measure: str, at: Floats) -> float:
 def _free(gradient: Floats) -> Floats:
     """Directions (m, 3) of the box, relative to its sides, in which no row (n, 3, 3) changes."""
     _, sizes, rows = np.linalg.svd(gradient.reshape(-1, 3), full_matrices=False)
-    free: Floats = rows[sizes <= FREE * max(sizes[0], np.finfo(float).tiny)]
-    return free
+    return np.asarray(rows[sizes <= FREE * max(sizes[0], np.finfo(float).tiny)])
 
 
 def _centred(at: Floats, box: tuple[Floats, Floats], free: Floats) -> Floats:

@@ -67,7 +67,7 @@ class NearestPath(Printed):
     @property
     def distances(self) -> Floats:
         """The distance of each wanted place from the path, (m,) [length]."""
-        return _lengths(self.wanted - self.path)
+        return np.asarray(np.linalg.norm(self.wanted - self.path, axis=-1))
 
     @property
     def rms(self) -> float:
@@ -238,16 +238,14 @@ def _followed(
 
     def residual(y: Floats) -> Floats:
         point, rates, _ = foot(y)
-        away: Floats = (rates.of("position", point) - wanted).ravel()
-        return away
+        return np.asarray((rates.of("position", point) - wanted).ravel())
 
     def jacobian(y: Floats) -> Floats:
         point, rates, _ = foot(y)
         along = rates.of("velocity", point)
-        along /= np.maximum(_lengths(along), np.finfo(float).tiny)[:, None]
+        along /= np.maximum(np.linalg.norm(along, axis=-1), np.finfo(float).tiny)[:, None]
         across = np.eye(3) - np.nan_to_num(along[:, :, None] * along[:, None, :])
-        slopes: Floats = (across @ rates.gradient[0] * half).reshape(-1, 3)
-        return slopes
+        return np.asarray((across @ rates.gradient[0] * half).reshape(-1, 3))
 
     start = np.clip((at - centre) / np.where(half > 0, half, 1.0), -1 + 1e-9, 1 - 1e-9)
     found = least_squares(residual, start, jacobian, bounds=(-1, 1), xtol=1e-15, ftol=1e-15, gtol=1e-15)
@@ -275,8 +273,3 @@ def _foot(cycle: Cycle, wanted: Floats, at: Floats) -> Floats:
         step = np.divide(-slope, bend, out=np.zeros_like(slope), where=bend > 0)
         inputs = np.clip(inputs + step, begun - abs(cycle.step), begun + abs(cycle.step))
     return inputs
-
-
-def _lengths(vectors: Floats) -> Floats:
-    lengths: Floats = np.linalg.norm(vectors, axis=-1)
-    return lengths

@@ -154,8 +154,7 @@ def _weights(peaks: _Peaks, free: Booleans, half: Floats) -> Floats:
 
     slopes = (peaks.slopes * half)[:, free] / (float(np.abs(peaks.slopes * half).max()) or 1.0)
     wanted = np.append(np.zeros(slopes.shape[1]), 1.0)
-    found: Floats = nnls(np.vstack([slopes.T, np.ones(len(slopes))]), wanted)[0]
-    return found
+    return np.asarray(nnls(np.vstack([slopes.T, np.ones(len(slopes))]), wanted)[0])
 
 
 def _step(peaks: _Peaks, weights: Floats, free: Booleans, half: Floats) -> tuple[Floats, Floats]:

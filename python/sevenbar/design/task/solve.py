@@ -494,8 +494,7 @@ def _newton(at: Conditions, curved: Floats, active: Integers) -> Floats:
     rows, count = at.room_by[active], len(active)
     matrix = np.block([[curved, -rows.T], [rows, np.zeros((count, count))]])
     sides = np.concatenate([-at.gradient, -at.room[active]])
-    found: Floats = np.linalg.lstsq(matrix, sides, rcond=1e-13)[0][: len(curved)]
-    return found
+    return np.asarray(np.linalg.lstsq(matrix, sides, rcond=1e-13)[0][: len(curved)])
 
 
 def _curved(problem: TaskProblem, x: Floats, at: Conditions, active: Integers, y: Floats) -> Floats | None:
