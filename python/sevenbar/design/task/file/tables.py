@@ -45,10 +45,11 @@ def want_of(form: schema.WantForm, linkage: Linkage, folder: Path) -> Want:
         case schema.FigureForm():
             return kinds.FigureWant(form.name, _goal(form, linkage), form.unit, form.weight)
         case schema.DwellForm():
-            level = _zero("level", form.level, linkage, _output(linkage))
-            return kinds.DwellWant(_of_input("range", form.range, linkage), level, form.samples, form.weight)
+            level = _zero("level", form.level, linkage, linkage.drive.output)
+            ends = reading_span("range", form.range, linkage, linkage.drive.joint)
+            return kinds.DwellWant(ends, level, form.samples, form.weight)
         case schema.StraightForm():
-            ends = _of_input("range", form.range, linkage)
+            ends = reading_span("range", form.range, linkage, linkage.drive.joint)
             return kinds.StraightWant(form.point, ends, form.length, form.samples, form.weight)
 
 
@@ -67,9 +68,9 @@ def _function(form: schema.FunctionForm, linkage: Linkage, folder: Path) -> kind
         for name in ("input", "output", "points"):
             if getattr(form, name) is not None:
                 raise RequestError(f"{name}: belongs to y; {given} says it all, so leave it out")
-    columns = linkage.columns.index(linkage.drive.joint), _output(linkage)
+    columns = linkage.drive.joint, linkage.drive.output
     if form.y is not None:
-        x, y = _of_formula(form, linkage, columns)
+        x, y = _of_formula(form, linkage)
     elif form.pairs is not None:
         x, y = (
             np.array(
@@ -88,11 +89,9 @@ def _function(form: schema.FunctionForm, linkage: Linkage, folder: Path) -> kind
     return kinds.FunctionWant(x, y, zeros, form.weight)
 
 
-def _of_formula(
-    form: schema.FunctionForm, linkage: Linkage, columns: tuple[int, int]
-) -> tuple[Floats, Floats]:
+def _of_formula(form: schema.FunctionForm, linkage: Linkage) -> tuple[Floats, Floats]:
     """Readings of input and output that y(x) wants, over the ranges of both or as x and y are."""
-    y = str(form.y)
+    y, drive = str(form.y), linkage.drive
     low, high = form.x
     if not low < high:
         raise RequestError(f"x: {low:g}:{high:g} does not rise; give the lower end first")
@@ -100,14 +99,14 @@ def _of_formula(
     share = wish.input if form.points is None else chebyshev(0.0, 1.0, form.points)
     if form.input is None and form.output is None:
         x = low + (high - low) * share
-        if linkage.turns(columns[0]) and high - low >= math.tau:
+        if linkage.turns(drive.joint) and high - low >= math.tau:
             raise RequestError(
                 f"x: goes over {math.degrees(high - low):g} deg, for it counts in radians; "
                 "give a part of a turn"
             )
         return x, function_of(y)(x)
     ranges = []
-    for name, ends, column in (("input", form.input, columns[0]), ("output", form.output, columns[1])):
+    for name, ends, column in (("input", form.input, drive.joint), ("output", form.output, drive.output)):
         if ends is None:
             raise RequestError(
                 f"{name}: is missing; give both ranges of readings, or neither where x and y are the readings"
@@ -195,20 +194,12 @@ def _timing(given: object, of_table: Floats | None, linkage: Linkage) -> Floats 
                 "give the inputs, as in [0, 10, 20]"
             )
         return of_table
-    column = linkage.columns.index(linkage.drive.joint)
+    column = linkage.drive.joint
     assert isinstance(given, tuple)
     return np.array([reading(f"timing[{i + 1}]", value, linkage, column) for i, value in enumerate(given)])
 
 
-def _of_input(key: str, ends: tuple[Given, Given], linkage: Linkage) -> tuple[float, float]:
-    return reading_span(key, ends, linkage, linkage.columns.index(linkage.drive.joint))
-
-
-def _output(linkage: Linkage) -> int:
-    return linkage.columns.index(linkage.drive.output)
-
-
-def _zero(key: str, value: Given, linkage: Linkage, column: int) -> float | None:
+def _zero(key: str, value: Given, linkage: Linkage, column: str) -> float | None:
     return None if value == "free" else reading(key, value, linkage, column)
 
 
@@ -227,8 +218,8 @@ def must_of(form: schema.MustForm, linkage: Linkage, wants: Sequence[Want]) -> M
     """The must of a table; raises `RequestError` with the key at fault."""
     match form:
         case schema.RangeMust():
-            column = linkage.column(form.joint, "joint")
-            return kinds.InRange(linkage.columns[column], *reading_span("range", form.range, linkage, column))
+            column = linkage.columns[linkage.column(form.joint, "joint")]
+            return kinds.InRange(column, *reading_span("range", form.range, linkage, column))
         case schema.ConeMust():
             return kinds.InCone(form.joint, form.angle, form.seat, form.stud)
         case schema.BoxMust():
@@ -257,7 +248,7 @@ def _most(form: schema.MostMust, linkage: Linkage, wants: Sequence[Want]) -> flo
     unit = residual_unit(want, linkage)
     match want:
         case kinds.FunctionWant() | kinds.DwellWant():
-            return reading("most", form.most, linkage, _output(linkage)) / unit
+            return reading("most", form.most, linkage, linkage.drive.output) / unit
         case kinds.FigureWant():
             # the task is checked for it
             return 1.0
@@ -268,12 +259,13 @@ def _most(form: schema.MostMust, linkage: Linkage, wants: Sequence[Want]) -> flo
 # ---- values whose unit the linkage decides
 
 
-def reading(key: str, value: Given, linkage: Linkage, column: int) -> float:
+def reading(key: str, value: Given, linkage: Linkage, column: str) -> float:
     """A value of a joint [rad, or length]; a plain number is in degrees where it turns."""
-    return joint_value(value if isinstance(value, str) else repr(value), key, linkage, column)
+    text = value if isinstance(value, str) else repr(value)
+    return joint_value(text, key, linkage, linkage.columns.index(column))
 
 
-def reading_span(key: str, ends: tuple[Given, Given], linkage: Linkage, column: int) -> tuple[float, float]:
+def reading_span(key: str, ends: tuple[Given, Given], linkage: Linkage, column: str) -> tuple[float, float]:
     """The two ends of a joint's range [rad, or length]."""
     return reading(key, ends[0], linkage, column), reading(key, ends[1], linkage, column)
 
