@@ -93,10 +93,15 @@ class TaskLoop:
         """The number of a place on a link, as points of it are written."""
         return self._number(self.numbers.word.place(link, at))
 
-    def joint(self, place: int, *, ahead: bool) -> int:
-        """The number of the place of a joint, counted from 0, on the link `ahead` of it, or behind it."""
-        link = place + 1 if ahead else place or len(self.linkage.joints)
-        return self._number(self.numbers.word.rod(link)[0 if ahead else 1])
+    def rod(self, link: int) -> tuple[int, int]:
+        """The numbers of the places of the joints before a link and behind it, both on the link."""
+        before, behind = map(self._number, self.numbers.word.rod(link))
+        return before, behind
+
+    def joint(self, name: str) -> int:
+        """The number of the place of a joint on the link behind it."""
+        link = [joint.name for joint in self.linkage.joints].index(name) + 1
+        return self._number(self.numbers.word.rod(link)[0])
 
     def _number(self, carried: Carried) -> int:
         points = self.numbers.points

@@ -70,9 +70,9 @@ def _cone(loop: TaskLoop, must: InCone) -> Callable[[Here], Rooms]:
 
 def _line(loop: TaskLoop, link: int, place: int, given: Three | None) -> tuple[int, int]:
     """The numbers of two places on a direction of a link, or on its rod, away from one of its joints."""
-    linkage, count = loop.linkage, len(loop.linkage.joints)
+    linkage = loop.linkage
     if given is None and has_length(linkage, link):
-        ends = loop.joint((link - 1) % count, ahead=True), loop.joint(link % count, ahead=False)
+        ends = loop.rod(link)
         return ends if place == link - 1 else ends[::-1]
     way = rod(linkage, link, place) if given is None else np.asarray(given)
     x, y, z = map(float, loop.size / np.linalg.norm(way) * way)
@@ -81,12 +81,8 @@ def _line(loop: TaskLoop, link: int, place: int, given: Three | None) -> tuple[i
 
 def places_in(loop: TaskLoop, must: InBox) -> list[int]:
     """The numbers of the points and joints that stay in a box."""
-    joints = [joint.name for joint in loop.linkage.joints]
     points = [point.name for point in loop.linkage.points]
-    return [
-        loop.named(name) if name in points else loop.joint(joints.index(name), ahead=True)
-        for name in must.names
-    ]
+    return [loop.named(name) if name in points else loop.joint(name) for name in must.names]
 
 
 def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
@@ -104,9 +100,7 @@ def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
 
 
 def _apart(loop: TaskLoop, must: Apart) -> Callable[[Here], Rooms]:
-    count = len(loop.linkage.joints)
-    rods = [(loop.joint(k - 1, ahead=True), loop.joint(k % count, ahead=False)) for k in must.links]
-    ends = [*rods[0], *rods[1]]
+    ends = [end for link in must.links for end in loop.rod(link)]
 
     def rooms(here: Here) -> Rooms:
         apart, by = distance_slopes(here.points[:, ends], here.points_by[:, ends])
