@@ -34,10 +34,10 @@ from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.placing import rotation_of_vector
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.report import TaskDesigns, task_report
 from sevenbar.design.task.search import DesignsFound, designed
-from sevenbar.design.task.small_moves import rotation_of_vector
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
 from sevenbar.design.task.wants.figures import figure_left

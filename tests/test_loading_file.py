@@ -254,8 +254,7 @@ def test_a_body_s_numbers_have_their_place_in_a_draft():
 def test_a_drawn_linkage_that_is_moved_takes_bodies_along_and_leaves_the_ground_s_forces():
     from scipy.spatial.transform import Rotation
 
-    from sevenbar.design.task.match import Placing
-    from sevenbar.design.task.standing import moved
+    from sevenbar.design.task.placing import Placing, moved
 
     tables = (
         "\n[[body]]\nlink = 2\nmass = 2\ncentre = [50, 20, 10]\ninertia = [4, 5, 6, 0.3, 0.2, 0.1]\n"

@@ -16,8 +16,8 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.atlas import Map, motion_map
-from sevenbar.design.maps.critical import NEARLY_REAL, critical_gaps
 from sevenbar.design.maps.plane import Kind, LoopPlane
+from sevenbar.design.maps.rssr_plane import NEARLY_REAL, critical_gaps
 from sevenbar.design.maps.window import axes_of
 from sevenbar.errors import RequestError
 

@@ -10,7 +10,8 @@ import sevenbar as sb
 from sevenbar.description.draft import Draft
 from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.path.generation import path_generation
-from sevenbar.design.task.match import in_order, placed
+from sevenbar.design.task.match import in_order
+from sevenbar.design.task.placing import placed
 from sevenbar.errors import RequestError
 
 

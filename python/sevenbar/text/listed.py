@@ -1,4 +1,4 @@
-"""Columns as callers have them, as lists."""
+"""Columns as callers have them, as lists, and what a result has by its own names."""
 
 from __future__ import annotations
 
@@ -11,3 +11,12 @@ def listed(values: Any) -> Any:
         if hasattr(values, way):
             return getattr(values, way)()
     return list(values) if isinstance(values, tuple) else values
+
+
+def named(found: object, *keys: str) -> dict[str, Any]:
+    """Attributes of a result by their names, arrays and tuples as lists.
+
+    >>> named(1 + 2j, "real", "imag")
+    {'real': 1.0, 'imag': 2.0}
+    """
+    return {key: listed(getattr(found, key)) for key in keys}

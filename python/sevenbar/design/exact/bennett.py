@@ -157,6 +157,5 @@ def _dyad(fixed: Floats, moving: Floats, task: Displacements) -> Dyad:
         direction, moment = turn[1:4] / length, turn[5:] / length
         lines.append((direction, np.cross(direction, moment)))
     (a, p), (b, q) = lines
-    if a @ b < 0:
-        b = -b
+    b = b if a @ b >= 0 else -b
     return line_dyad(a, b, p, q, "RR", task)

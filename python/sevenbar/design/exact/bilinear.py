@@ -105,12 +105,6 @@ def partner(forms: Floats, b: Floats | Complexes) -> Complexes:
     return np.asarray(np.linalg.svd(forms @ b)[2][-1].conj(), dtype=np.complex128)
 
 
-def residual(forms: Floats, a: Complexes, b: Complexes) -> float:
-    """The greatest `|a^T T_k b|` relative to the forms and the points."""
-    sizes = np.linalg.norm(forms, axis=(1, 2)) * np.linalg.norm(a) * np.linalg.norm(b)
-    return float((np.abs(np.einsum("i,kij,j->k", a, forms, b)) / np.where(sizes > 0, sizes, 1.0)).max())
-
-
 def _polished(forms: Floats, b: Complexes) -> tuple[Complexes, Complexes]:
     """A solution by Newton's steps on (1), the lengths of both points held."""
     a, b = partner(forms, b), b / np.linalg.norm(b)

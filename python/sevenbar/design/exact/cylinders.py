@@ -20,13 +20,11 @@ import numpy.typing as npt
 from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, solutions
 from sevenbar.design.exact.draws import directions
-from sevenbar.design.exact.dyads import Dyad
 from sevenbar.design.exact.given import Displacements, place_text, poses_given
-from sevenbar.design.exact.lines import line_dyad, places
+from sevenbar.design.exact.lines import found_dyad
 from sevenbar.design.exact.loops import all_loops, drawn, loop
 from sevenbar.design.exact.spherical import NOTHING, refuse_one_axis
 from sevenbar.errors import RequestError, ends_here
-from sevenbar.kinematics.loop.rigid import unit
 
 #: Dyads CC of five poses over the complex numbers.
 DYADS = POINTS
@@ -56,15 +54,9 @@ def cc_dyads(poses: npt.ArrayLike, *, length_unit: str = "mm") -> ExactAnswers:
         raise RequestError(
             "poses: infinitely many directions of dyads take these five orientations; change one of them"
         )
-    dyads: list[Dyad] = []
-    for i in np.flatnonzero(found.real):
-        a, b = unit(found.a[i].real), unit(found.b[i].real)
-        b = b if a @ b >= 0 else -b
-        if np.linalg.norm(np.cross(a, b)) < NOTHING:
-            continue
-        both = places(a, b, "CC", task)
-        if both is not None:
-            dyads.append(line_dyad(a, b, *both, "CC", task))
+    real = [(found.a[i].real, found.b[i].real) for i in np.flatnonzero(found.real)]
+    every = [found_dyad(a, b, "CC", task) for a, b in real if np.linalg.norm(np.cross(a, b)) >= NOTHING]
+    dyads = [dyad for dyad in every if dyad is not None]
     answers = all_loops(dyads, task, "Linkage CCCC", length_unit)
     how = f"{POINTS} pairs of directions as of spherical dyads, the places of each from 4 linear equations"
     known = int(found.multiplicity.sum())
@@ -88,13 +80,9 @@ def rccc_poses(
     forms = task.turns - np.eye(3)
     answers: list[ExactAnswer] = []
     for draw in directions(samples, 8, seed):
-        dyads: list[Dyad] = []
-        for kind, b, free in (("RC", draw[:3], None), ("CC", draw[3:6], 3 * draw[6:])):
-            a, b = unit(np.cross(*(forms @ b))), unit(b)
-            b = b if a @ b >= 0 else -b
-            both = places(a, b, kind, task, free)
-            if both is not None:
-                dyads.append(line_dyad(a, b, *both, kind, task))
+        ways = (("RC", draw[:3], None), ("CC", draw[3:6], 3 * draw[6:]))
+        found = [found_dyad(np.cross(*(forms @ b)), b, kind, task, free) for kind, b, free in ways]
+        dyads = [dyad for dyad in found if dyad is not None]
         if len(dyads) == 2:
             title = f"Linkage RCCC {len(answers) + 1}"
             answers.append(loop(dyads[0], dyads[1], task, title, length_unit))

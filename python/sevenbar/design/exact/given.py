@@ -51,32 +51,20 @@ class Displacements:
 
 def planar_given(poses: npt.ArrayLike, least: int, most: int) -> Displacements:
     """The displacements of planar poses (n, 3): x, y [length] and angle [rad]."""
-    given = numbers_given("poses", poses)
-    if given.ndim != 2 or given.shape[1] != 3:
-        raise RequestError(
-            f"poses: an array of shape {given.shape} does not fit; give rows x, y, angle (n, 3)"
-        )
+    given = _given("poses", poses, (3,), "rows x, y, angle (n, 3)")
     places = np.column_stack([given[:, :2], np.zeros(len(given))])
     return displacements(pose(about(2, given[:, 2]), places), least, most, what="poses")
 
 
 def orientations_given(orientations: npt.ArrayLike, least: int, most: int) -> Displacements:
     """The displacements of rotation matrices (n, 3, 3)."""
-    given = numbers_given("orientations", orientations)
-    if given.ndim != 3 or given.shape[1:] != (3, 3):
-        raise RequestError(
-            f"orientations: an array of shape {given.shape} does not fit; give rotation matrices (n, 3, 3)"
-        )
+    given = _given("orientations", orientations, (3, 3), "rotation matrices (n, 3, 3)")
     return displacements(pose(_rotations("orientations", given)), least, most, what="orientations")
 
 
 def poses_given(poses: npt.ArrayLike, least: int, most: int) -> Displacements:
     """The displacements of rigid motions (n, 4, 4)."""
-    given = numbers_given("poses", poses)
-    if given.ndim != 3 or given.shape[1:] != (4, 4):
-        raise RequestError(
-            f"poses: an array of shape {given.shape} does not fit; give rigid motions (n, 4, 4)"
-        )
+    given = _given("poses", poses, (4, 4), "rigid motions (n, 4, 4)")
     last = np.abs(given[:, 3] - [0.0, 0.0, 0.0, 1.0]).max(axis=1)
     if (last > RIGID).any():
         raise RequestError(
@@ -84,6 +72,14 @@ def poses_given(poses: npt.ArrayLike, least: int, most: int) -> Displacements:
         )
     turns = _rotations("poses", given[:, :3, :3])
     return displacements(pose(turns, given[:, :3, 3]), least, most, what="poses")
+
+
+def _given(name: str, values: npt.ArrayLike, shape: tuple[int, ...], what: str) -> Floats:
+    """Finite numbers (n, ..) of a shape, or `RequestError` saying what to give."""
+    given = numbers_given(name, values)
+    if given.ndim != 1 + len(shape) or given.shape[1:] != shape:
+        raise RequestError(f"{name}: an array of shape {given.shape} does not fit; give {what}")
+    return given
 
 
 def displacements(poses: Floats, least: int, most: int, *, what: str) -> Displacements:

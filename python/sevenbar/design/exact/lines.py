@@ -20,13 +20,19 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.exact.dyads import Dyad, Line
 from sevenbar.design.exact.given import Displacements
-from sevenbar.kinematics.loop.rigid import cross, pose, turns_about
+from sevenbar.kinematics.loop.rigid import cross, pose, turns_about, unit
 
 #: Singular value, relative to the greatest, below which equations for the places depend on each other.
 RANK = 1e-11
 
 #: Closure error of the equations, relative to the task's lengths, above which they contradict each other.
 CONTRADICT = 1e-8
+
+
+def facing(a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Two axes at length 1, of the second and its opposite the one that is nearer to the first."""
+    a, b = unit(a), unit(b)
+    return a, b if a @ b >= 0 else -b
 
 
 def link_motions(a: Floats, b: Floats, moved: Floats) -> Floats:
@@ -67,6 +73,15 @@ def places(
     if free is not None:
         solution = solution + base[rank:].T @ free[: 6 - rank]
     return solution[:3], solution[3:]
+
+
+def found_dyad(
+    a: Floats, b: Floats, kind: str, task: Displacements, free: Floats | None = None
+) -> Dyad | None:
+    """The dyad of two directions, with `places` for the rest; `None` without one."""
+    a, b = facing(a, b)
+    both = places(a, b, kind, task, free)
+    return None if both is None else line_dyad(a, b, *both, kind, task)
 
 
 def line_dyad(a: Floats, b: Floats, p: Floats, q: Floats, kind: str, task: Displacements) -> Dyad:

@@ -8,6 +8,7 @@ first pose, at which all are zero.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import permutations
 
 import numpy as np
 
@@ -57,11 +58,10 @@ def all_loops(
 ) -> tuple[ExactAnswer, ...]:
     """Every pair of dyads as a linkage, driven by either; without pairs with a joint's line in common."""
     found: list[ExactAnswer] = []
-    for i, driver in enumerate(dyads):
-        for j, follower in enumerate(dyads):
-            if i != j and not share_a_line(driver, follower):
-                title = f"{name}, dyads {i + 1}, {j + 1}"
-                found.append(loop(driver, follower, task, title, length_unit))
+    for i, j in permutations(range(len(dyads)), 2):
+        if not share_a_line(dyads[i], dyads[j]):
+            title = f"{name}, dyads {i + 1}, {j + 1}"
+            found.append(loop(dyads[i], dyads[j], task, title, length_unit))
     return tuple(found)
 
 

@@ -103,30 +103,20 @@ def planar_dyads(task: Displacements, samples: int, seed: int) -> list[Dyad]:
     forms = _forms(task)
     if len(task.motions) == 5:
         found = solutions(forms)
-        pairs = (
-            []
-            if found is None
-            else [
-                (a.real, b.real)
-                for a, b, real in zip(found.a, found.b, found.real, strict=True)
-                if real and not _is_circular(b)
-            ]
-        )
+        rows = () if found is None else zip(found.a, found.b, found.real, strict=True)
+        pairs = [(a.real, b.real) for a, b, real in rows if real and not _is_circular(b)]
     else:
         pairs, _ = family(forms, None, samples, seed, PIVOTS)
     return _dyads(pairs, task)
 
 
 def _forms(task: Displacements) -> Floats:
-    """The forms (n - 1, 3, 3) of (1)."""
-    return np.array([_form(r, d) for r, d in zip(task.turns[:, :2, :2], task.shifts[:, :2], strict=True)])
-
-
-def _form(turn: Floats, shift: Floats) -> Floats:
-    """T (3, 3) of (1)."""
-    found = np.zeros((3, 3))
-    found[:2, :2], found[:2, 2] = np.eye(2) - turn, -shift
-    found[2, :2], found[2, 2] = shift @ turn, shift @ shift / 2
+    """The forms T (n - 1, 3, 3) of (1)."""
+    turns, shifts = task.turns[:, :2, :2], task.shifts[:, :2]
+    found = np.zeros((len(turns), 3, 3))
+    for form, turn, shift in zip(found, turns, shifts, strict=True):
+        form[:2, :2], form[:2, 2] = np.eye(2) - turn, -shift
+        form[2, :2], form[2, 2] = shift @ turn, shift @ shift / 2
     return found
 
 

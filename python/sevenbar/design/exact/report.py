@@ -18,6 +18,7 @@ from sevenbar.design.files import design_files
 from sevenbar.design.tables import design_table, plain_designs
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table, page
+from sevenbar.text.listed import named
 
 #: Closure errors, relative to the size of the linkage, below which nothing is to be seen but rounding.
 ROUNDING = 1e-9
@@ -39,7 +40,11 @@ class ExactDesigns:
 
 def exact_report(count: int, command: str) -> Report[ExactDesigns]:
     """How answers are reported, with files of at most `count` linkages; their heads name the `command`."""
-    files = design_files(count, (), head=partial(_head, command), as_dict=as_dict)
+
+    def head(designs: ExactDesigns) -> list[str]:
+        return [f"answer to: {designs.found.task} of {designs.source}", f"made by: {command}"]
+
+    files = design_files(count, (), head=head, as_dict=as_dict)
     return Report(partial(text, count), as_dict, files)
 
 
@@ -79,11 +84,7 @@ def as_dict(designs: ExactDesigns) -> dict[str, Any]:
         "format": 1,
         "task": found.task,
         "source": designs.source,
-        "counted": found.counted,
-        "theory": found.theory,
-        "found": found.found,
-        "real": found.real,
-        "how": found.how,
+        **named(found, "counted", "theory", "found", "real", "how"),
         "dyads": [
             {
                 "joints": dyad.kind,
@@ -112,7 +113,3 @@ def _place(line: Line, size: float, plane: bool) -> str:
     if plane:
         return f"{place_text(line.at[:2], size)} along {place_text(line.axis[:2], 1.0)}"
     return f"{place_text(line.at, size)} along {place_text(line.axis, 1.0)}"
-
-
-def _head(command: str, designs: ExactDesigns) -> list[str]:
-    return [f"answer to: {designs.found.task} of {designs.source}", f"made by: {command}"]

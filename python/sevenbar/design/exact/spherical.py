@@ -21,10 +21,10 @@ from sevenbar.design.exact.bilinear import POINTS, solutions
 from sevenbar.design.exact.draws import family
 from sevenbar.design.exact.dyads import Dyad, Line
 from sevenbar.design.exact.given import Displacements, numbers_given, orientations_given, place_text
-from sevenbar.design.exact.lines import link_motions
+from sevenbar.design.exact.lines import facing, link_motions
 from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
-from sevenbar.kinematics.loop.rigid import pose, unit
+from sevenbar.kinematics.loop.rigid import pose
 
 #: Dyads of five orientations over the complex numbers.
 DYADS = POINTS
@@ -105,9 +105,7 @@ def _dyads(pairs: list[tuple[Floats, Floats]], task: Displacements, radius: floa
     for a, b in pairs:
         if not np.any(a):
             continue
-        a, b = unit(a), unit(b)
-        # of an axis and its opposite the ones that are nearer to each other
-        b = b if a @ b >= 0 else -b
+        a, b = facing(a, b)
         if np.linalg.norm(np.cross(a, b)) > NOTHING:
             link = link_motions(a, b, np.einsum("nij,j->ni", task.motions[:, :3, :3], b))
             found.append(Dyad(Line("R", radius * a, a), Line("R", radius * b, b), pose(link)))

@@ -20,7 +20,7 @@ from sevenbar.design.pose_table import TURNS, read_turns, rotations
 from sevenbar.design.wish import read_pairs
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.loop.rigid import pose
-from sevenbar.text.table import TextTable, read_table
+from sevenbar.text.table import read_table
 from sevenbar.text.units import LENGTHS
 
 #: Linkages, each with what it is given.
@@ -95,7 +95,7 @@ def read_exact_task(path: Path) -> ExactTask:
     """The task of a table; raises `TableError` with the line and what is wrong."""
     table = read_table(path, "pairs of angles, or poses")
     turned = [name for name in TURNS if table.column(name) is not None]
-    placed = [letter for letter in "xyz" if table.column(letter) is not None]
+    placed = {letter: place for letter in "xyz" if (place := table.column(letter)) is not None}
     if not turned and not placed and len(table.names) == 2:
         return ExactTask("pairs of angles", read_pairs(path))
     if not turned:
@@ -103,25 +103,15 @@ def read_exact_task(path: Path) -> ExactTask:
     turns = read_turns(table)
     if not placed:
         return ExactTask("orientations", (rotations(turns),))
-    unit = _length_unit(table, placed[0])
-    places = {letter: _places(table, letter, unit) for letter in placed}
-    at = np.column_stack([places.get(letter, np.zeros(len(turns))) for letter in "xyz"])
+    # the linkage is written in the unit of the places, if linkages have it
+    written = table.name_and_unit(next(iter(placed.values())))[1]
+    unit = written if written in LENGTHS else "mm"
+    at = np.zeros((len(turns), 3))
+    for letter, column in placed.items():
+        values = at[:, "xyz".index(letter)] = table.sized(
+            column, ("slide", 0), unit, what=letter, example=unit
+        )
+        table.refuse_gaps({column: values}, "leave the row out")
     if "z" not in placed and turned == ["turn_z"]:
         return ExactTask("poses in a plane", (np.column_stack([at[:, :2], turns[:, 2]]),), unit)
     return ExactTask("poses in space", (pose(rotations(turns), at),), unit)
-
-
-def _length_unit(table: TextTable, letter: str) -> str:
-    """The unit in which the linkage is written: that of the places, if linkages have it."""
-    column = table.column(letter)
-    assert column is not None
-    written = table.name_and_unit(column)[1]
-    return written if written in LENGTHS else "mm"
-
-
-def _places(table: TextTable, letter: str, unit: str) -> Floats:
-    column = table.column(letter)
-    assert column is not None
-    values = table.sized(column, ("slide", 0), unit, what=letter, example=unit)
-    table.refuse_gaps({column: values}, "leave the row out")
-    return values

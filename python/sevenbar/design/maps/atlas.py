@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers, whole_number
 from sevenbar.description.draft import Draft, HeldDimensions, held_of
-from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
+from sevenbar.design.maps.mesh import Scheme, meshed
 from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane
 from sevenbar.design.maps.rssr_plane import RssrPlane
@@ -23,20 +23,27 @@ from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress
 from sevenbar.text.words import say
 
-#: Lines of the grid along each dimension: of an RSSR, and of loops that take some 10 ms a point.
-GRID, LOOP_GRID = 61, 25
-
 #: Fewest and most lines of a grid.
 GRID_ENDS = (3, 1001)
 
-#: Inputs in a turn: an RSSR's extremes do not depend on them, a loop's are refined from them.
-SAMPLES, LOOP_SAMPLES = 8, 72
 
-#: Squares along a range where boundaries are followed: an RSSR's, and a loop's, whose points are dear.
-FINE, LOOP_FINE = 800, 0
+class Fineness(NamedTuple):
+    """A plane, and how finely it is searched.
 
-#: How near chords keep to boundaries [share of the ranges]: a bend of half the window's radius at `FINE`.
-TOLERANCE, LOOP_TOLERANCE = 1e-6, 1e-3
+    `lines` of the grid along each dimension; `fine` squares along a range where boundaries are followed, none
+    where points are dear; how near chords keep to boundaries [share of the ranges]; inputs in a turn.
+    """
+
+    plane: type[Plane]
+    lines: int
+    fine: int
+    tolerance: float
+    samples: int
+
+
+#: An RSSR, whose extremes do not depend on the inputs: boundaries to a bend of half the window's radius. And
+#: loops that take some 10 ms a point, whose extremes are refined from the inputs.
+RSSR, LOOP = Fineness(RssrPlane, 61, 800, 1e-6, 8), Fineness(LoopPlane, 25, 0, 1e-3, 72)
 
 #: Regions, holes and boundaries not wider than this are not drawn [tolerances]: where a boundary is a double
 #: one, as of a symmetric linkage, rounding leaves such specks on it.
@@ -177,18 +184,15 @@ def motion_map(
     column = linkage.input_column(input)
     driver = linkage.columns[column]
     places = {axis.dimension.place[0] for axis in axes}
-    plane: Plane
-    if draft.linkage.form == "rssr" and places <= {"rssr", "drive", "point"}:
-        lines = _lines(grid, GRID)
-        scheme = _scheme(lines, FINE, TOLERANCE)
-        plane = RssrPlane(draft, axes, driver, SAMPLES, progress)
-    else:
-        lines = _lines(grid, LOOP_GRID)
-        scheme = _scheme(lines, LOOP_FINE, LOOP_TOLERANCE)
-        plane = LoopPlane(draft, axes, driver, LOOP_SAMPLES, progress)
+    closed_form = linkage.form == "rssr" and places <= {"rssr", "drive", "point"}
+    kind, usual, fine, tolerance, samples = RSSR if closed_form else LOOP
+    lines = usual if grid is None else whole_number("grid", grid, *GRID_ENDS, "a count of lines")
+    scheme = _scheme(lines, fine, tolerance)
+    plane: Plane = kind(draft, axes, driver, samples, progress)
     # what is not covered is reported of the design itself
-    motion = linkage.motion(SAMPLES, input=driver)
+    motion = linkage.motion(RSSR.samples, input=driver)
     mesh = meshed(plane, scheme)
+    ticks = range(0, scheme.size + 1, 1 << scheme.finest)
     speck = SPECK * scheme.tolerance
     lines_between = tuple(line for line in boundaries(mesh) if np.ptp(line.places, axis=0).max() > speck)
     parts = tuple(part.without(speck) for part in regions(mesh) if np.ptp(part.outline, axis=0).max() > speck)
@@ -197,7 +201,7 @@ def motion_map(
         input=driver,
         axes=axes,
         kinds=tuple(plane.kinds),
-        grid=_grid(mesh),
+        grid=np.array([[mesh.corners[x, y] for x in ticks] for y in ticks]),
         boundaries=lines_between,
         regions=parts,
         design=_design(plane, axes, motion, lines_between, scheme.tolerance),
@@ -208,22 +212,11 @@ def motion_map(
     )
 
 
-def _lines(grid: int | None, default: int) -> int:
-    """How many lines a grid has, checked."""
-    return default if grid is None else whole_number("grid", grid, *GRID_ENDS, "a count of lines")
-
-
 def _scheme(lines: int, fine: int, tolerance: float) -> Scheme:
     cells = lines - 1
     regular = max(0, int(np.ceil(np.log2(fine / cells)))) if fine > cells else 0
     finest = max(regular, int(np.ceil(np.log2(1.0 / (tolerance * cells)))))
     return Scheme(cells, regular, finest, tolerance)
-
-
-def _grid(mesh: Mesh) -> Integers:
-    width = 1 << mesh.scheme.finest
-    count = mesh.scheme.cells + 1
-    return np.array([[mesh.corners[x * width, y * width] for x in range(count)] for y in range(count)])
 
 
 def _design(
@@ -239,17 +232,17 @@ def _design(
     steps: list[NearestChange] = []
     for place, axis in enumerate(axes) if inside else ():
         crossings = _crossings(lines, here, place)
-        for way, sign in (("down", -1), ("up", 1)):
-            ahead = [
-                (sign * (at - here[place]), at, k) for at, *k in crossings if sign * (at - here[place]) > 0
-            ]
+        ways: tuple[tuple[Literal["down", "up"], int], ...] = (("down", -1), ("up", 1))
+        for way, sign in ways:
+            far = [(sign * (at - here[place]), at, k) for at, *k in crossings]
+            ahead = [one for one in far if one[0] > 0]
             if not ahead:
-                steps.append(NearestChange(axis, way, None, None))  # type: ignore[arg-type]
+                steps.append(NearestChange(axis, way, None, None))
                 continue
             _, at, (low, high) = min(ahead)
             exact = _exact(plane, here, place, at, tolerance)
             beyond = plane.kinds[high if sign > 0 else low]
-            steps.append(NearestChange(axis, way, float(axis.value(exact)), beyond))  # type: ignore[arg-type]
+            steps.append(NearestChange(axis, way, float(axis.value(exact)), beyond))
     return Design(values[0], values[1], inside, kind, tuple(steps))
 
 

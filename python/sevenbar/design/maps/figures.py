@@ -11,12 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
-from matplotlib.patheffects import AbstractPathEffect, withStroke
 
-from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.heights import Heights
-from sevenbar.design.maps.lettering import LINE, RASTER, is_free, names, take
+from sevenbar.design.maps.lettering import LINE, RASTER, is_free, names, take, write
 from sevenbar.design.maps.plane import Kind
 from sevenbar.drawing.asked import asked_style
 from sevenbar.drawing.figure import new_figure
@@ -106,14 +104,9 @@ def draw(
         figure = new_figure(width, height)
         margin = 0.62 * scale
         wide = 2.75 * scale if side else 0.0
-        axes = figure.add_axes(
-            (
-                (margin + 0.2 * scale) / width,
-                margin / height,
-                1 - (2 * margin + wide) / width,
-                1 - (1.45 * margin + 0.15 * scale) / height,
-            )
-        )
+        left, below = (margin + 0.2 * scale) / width, margin / height
+        room = (1 - (2 * margin + wide) / width, 1 - (1.45 * margin + 0.15 * scale) / height)
+        axes = figure.add_axes((left, below, *room))
         _fill(axes, of, scale, faint=heights is not None)
         taken = np.zeros((RASTER, RASTER), dtype=bool)
         _design(axes, of, scale, taken)
@@ -155,7 +148,8 @@ def _shaded(colour: str | tuple[float, float, float], by: float) -> tuple[float,
 
 def _fill(axes: Axes, of: Map, scale: float, *, faint: bool) -> None:
     for region in of.regions:
-        path = Path.make_compound_path(*(_closed(of, loop) for loop in (region.outline, *region.holes)))
+        loops = (of.values(np.vstack([loop, loop[:1]])) for loop in (region.outline, *region.holes))
+        path = Path.make_compound_path(*(Path(loop, closed=True) for loop in loops))
         axes.add_patch(PathPatch(path, zorder=1, **look(of, of.kinds[region.kind], faint=faint)))
     for line in of.boundaries:
         alike = of.kinds[line.left].motion_type == of.kinds[line.right].motion_type
@@ -163,13 +157,8 @@ def _fill(axes: Axes, of: Map, scale: float, *, faint: bool) -> None:
         axes.plot(*of.values(line.places).T, color=LINE, solid_capstyle="round", zorder=4, **style)
 
 
-def _closed(of: Map, loop: Floats) -> Path:
-    return Path(of.values(np.vstack([loop, loop[:1]])), closed=True)
-
-
 def _contours(axes: Axes, heights: Heights, of: Map, scale: float, taken: np.ndarray) -> None:
     """Contour lines with their values written on them."""
-    halo = [withStroke(linewidth=2.6 * scale, foreground="white")]
     suffix = _suffix(heights.unit)
     for line in heights.contours:
         axes.plot(*of.values(line.places).T, color=CONTOUR, lw=1.05 * scale, zorder=3, solid_capstyle="round")
@@ -190,20 +179,18 @@ def _contours(axes: Axes, heights: Heights, of: Map, scale: float, taken: np.nda
                 continue
             (x0, y0), (x1, y1) = of.values(np.array(ends)).tolist()
             turn = np.degrees(np.arctan2(y1 - y0, x1 - x0))
-            label = axes.text(
-                (x0 + x1) / 2,
-                (y0 + y1) / 2,
+            write(
+                axes,
+                np.array([(x0 + x1) / 2, (y0 + y1) / 2]),
                 f"{line.level:g}{suffix}",
+                7.5 * scale,
+                (2.6 * scale, "white"),
                 color=CONTOUR,
-                fontsize=7.5 * scale,
-                ha="center",
-                va="center",
                 rotation=(turn + 90) % 180 - 90,
                 rotation_mode="anchor",
                 transform_rotates_text=True,
                 zorder=5,
             )
-            label.set_path_effects([*halo])
             take(taken, middle, LABEL)
 
 
@@ -223,7 +210,8 @@ def _design(axes: Axes, of: Map, scale: float, taken: np.ndarray) -> None:
     if not design.inside:
         return
     here = (design.x, design.y)
-    stroke: list[AbstractPathEffect] = [withStroke(linewidth=2.8 * scale, foreground="white")]
+    arrow = {"arrowstyle": "-|>", "lw": 1.0 * scale, "color": MARK, "mutation_scale": 9 * scale}
+    arrow |= {"shrinkA": 0, "shrinkB": 0}
     share = of.shares_of(np.array([here]))[0]
     take(taken, share, (0.03, 0.03))
     for step in design.steps:
@@ -231,43 +219,26 @@ def _design(axes: Axes, of: Map, scale: float, taken: np.ndarray) -> None:
             continue
         place = of.axes.index(step.axis)
         end = (step.value, here[1]) if place == 0 else (here[0], step.value)
-        axes.annotate(
-            "",
-            end,
-            here,
-            arrowprops={
-                "arrowstyle": "-|>",
-                "lw": 1.0 * scale,
-                "color": MARK,
-                "shrinkA": 0,
-                "shrinkB": 0,
-                "mutation_scale": 9 * scale,
-            },
-            zorder=6,
-        )
+        axes.annotate("", end, here, arrowprops=arrow, zorder=6)
         far = of.shares_of(np.array([end]))[0]
         middle = 0.5 * (far + share)
         reach = np.abs(far - share) / 2
         take(taken, middle, (reach[0] + 0.012, reach[1] + 0.012))
-        text = f"{step.value - here[place]:+.4g}"
         if abs(far[place] - share[place]) < 0.07:
             middle = far + (0.03 if step.way == "up" else -0.03) * np.eye(2)[place]
         else:
             middle = middle + 0.014 * np.eye(2)[1 - place]
-        x, y = of.values(middle[None, :])[0]
-        label = axes.text(
-            x,
-            y,
-            text,
-            color=MARK,
-            fontsize=8 * scale,
-            ha="center",
+        write(
+            axes,
+            of.values(middle[None, :])[0],
+            f"{step.value - here[place]:+.4g}",
+            8 * scale,
+            (2.8 * scale, "white"),
             va="center" if place else "bottom",
+            color=MARK,
             rotation=90 * place,
-            zorder=7,
             clip_on=True,
         )
-        label.set_path_effects(stroke)
         take(taken, middle, (0.035, 0.02) if place == 0 else (0.02, 0.035))
     axes.plot(*here, "o", ms=8.5 * scale, mfc="white", mec=MARK, mew=1.8 * scale, zorder=8)
     axes.plot(*here, "o", ms=2.6 * scale, color=MARK, zorder=9)
@@ -298,14 +269,8 @@ def _title(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: 
                 what = say("{measure}, circuit {number}", measure=what, number=number)
     box = axes.get_position()
     name = short(of.linkage.heading, 60)
-    figure.text(
-        box.x0,
-        box.y1 + 0.012,
-        say("{linkage}: {quantity}", linkage=name, quantity=what),
-        fontsize=13 * scale,
-        va="bottom",
-        ha="left",
-    )
+    words = say("{linkage}: {quantity}", linkage=name, quantity=what)
+    figure.text(box.x0, box.y1 + 0.012, words, fontsize=13 * scale, va="bottom", ha="left")
 
 
 def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: float) -> None:
@@ -315,31 +280,21 @@ def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: f
     keys: list[Any] = []
     for kind, share in of.areas.items():
         own = look(of, kind, faint=heights is not None) | {"lw": 0.8 * scale}
-        keys.append(Patch(label=f"{of.name(kind)}  {_percent(share)}", **own))
+        percent = f"{100 * share:.1f} %" if share >= 5e-4 else "< 0.1 %"
+        keys.append(Patch(label=f"{of.name(kind)}  {percent}", **own))
+
+    def line(label: str, **look: Any) -> None:
+        keys.append(Line2D([], [], label=label, **look))
+
     if heights is not None:
         unit = f" [{_unit(heights.unit)}]" if heights.unit else ""
-        keys.append(
-            Line2D([], [], color=CONTOUR, lw=1.05 * scale, label=f"{say(heights.measure.title)}{unit}")
-        )
-    keys.append(Line2D([], [], color=LINE, lw=1.6 * scale, label=say("motion type changes")))
+        line(f"{say(heights.measure.title)}{unit}", color=CONTOUR, lw=1.05 * scale)
+    line(say("motion type changes"), color=LINE, lw=1.6 * scale)
     if any(of.kinds[b.left].motion_type == of.kinds[b.right].motion_type for b in of.boundaries):
-        keys.append(
-            Line2D([], [], color=LINE, lw=1.0 * scale, ls=(0, (4, 2)), label=say("circuits join or part"))
-        )
+        line(say("circuits join or part"), color=LINE, lw=1.0 * scale, ls=(0, (4, 2)))
     if of.design.inside:
-        keys.append(
-            Line2D(
-                [],
-                [],
-                color=MARK,
-                marker="o",
-                ls="",
-                ms=8 * scale,
-                mfc="white",
-                mew=1.6 * scale,
-                label=say("the design"),
-            )
-        )
+        mark: dict[str, Any] = {"marker": "o", "ms": 8 * scale, "mfc": "white", "mew": 1.6 * scale}
+        line(say("the design"), color=MARK, ls="", **mark)
     legend = figure.legend(
         handles=keys,
         loc="upper left",
@@ -353,19 +308,8 @@ def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: f
     )
     figure.canvas.draw()
     below = legend.get_window_extent().transformed(figure.transFigure.inverted()).y0
-    figure.text(
-        left,
-        below - 0.03,
-        "\n".join(_facts(of, heights)),
-        fontsize=8.8 * scale,
-        va="top",
-        ha="left",
-        linespacing=1.5,
-    )
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.1f} %" if share >= 5e-4 else "< 0.1 %"
+    facts = "\n".join(_facts(of, heights))
+    figure.text(left, below - 0.03, facts, fontsize=8.8 * scale, va="top", ha="left", linespacing=1.5)
 
 
 def _facts(of: Map, heights: Heights | None) -> list[str]:

@@ -6,6 +6,8 @@ import math
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -97,28 +99,24 @@ def measure_heights(
     if isinstance(take, (int, np.integer)):
         refuse_missing_circuit(of, int(take))
     wanted = None if levels is None else levels_of(levels)
-    nodes, kinds, triangles = _net(of)
-    table = of.plane.values_at(nodes, chosen, take)
+    net = _net(of)
+    table = of.plane.values_at(net.nodes, chosen, take)
     (own,) = of.plane.values_at(of.shares_of(np.array([[of.design.x, of.design.y]])), chosen, take)
     linkage = of.linkage
     output = linkage.columns[linkage.other_column(linkage.columns.index(of.input))]
     found = []
     for measure, values, here in zip(chosen, table.T, own.tolist(), strict=True):
         steps = wanted if wanted is not None else _round_levels(values)
-        contours = tuple(_contours(of, measure, take, steps, nodes, values, kinds, triangles))
-        found.append(
-            Heights(
-                measure,
-                take,
-                measure.unit(linkage, output),
-                tuple(steps),
-                contours,
-                nodes,
-                values,
-                None if math.isnan(here) else here,
-            )
-        )
+        read = partial(_read, of, measure, take)
+        contours = tuple(_contours(of, net, values, steps, read))
+        unit, design = measure.unit(linkage, output), None if math.isnan(here) else here
+        found.append(Heights(measure, take, unit, tuple(steps), contours, net.nodes, values, design))
     return tuple(found)
+
+
+def _read(of: Map, measure: Measure, take: Take, places: Floats) -> Floats:
+    """A measure at places (n, 2) [shares], (n,)."""
+    return of.plane.values_at(places, [measure], take)[:, 0]
 
 
 def with_contours(measures: Iterable[str | Measure | Callable[[Motion], float]]) -> tuple[Measure, ...]:
@@ -177,8 +175,16 @@ def _round_levels(values: Floats) -> list[float]:
     return [float(tick) for tick in ticks if finite.min() < tick < finite.max()]
 
 
-def _net(of: Map) -> tuple[Floats, Integers, Integers]:
-    """Places [shares], their kinds, and triangles between places of one kind that cross no boundary."""
+class Net(NamedTuple):
+    """Places (n, 2) [shares], their kinds (n,), and triangles between places of one kind (m, 3)."""
+
+    nodes: Floats
+    kinds: Integers
+    triangles: Integers
+
+
+def _net(of: Map) -> Net:
+    """Triangles that cross no boundary."""
     lines = len(of.grid)
     step = min(1.0 / (ALONG * (lines - 1)), BEND * _margin(of) / INSIDE)
     ticks = np.linspace(0.0, 1.0, lines)
@@ -196,8 +202,8 @@ def _net(of: Map) -> tuple[Floats, Integers, Integers]:
         triangles.append(corners + count)
         count += len(own)
     if not nodes:
-        return np.empty((0, 2)), np.empty(0, dtype=np.int64), np.empty((0, 3), dtype=np.int64)
-    return np.concatenate(nodes), np.concatenate(kinds), np.concatenate(triangles)
+        return Net(np.empty((0, 2)), np.empty(0, dtype=np.int64), np.empty((0, 3), dtype=np.int64))
+    return Net(np.concatenate(nodes), np.concatenate(kinds), np.concatenate(triangles))
 
 
 def _triangles(
@@ -263,22 +269,14 @@ def _beside(loop: Floats, step: float, inside: float) -> Floats:
     piece = np.clip(np.searchsorted(distance, wanted, side="right") - 1, 0, len(length) - 1)
     part = (wanted - distance[piece]) / length[piece]
     left = np.column_stack([-along[:, 1], along[:, 0]]) / length[:, None]
-    places: Floats = np.clip(start[piece] + part[:, None] * along[piece] + inside * left[piece], 0.0, 1.0)
-    return places
+    return np.asarray(np.clip(start[piece] + part[:, None] * along[piece] + inside * left[piece], 0.0, 1.0))
 
 
 def _contours(
-    of: Map,
-    measure: Measure,
-    take: Take,
-    levels: Sequence[float],
-    nodes: Floats,
-    values: Floats,
-    kinds: Integers,
-    triangles: Integers,
+    of: Map, net: Net, values: Floats, levels: Sequence[float], read: Callable[[Floats], Floats]
 ) -> Iterable[Contour]:
     """The contour lines of a measure over triangles, each point brought to its level by false position."""
-    whole = triangles[np.isfinite(values[triangles]).all(axis=1)]
+    whole = net.triangles[np.isfinite(values[net.triangles]).all(axis=1)]
     spacing = min(np.diff(levels), default=abs(levels[0]) if levels else 1.0) or 1.0
     for level in levels:
         high = values >= level
@@ -290,11 +288,10 @@ def _contours(
             a, b, c = corners[alone], corners[alone - 2], corners[alone - 1]
             first, second = (min(a, b), max(a, b)), (min(a, c), max(a, c))
             # what is higher stays on the left
-            pieces[int(kinds[a])].append((first, second) if high[a] else (second, first))
+            pieces[int(net.kinds[a])].append((first, second) if high[a] else (second, first))
         edges = sorted({edge for own in pieces.values() for piece in own for edge in piece})
-        places = dict(
-            zip(edges, _crossed(of, measure, take, level, spacing, nodes, values, edges), strict=True)
-        )
+        found = _crossed(read, level, EXACT * spacing, net.nodes, values, edges)
+        places = dict(zip(edges, found, strict=True))
         for kind, own in sorted(pieces.items()):
             for line in joined(np.array([[places[first], places[second]] for first, second in own])):
                 yield from _inside(of, level, kind, line)
@@ -311,11 +308,9 @@ def _inside(of: Map, level: float, kind: int, places: Floats) -> Iterable[Contou
 
 
 def _crossed(
-    of: Map,
-    measure: Measure,
-    take: Take,
+    read: Callable[[Floats], Floats],
     level: float,
-    spacing: float,
+    exact: float,
     nodes: Floats,
     values: Floats,
     edges: Sequence[tuple[int, int]],
@@ -333,11 +328,9 @@ def _crossed(
     for _ in range(MOST_TRIES):
         if not open_.size:
             break
-        rest = (
-            of.plane.values_at(start[open_] + part[open_, None] * along[open_], [measure], take)[:, 0] - level
-        )
+        rest = read(start[open_] + part[open_, None] * along[open_]) - level
         # without a value there is nothing to gain
-        open_, rest = open_[np.abs(rest) > EXACT * spacing], rest[np.abs(rest) > EXACT * spacing]
+        open_, rest = open_[np.abs(rest) > exact], rest[np.abs(rest) > exact]
         same = (rest > 0) == (below[open_] > 0)
         low[open_] = np.where(same, part[open_], low[open_])
         high[open_] = np.where(same, high[open_], part[open_])
@@ -347,5 +340,4 @@ def _crossed(
         above[open_] = np.where(same, slower * above[open_], rest)
         below[open_] = np.where(same, rest, slower * below[open_])
         part[open_] = low[open_] - below[open_] * (high - low)[open_] / (above - below)[open_]
-    places: Floats = start + part[:, None] * along
-    return places
+    return np.asarray(start + part[:, None] * along)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -32,6 +33,13 @@ def is_free(taken: np.ndarray, middle: Floats, half: Sequence[float]) -> bool:
     return not taken[_box(middle, half)].any()
 
 
+def write(axes: Axes, at: Floats, words: str, size: float, halo: tuple[float, str], **look: Any) -> None:
+    """Words about a place (2,) [the dimensions' units], within a halo of a width and a colour."""
+    look = {"ha": "center", "va": "center", "zorder": 7, **look}
+    label = axes.text(float(at[0]), float(at[1]), words, fontsize=size, **look)
+    label.set_path_effects([withStroke(linewidth=halo[0], foreground=halo[1])])
+
+
 def _box(middle: Floats, half: Sequence[float]) -> tuple[slice, slice]:
     low = np.clip(((middle - half) * RASTER).astype(int), 0, RASTER)
     high = np.clip(np.ceil((middle + half) * RASTER).astype(int), 0, RASTER)
@@ -57,18 +65,7 @@ def names(axes: Axes, of: Map, scale: float, taken: np.ndarray, inches: tuple[fl
             if found:
                 (px, py), rotation = found
                 at = of.values(np.array([[px, py]]))[0]
-                label = axes.text(
-                    float(at[0]),
-                    float(at[1]),
-                    name,
-                    fontsize=points * scale,
-                    ha="center",
-                    va="center",
-                    rotation=rotation,
-                    zorder=7,
-                    color=LINE,
-                )
-                label.set_path_effects([withStroke(linewidth=3 * scale, foreground="#ffffffb0")])
+                write(axes, at, name, points * scale, (3 * scale, "#ffffffb0"), rotation=rotation, color=LINE)
                 break
 
 

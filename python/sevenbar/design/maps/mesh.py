@@ -153,7 +153,8 @@ class _Making:
             self.kinds.update(zip(new, found.tolist(), strict=True))
 
     def _split(self, squares: Iterable[Square]) -> list[Square]:
-        children = [child for square in squares for child in _quarters(square)]
+        halves = [(x, y, width // 2) for x, y, width in squares]
+        children = [(x + i, y + j, half) for x, y, half in halves for j in (0, half) for i in (0, half)]
         # even those that nothing is in: sides are known to be halved by the corner in their middle
         self._know(corner for child in children for corner in _corners(child))
         return children
@@ -204,22 +205,16 @@ class _Making:
 
     def _sides(self, square: Square) -> list[Edge]:
         """The edges round a square, anticlockwise."""
-        lower_left, lower_right, upper_right, upper_left = _corners(square)
-        ring = (lower_left, lower_right, upper_right, upper_left, lower_left)
-        edges: list[Edge] = []
-        for start, end in pairwise(ring):
-            self._pieces(start, end, edges)
-        return edges
+        lower_left, *others = _corners(square)
+        ring = (lower_left, *others, lower_left)
+        return [piece for start, end in pairwise(ring) for piece in self._pieces(start, end)]
 
-    def _pieces(self, start: Corner, end: Corner, edges: list[Edge]) -> None:
-        """Adds the pieces of a side between the corners that stand on it."""
-        if abs(end[0] - start[0]) + abs(end[1] - start[1]) > 1:
-            middle = ((start[0] + end[0]) // 2, (start[1] + end[1]) // 2)
-            if middle in self.kinds:
-                self._pieces(start, middle, edges)
-                self._pieces(middle, end, edges)
-                return
-        edges.append((start, end))
+    def _pieces(self, start: Corner, end: Corner) -> list[Edge]:
+        """The pieces of a side between the corners on it."""
+        middle = ((start[0] + end[0]) // 2, (start[1] + end[1]) // 2)
+        if abs(end[0] - start[0]) + abs(end[1] - start[1]) > 1 and middle in self.kinds:
+            return self._pieces(start, middle) + self._pieces(middle, end)
+        return [(start, end)]
 
     def _cut(self, edges: Iterable[Edge]) -> None:
         """Finds where edges are cut, by halving."""
@@ -249,15 +244,14 @@ class _Making:
         if len(cut) == 2:
             return [Chord(nodes[1], nodes[0], after[0], after[1])]
         if len(set(after)) == 2:
-            x, y = _middle_of(square, self.scheme.size)
-            (centre,) = self.plane.kinds_at(np.array([[x, y]])).tolist()
+            (centre,) = self.plane.kinds_at(np.array([_middle(_heart(square), self.scheme.size)])).tolist()
             if centre in after:
                 return [
                     Chord(nodes[(i + 1) % len(nodes)], node, kind, centre)
                     for i, (node, kind) in enumerate(zip(nodes, after, strict=True))
                     if kind != centre
                 ]
-        heart: Node = ((2 * square[0] + square[2], 2 * square[1] + square[2]),)
+        heart: Node = (_heart(square),)
         return [
             Chord(heart, node, kind, after[i - 1])
             for i, (node, kind) in enumerate(zip(nodes, after, strict=True))
@@ -293,18 +287,13 @@ def _corners(square: Square) -> tuple[Corner, Corner, Corner, Corner]:
     return (x, y), (x + width, y), (x + width, y + width), (x, y + width)
 
 
-def _quarters(square: Square) -> list[Square]:
-    x, y, width = square
-    half = width // 2
-    return [(x, y, half), (x + half, y, half), (x, y + half, half), (x + half, y + half, half)]
-
-
-def _middle_of(square: Square, size: int) -> tuple[float, float]:
-    return (square[0] + 0.5 * square[2]) / size, (square[1] + 0.5 * square[2]) / size
+def _heart(square: Square) -> Corner:
+    """The middle of a square, written twice as large."""
+    return 2 * square[0] + square[2], 2 * square[1] + square[2]
 
 
 def _middle(heart: Corner, size: int) -> tuple[float, float]:
-    """The place of a node in the middle of a square, which is written twice as large."""
+    """The place of such a node."""
     return heart[0] / (2 * size), heart[1] / (2 * size)
 
 

@@ -59,8 +59,7 @@ class Region:
 
 
 def _loop(ring: shapely.LinearRing) -> Floats:
-    places: Floats = shapely.get_coordinates(ring)[:-1]
-    return places
+    return np.asarray(shapely.get_coordinates(ring)[:-1])
 
 
 def boundaries(mesh: Mesh) -> tuple[Boundary, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -45,16 +45,12 @@ def as_dict(findings: MapFindings) -> dict[str, Any]:
             for axis in of.axes
         ],
         **of.held.as_dict,
-        "kinds": [
-            {"motion_type": kind.motion_type, "circuits": kind.circuits, "share": share}
-            for kind, share in of.areas.items()
-        ],
+        "kinds": [{**vars(kind), "share": share} for kind, share in of.areas.items()],
         "design": {
             x.name: design.x,
             y.name: design.y,
             "inside": design.inside,
-            "motion_type": design.kind.motion_type,
-            "circuits": design.kind.circuits,
+            **vars(design.kind),
             "changes": [_step_dict(step) for step in design.steps],
         },
         "precision": {"tolerance": of.tolerance, "widest_hidden": of.widest, "open_area": of.open},
@@ -170,10 +166,10 @@ def map_report(
     """How a map with contours of these measures is reported; a figure for the map and for each measure."""
     files: dict[str, Write[MapFindings]] = {
         "map.json": json_file(as_dict),
-        "boundaries.csv": _write_boundaries,
+        "boundaries.csv": partial(_write_lines, ["boundary", "left", "right"], _boundaries),
     }
     if measures:
-        files["contours.csv"] = _write_contours
+        files["contours.csv"] = partial(_write_lines, ["contour", "measure", "level"], _contours)
     for place, stem in enumerate(("map", *measures)):
         files |= figure_files(stem, figures, partial(_sheet, size, side, place))
     return Report(text, as_dict, files, spoken=True)
@@ -183,32 +179,30 @@ def _sheet(size: str | None, side: bool, place: int, found: MapFindings) -> Figu
     return draw(found.map, found.heights[place - 1] if place else None, size=size, side=side)
 
 
-def _write_boundaries(findings: MapFindings, path: Path) -> None:
+#: Places of lines (n, 2) [shares], each with what the line is.
+Lines = Iterable[tuple[Floats, tuple[Any, ...]]]
+
+
+def _boundaries(findings: MapFindings) -> Lines:
     of = findings.map
-    lines = [
-        (line.places, (index, of.name(of.kinds[line.left]), of.name(of.kinds[line.right])))
-        for index, line in enumerate(of.boundaries)
-    ]
-    write_csv(path, ["boundary", "left", "right", *_columns(of)], _rows(of, lines))
+    for index, line in enumerate(of.boundaries):
+        yield line.places, (index, of.name(of.kinds[line.left]), of.name(of.kinds[line.right]))
 
 
-def _write_contours(findings: MapFindings, path: Path) -> None:
+def _contours(findings: MapFindings) -> Lines:
+    for found in findings.heights:
+        for i, line in enumerate(found.contours):
+            yield line.places, (i, found.measure.name, line.level)
+
+
+def _write_lines(
+    names: Sequence[str], lines: Callable[[MapFindings], Lines], findings: MapFindings, path: Path
+) -> None:
+    """Writes a table of lines: what each is, and one after the other its places in the dimensions' units."""
     of = findings.map
-    lines = [
-        (line.places, (i, found.measure.name, line.level))
-        for found in findings.heights
-        for i, line in enumerate(found.contours)
-    ]
-    write_csv(path, ["contour", "measure", "level", *_columns(of)], _rows(of, lines))
-
-
-def _columns(of: Map) -> list[str]:
-    return [axis.dimension.column for axis in of.axes]
-
-
-def _rows(of: Map, lines: Sequence[tuple[Floats, tuple[Any, ...]]]) -> list[list[Any]]:
-    """Rows of a table of lines: what each line is, and one after the other its places."""
-    return [[*line, *place] for places, line in lines for place in np.asarray(of.values(places)).tolist()]
+    head = [*names, *(axis.dimension.column for axis in of.axes)]
+    rows = ([*what, *place] for places, what in lines(findings) for place in of.values(places).tolist())
+    write_csv(path, head, rows)
 
 
 @text_of.register(Map)

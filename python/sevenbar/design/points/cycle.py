@@ -50,8 +50,7 @@ class LinkRates:
     def of(self, order: str, at: npt.ArrayLike) -> Floats:
         """The position, velocity, acceleration or jerk of a point as it is written, (n, 3)."""
         index = ORDERS.index(order)
-        value: Floats = self.constant[index] + self.gradient[index] @ np.asarray(at, dtype=np.float64)
-        return value
+        return np.asarray(self.constant[index] + self.gradient[index] @ np.asarray(at, dtype=np.float64))
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,12 +92,6 @@ class Cycle:
         """The rates at any inputs (n,) [rad, or length], at the motion's constant speed."""
         return link_rates(*driven(self.motion, self.circuit, self.branch, inputs), self.link)
 
-    def geometry(self) -> LinkRates:
-        """The rates at the cycle's rows for an input that moves by 1 in 1 s: derivatives by the input."""
-        return link_rates(
-            *driven(self.motion, self.circuit, self.branch, self.rates.input, speed=1.0), self.link
-        )
-
     @property
     def shares(self) -> Floats:
         """The share of each row (n,) in a mean by time: alike in a closed cycle, by trapezoids over a law."""
@@ -110,13 +103,17 @@ class Cycle:
         """The mean by time of values (n,); over a closed cycle exact to rounding."""
         return float(self.shares @ values)
 
+    def sizes(self, order: str, at: Floats) -> Floats:
+        """The sizes (n,) of a point's velocities, accelerations or jerks at the rows."""
+        return np.asarray(np.linalg.norm(self.rates.of(order, at), axis=1))
+
     def peaks(self, order: str, at: Floats) -> tuple[Floats, Floats]:
         """Inputs and sizes of the greatest velocities, accelerations or jerks of a point, (k,) each.
 
         Every row that is greater than its neighbours and near the greatest is followed between the rows; of a
         law's rows the greatest is returned as it is.
         """
-        sizes = np.linalg.norm(self.rates.of(order, at), axis=1)
+        sizes = self.sizes(order, at)
         if not self.closed:
             top = np.flatnonzero(sizes == sizes.max())[:1]
             return self.rates.input[top], sizes[top]
@@ -147,7 +144,10 @@ def cycle_of(
     constant speed where rates are needed, and rows without a value.
     """
     chosen = chosen_circuit(motion, circuit)
-    _refuse_link(motion, link)
+    count = len(motion.linkage.joints)
+    if link == count:
+        raise RequestError(f"link: {link} is the ground, which stands still; give 1 to {count - 1}")
+    whole_number("link", link, 1, count - 1, "a link")
     if motion.law is None and order != "position" and not chosen.goes_round:
         raise RequestError(_unbounded(motion, chosen))
     branches = int(chosen.branch.max(initial=0)) + 1
@@ -163,32 +163,16 @@ def cycle_of(
     return Cycle(motion, chosen, int(link), int(branch), rates)
 
 
-def driven(
-    motion: Motion, circuit: Circuit, branch: int, inputs: Floats, *, speed: float | None = None
-) -> tuple[Circuit, Booleans]:
+def driven(motion: Motion, circuit: Circuit, branch: int, inputs: Floats) -> tuple[Circuit, Booleans]:
     """A circuit at these inputs (n,) at constant speed, and which of its rows are those of a pass."""
-    again = driven_circuit(
-        motion.linkage, circuit, inputs, speed=motion.speed if speed is None else speed, agree=motion.agree
-    )
+    again = driven_circuit(motion.linkage, circuit, inputs, speed=motion.speed, agree=motion.agree)
     return again, again.branch == branch
-
-
-def shown_inputs(cycle: Cycle, inputs: Floats) -> Floats:
-    """Inputs as people read them: degrees, or lengths."""
-    return np.degrees(inputs) if cycle.motion.linkage.unit_of(cycle.motion.input) == "rad" else inputs
 
 
 def input_text(motion: Motion, value: float) -> str:
     """A value of the input as people read it: degrees, or lengths."""
     slides = not motion.linkage.turns(motion.input)
     return f"{value:.6g} {motion.linkage.length_unit}" if slides else f"{math.degrees(value):.6g} deg"
-
-
-def _refuse_link(motion: Motion, link: object) -> None:
-    count = len(motion.linkage.joints)
-    if link == count:
-        raise RequestError(f"link: {link} is the ground, which stands still; give 1 to {count - 1}")
-    whole_number("link", link, 1, count - 1, "a link")
 
 
 def link_rates(circuit: Circuit, rows: Booleans, link: int) -> LinkRates:

@@ -12,13 +12,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.design.points.cycle import Cycle, shown_inputs
+from sevenbar.design.points.cycle import Cycle
 from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import ZERO, LeastPoint
 from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import AccelerationPoles
 from sevenbar.drawing.asked import asked_view
-from sevenbar.drawing.figure import fit_letters, headline, input_label, page_figure, slides
+from sevenbar.drawing.figure import fit_letters, headline, input_label, page_figure, shown_value, slides
 from sevenbar.drawing.names import short
 from sevenbar.drawing.page import place_picture, write_title_over_panels
 from sevenbar.drawing.space import measuring
@@ -51,17 +51,17 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
         )
         heads, top = write_title_over_panels(figure, f"{short(linkage.heading, 60)}\n{which}")
         axes = figure.add_axes((0.065, 0.12, 0.44, top - 0.12))
-        across = shown_inputs(cycle, cycle.rates.input)
+        across = shown_value(cycle.motion, cycle.motion.input, cycle.rates.input)
         for i, point in enumerate(found.before[:MOST_LINES]):
             look: dict[str, Any] = {"color": _other(i), "ls": LINE_STYLES[1 + i % 3], "lw": 1.4}
-            axes.plot(
-                across, _sizes(cycle, found.of, np.array(point.at)), label=short(point.name, 24), **look
-            )
-        axes.plot(across, _sizes(cycle, found.of, found.at), color=FOUND, lw=1.8, label=short(name, 24))
+            sizes = cycle.sizes(found.of, np.array(point.at))
+            axes.plot(across, sizes, label=short(point.name, 24), **look)
+        sizes = cycle.sizes(found.of, found.at)
+        axes.plot(across, sizes, color=FOUND, lw=1.8, label=short(name, 24))
         bound = say("least root mean square") if rms else say("lower bound of the greatest")
         axes.axhline(found.value, color=BOUND, lw=1.0, ls=(0, (4, 2)), label=bound)
         if len(found.inputs):
-            marks = shown_inputs(cycle, found.inputs)
+            marks = shown_value(cycle.motion, cycle.motion.input, found.inputs)
             axes.plot(marks, np.full(len(marks), found.value), "o", color=FOUND, mfc="white", ms=5)
         _input_axis(axes, cycle, across)
         # a point that stands still is at the foot of what others of the box have
@@ -87,7 +87,9 @@ def _poles_in_the_link(
     linkage = found.cycle.motion.linkage
     width, height = figure.get_size_inches()
     room = (0.54 * width, 0.55, 0.46 * width, heads * height - 0.55)
-    view = view_of(_in_space(), linkage, places)
+    # the plane of the linkage is not that of places in a link
+    asked = asked_view()
+    view = view_of("space" if asked in (None, "plane") else asked, linkage, places)
     space = place_picture(figure, places, room, linkage.length_unit, view, letters="uvw")
     axes: Any = space.axes
     for a, b in product(corners, corners):
@@ -151,7 +153,7 @@ def inertia_figure(found: Inertia) -> Figure:
     with styled():
         figure = page_figure(7.0, 6.6, pads=(0.05, 0.06))
         torque, force = figure.subplots(2, 1, sharex=True)
-        across = shown_inputs(cycle, found.input)
+        across = shown_value(cycle.motion, cycle.motion.input, found.input)
         torque.axhline(0, color=BOUND, lw=0.8)
         torque.plot(across, found.torque, color=FOUND, lw=1.7)
         torque.fill_between(across, found.torque, color=FOUND, alpha=0.15, lw=0)
@@ -184,21 +186,10 @@ def _head_of_panel(figure: Figure, across: float, up: float, text: str, width: f
     fit_letters(head, width * figure.get_figwidth())
 
 
-def _in_space() -> str | tuple[float, float]:
-    """The view of places in a link, whose plane is not that of the linkage."""
-    view = asked_view()
-    return "space" if view is None or view == "plane" else view
-
-
 def _other(index: int) -> str:
     """The colour of a point of the file, or of a mass."""
     others = [colour for colour in CIRCUIT_COLOURS if colour != FOUND]
     return others[index % len(others)]
-
-
-def _sizes(cycle: Cycle, of: str, at: Floats) -> Floats:
-    sizes: Floats = np.linalg.norm(cycle.rates.of(of, at), axis=1)
-    return sizes
 
 
 def _input_axis(axes: Axes, cycle: Cycle, across: Floats) -> None:

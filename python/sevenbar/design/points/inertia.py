@@ -72,14 +72,12 @@ class Inertia(Printed):
     @property
     def sizes(self) -> Floats:
         """The sizes of the inertia forces, (k, n) [N]."""
-        sizes: Floats = np.linalg.norm(self.force, axis=2)
-        return sizes
+        return np.asarray(np.linalg.norm(self.force, axis=2))
 
     @property
     def shaking(self) -> Floats:
         """The sum of all inertia forces, (n, 3) [N]: what the ground has to hold."""
-        total: Floats = self.force.sum(axis=0)
-        return total
+        return np.asarray(self.force.sum(axis=0))
 
 
 def inertia(

@@ -1,7 +1,7 @@
 """The point of a link, within a box, whose greatest acceleration over the cycle is least, and its proof.
 
 The acceleration of the point x is `a(s) = c(s) + G(s) x` at the input s, so the greatest |a| over the cycle
-is a convex function of x. For chosen inputs it is a second-order cone problem (`cone`). Its optimum is a
+is a convex function of x. For chosen inputs it is a second-order cone problem (`box`). Its optimum is a
 lower bound for the whole cycle, since inputs left out can only add to it; the greatest at the point found,
 sought between the rows too, is an upper bound. Inputs at which that is met are added until both agree.
 """
@@ -18,11 +18,11 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.idle_link import refuse_idle_link
-from sevenbar.design.points.cone import ConeSolution, least_greatest
+from sevenbar.design.points.box import least_greatest, least_squares_in
 from sevenbar.design.points.cycle import ORDERS, Cycle, box_of, cycle_of
-from sevenbar.design.points.polish import Polished, polished
-from sevenbar.design.points.squares import least_squares_in
+from sevenbar.design.points.polish import polished
 from sevenbar.errors import check_word
+from sevenbar.forces.cones import ConeOptimum
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
@@ -87,7 +87,7 @@ class LeastPoint(Printed):
     free: Floats
     before: tuple[Compared, ...]
     rounds: int
-    solver: ConeSolution | None
+    solver: ConeOptimum | None
     #: The size of the rate over the box [unit of the value]: what rounding is a part of.
     scale: float
 
@@ -173,7 +173,7 @@ def least_point(
     course = SearchCourse(1 if measure == "rms" else MOST_ROUNDS, progress)
     index, centre, half = ORDERS.index(of), (low + high) / 2, (high - low) / 2
     constant, gradient = cycle.rates.constant[index], cycle.rates.gradient[index]
-    around = np.linalg.norm(cycle.rates.of(of, centre), axis=1).max() + np.abs(gradient @ half).max()
+    around = cycle.sizes(of, centre).max() + np.abs(gradient @ half).max()
     free = _free(gradient * half)
     if measure == "rms":
         at, value, bound = _least_rms(cycle, constant, gradient, (low, high), free)
@@ -210,34 +210,32 @@ def least_point(
 
 def _least_greatest(
     cycle: Cycle, of: Rate, box: tuple[Floats, Floats], free: Floats, around: float, course: SearchCourse
-) -> tuple[Floats, float, float, Floats, Floats, int, ConeSolution]:
+) -> tuple[Floats, float, float, Floats, Floats, int, ConeOptimum]:
     """Point, value, bound, inputs that decide, their weights, rounds, the cones' last solution."""
     index, (low, high) = ORDERS.index(of), box
     inputs = cycle.rates.input
     constant, gradient = cycle.rates.constant[index], cycle.rates.gradient[index]
-    best, value, bound = (low + high) / 2, math.inf, 0.0
-    rounds = 0
+    value, bound, rounds = math.inf, 0.0, 0
     while True:
         rounds += 1
-        solved = least_greatest(constant, gradient, low, high)
-        at = _centred(solved.at, box, free)
+        at, least, solver = least_greatest(constant, gradient, low, high)
+        at, weights = _centred(at, box, free), np.linalg.norm(solver.duals, axis=1)
         peaks, heights = cycle.peaks(of, at)
-        bound = max(bound, solved.bound)
-        tried = [(float(heights.max()), at)]
-        better = (
-            _polished(cycle, of, at, (inputs, solved.weights), (peaks, heights), box)
-            if cycle.closed
-            else None
-        )
-        if better is not None:
-            bound = max(bound, better.bound)
-            tried.append((float(cycle.peaks(of, better.at)[1].max()), better.at))
-        least = min(tried, key=lambda pair: pair[0])
-        if least[0] < value:
-            value, best = least
-            deciding, shares = inputs, solved.weights
-            if better is not None and best is better.at:
-                deciding, shares = better.inputs, better.weights
+        bound = max(bound, least)
+        tried = [(float(heights.max()), at, inputs, weights)]
+        if cycle.closed:
+            # by Newton's method, from peaks that are nearly the greatest and rows with a weight
+            begun = np.concatenate(
+                [peaks[heights >= (1 - ALMOST) * heights.max()], inputs[weights > DECIDING]]
+            )
+            better = polished(cycle, of, at, begun, low, high)
+            if better is not None:
+                bound = max(bound, better.bound)
+                height = float(cycle.peaks(of, better.at)[1].max())
+                tried.append((height, better.at, better.inputs, better.weights))
+        nearest = min(tried, key=lambda one: one[0])
+        if nearest[0] < value:
+            value, best, deciding, shares = nearest
         course.step(f"best: {value:.6g} {rate_unit(cycle, of)}")
         close = value - bound <= max(GAP * value, ZERO * around)
         if close or not cycle.closed or rounds == MOST_ROUNDS:
@@ -246,21 +244,7 @@ def _least_greatest(
         inputs = np.concatenate([inputs, peaks])
         constant = np.concatenate([constant, added.constant[index]])
         gradient = np.concatenate([gradient, added.gradient[index]])
-    return best, value, bound, *_deciding(cycle, deciding, shares), rounds, solved
-
-
-def _polished(
-    cycle: Cycle,
-    of: Rate,
-    at: Floats,
-    rows: tuple[Floats, Floats],
-    peaks: tuple[Floats, Floats],
-    box: tuple[Floats, Floats],
-) -> Polished | None:
-    """The optimum by Newton's method, from rows with their weights, and peaks with their heights."""
-    (inputs, weights), (tops, heights) = rows, peaks
-    chosen = np.concatenate([tops[heights >= (1 - ALMOST) * heights.max()], inputs[weights > DECIDING]])
-    return polished(cycle, of, at, chosen, *box)
+    return best, value, bound, *_deciding(cycle, deciding, shares), rounds, solver
 
 
 def _deciding(cycle: Cycle, inputs: Floats, weights: Floats) -> tuple[Floats, Floats]:
@@ -295,8 +279,7 @@ def _value(cycle: Cycle, of: str, measure: str, at: Floats) -> float:
 def _free(gradient: Floats) -> Floats:
     """Directions (m, 3) of the box, relative to its sides, in which no row (n, 3, 3) changes."""
     _, sizes, rows = np.linalg.svd(gradient.reshape(-1, 3), full_matrices=False)
-    free: Floats = rows[sizes <= FREE * max(sizes[0], np.finfo(float).tiny)]
-    return free
+    return np.asarray(rows[sizes <= FREE * max(sizes[0], np.finfo(float).tiny)])
 
 
 def _centred(at: Floats, box: tuple[Floats, Floats], free: Floats) -> Floats:

@@ -19,9 +19,8 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, Integers, finite_array
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.idle_link import refuse_idle_link
-from sevenbar.design.points.cone import least_greatest
+from sevenbar.design.points.box import least_greatest, least_squares_in
 from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, input_text
-from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, check_word
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.printing import Printed
@@ -68,7 +67,7 @@ class NearestPath(Printed):
     @property
     def distances(self) -> Floats:
         """The distance of each wanted place from the path, (m,) [length]."""
-        return _lengths(self.wanted - self.path)
+        return np.asarray(np.linalg.norm(self.wanted - self.path, axis=-1))
 
     @property
     def rms(self) -> float:
@@ -170,8 +169,7 @@ def _timed(
     rates = _at(cycle, inputs)
     constant, gradient = rates.constant[0] - wanted, rates.gradient[0]
     if measure == "greatest":
-        solved = least_greatest(constant, gradient, *box)
-        at, bound = solved.at, solved.bound
+        at, bound, _ = least_greatest(constant, gradient, *box)
     else:
         at, bound = least_squares_in(constant, gradient, *box)
     return NearestPath(cycle, measure, at, wanted, rates.of("position", at), inputs, bound, 1, 1)
@@ -181,10 +179,8 @@ def _untimed(cycle: Cycle, wanted: Floats, low: Floats, high: Floats, progress: 
     """Nearest rows and least squares in turn from a grid of starts; the best ends followed between rows."""
     grid = np.stack(np.meshgrid(*np.linspace(low, high, STARTS).T, indexing="ij"), axis=-1).reshape(-1, 3)
     starts = np.unique(grid, axis=0)
-    course, unit = (
-        SearchCourse(len(starts) + min(FOLLOWED, len(starts)), progress),
-        cycle.motion.linkage.length_unit,
-    )
+    course = SearchCourse(len(starts) + min(FOLLOWED, len(starts)), progress)
+    unit = cycle.motion.linkage.length_unit
     ends: list[tuple[float, Floats]] = []
     for start in starts:
         ends.append(_alternated(cycle, wanted, start, low, high))
@@ -242,16 +238,14 @@ def _followed(
 
     def residual(y: Floats) -> Floats:
         point, rates, _ = foot(y)
-        away: Floats = (rates.of("position", point) - wanted).ravel()
-        return away
+        return np.asarray((rates.of("position", point) - wanted).ravel())
 
     def jacobian(y: Floats) -> Floats:
         point, rates, _ = foot(y)
         along = rates.of("velocity", point)
-        along /= np.maximum(_lengths(along), np.finfo(float).tiny)[:, None]
+        along /= np.maximum(np.linalg.norm(along, axis=-1), np.finfo(float).tiny)[:, None]
         across = np.eye(3) - np.nan_to_num(along[:, :, None] * along[:, None, :])
-        slopes: Floats = (across @ rates.gradient[0] * half).reshape(-1, 3)
-        return slopes
+        return np.asarray((across @ rates.gradient[0] * half).reshape(-1, 3))
 
     start = np.clip((at - centre) / np.where(half > 0, half, 1.0), -1 + 1e-9, 1 - 1e-9)
     found = least_squares(residual, start, jacobian, bounds=(-1, 1), xtol=1e-15, ftol=1e-15, gtol=1e-15)
@@ -279,8 +273,3 @@ def _foot(cycle: Cycle, wanted: Floats, at: Floats) -> Floats:
         step = np.divide(-slope, bend, out=np.zeros_like(slope), where=bend > 0)
         inputs = np.clip(inputs + step, begun - abs(cycle.step), begun + abs(cycle.step))
     return inputs
-
-
-def _lengths(vectors: Floats) -> Floats:
-    lengths: Floats = np.linalg.norm(vectors, axis=-1)
-    return lengths

@@ -16,9 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Words, finite_array
+from sevenbar.arrays import Floats, Words, triple
 from sevenbar.design.points.cycle import Cycle, cycle_of
-from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.printing import Printed
 
@@ -79,9 +78,7 @@ def acceleration_poles(
         >>> sorted(set(poles.status.tolist())), bool(poles.remaining.max() < 1e-9)
         (['pole'], True)
     """
-    wanted = finite_array("near", near)
-    if wanted.size != 3:
-        raise RequestError(f"near: {wanted.size} numbers; give three")
+    wanted = np.array(triple("near", near))
     cycle = cycle_of(motion, link, circuit, branch, order="acceleration", rows=motion.samples)
     return poles_of(cycle, wanted)
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Booleans, Floats
-from sevenbar.design.points.cone import lower_bound
+from sevenbar.design.points.box import lower_bound
 from sevenbar.design.points.cycle import ORDERS, Cycle
 
 #: Steps of Newton's method; each doubles the digits, of which the interior-point method gives the first four.
@@ -154,8 +154,7 @@ def _weights(peaks: _Peaks, free: Booleans, half: Floats) -> Floats:
 
     slopes = (peaks.slopes * half)[:, free] / (float(np.abs(peaks.slopes * half).max()) or 1.0)
     wanted = np.append(np.zeros(slopes.shape[1]), 1.0)
-    found: Floats = nnls(np.vstack([slopes.T, np.ones(len(slopes))]), wanted)[0]
-    return found
+    return np.asarray(nnls(np.vstack([slopes.T, np.ones(len(slopes))]), wanted)[0])
 
 
 def _step(peaks: _Peaks, weights: Floats, free: Booleans, half: Floats) -> tuple[Floats, Floats]:

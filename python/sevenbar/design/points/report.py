@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -10,17 +10,18 @@ import numpy as np
 from rich.console import RenderableType
 
 from sevenbar.arrays import Floats
-from sevenbar.design.points.cycle import Cycle, input_text, shown_inputs
+from sevenbar.design.points.cycle import Cycle, input_text
 from sevenbar.design.points.figures import inertia_figure, least_figure, nearest_figure
 from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import LeastPoint
 from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import poles_of
-from sevenbar.drawing.figure import slides
+from sevenbar.drawing.figure import shown_value, slides
 from sevenbar.kinematics.loop.columns import joint_column, unit_in_column
-from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
+from sevenbar.reporting.files import Files, Report, columns_file, figure_files, json_file, text_file
 from sevenbar.reporting.page import Facts, number_table, opening, page
 from sevenbar.reporting.shown import drive_text
+from sevenbar.text.listed import named
 from sevenbar.text.printing import text_of
 from sevenbar.text.words import retold, say
 
@@ -59,36 +60,30 @@ def least_text(found: LeastPoint) -> RenderableType:
     if found.sides:
         facts.add("on the box", ", ".join(found.sides))
     for direction in found.free:
-        facts.add(
-            "free",
-            say("along ({direction}) nothing changes; the middle is taken", direction=_numbers(direction)),
-        )
-    if found.solver is not None:
-        solver = found.solver
-        facts.add(
-            "Clarabel",
-            say(
-                "{status} in {steps} steps, round {round}: primal {primal:.7g}, dual {dual:.7g} {unit} at "
-                "{rows} rows; then Newton's method",
-                status=solver.status,
-                steps=solver.steps,
-                round=found.rounds,
-                primal=solver.primal,
-                dual=solver.dual,
-                unit=unit,
-                rows=len(solver.weights),
-            ),
-        )
-    for note in notes(found.cycle):
-        facts.add("note", note)
+        free = _numbers(direction)
+        facts.add("free", say("along ({direction}) nothing changes; the middle is taken", direction=free))
+    if (solver := found.solver) is not None:
+        what = say(
+            "{status} in {steps} steps, round {round}: primal {primal:.7g}, dual {dual:.7g} {unit} at "
+            "{rows} rows; then Newton's method",
+            round=found.rounds, unit=unit, rows=len(solver.duals),
+            **named(solver, "status", "steps", "primal", "dual"),
+        )  # fmt: skip
+        facts.add("Clarabel", what)
+    facts.add_all(("note", note) for note in notes(found.cycle))
     tables = []
     if found.before:
-        rows = [[p.name, _place(p.at), f"{p.value:.6g}", _times(p.value, found)] for p in found.before]
+        # how many times the least; nothing where that is zero
+        times = "{:.3f}" if found.value > 1e-9 * found.scale else ""
+        rows = [
+            [p.name, _place(p.at), f"{p.value:.6g}", times and times.format(p.value / found.value)]
+            for p in found.before
+        ]
         rows.append([say("found"), _place(found.at), f"{found.value:.6g}", ""])
         size = say("root mean square") if found.measure == "rms" else say("greatest")
         head = ["point", "at", f"{size} [{unit}]", "times"]
         tables.append(number_table(head, rows, words=[1]))
-    return page(_heading(found.cycle), facts, *tables)
+    return page(found.cycle.motion.linkage.heading, facts, *tables)
 
 
 def _met(found: LeastPoint) -> str:
@@ -100,11 +95,6 @@ def _met(found: LeastPoint) -> str:
     text = f"{found.cycle.motion.input} = {text}"
     more = len(found.inputs) - MOST_LISTED
     return say("{inputs} and {count} more", inputs=text, count=more) if more > 0 else text
-
-
-def _times(value: float, found: LeastPoint) -> str:
-    """How many times the least a value is; nothing where that is zero."""
-    return f"{value / found.value:.3f}" if found.value > 1e-9 * found.scale else ""
 
 
 def nearest_text(found: NearestPath) -> RenderableType:
@@ -130,9 +120,8 @@ def nearest_text(found: NearestPath) -> RenderableType:
             starts=found.starts, count=found.agreeing,
         )  # fmt: skip
         facts.add("optimum", best)
-    for note in notes(found.cycle):
-        facts.add("note", note)
-    return page(_heading(found.cycle), facts)
+    facts.add_all(("note", note) for note in notes(found.cycle))
+    return page(found.cycle.motion.linkage.heading, facts)
 
 
 def inertia_text(found: Inertia) -> RenderableType:
@@ -151,8 +140,7 @@ def inertia_text(found: Inertia) -> RenderableType:
     facts.add(say("mean {what}", what=what), f"{found.mean:.2g} {found.unit}")
     rms = float(np.sqrt(found.cycle.mean(found.torque**2)))
     facts.add(say("rms {what}", what=what), f"{rms:.6g} {found.unit}")
-    for note in notes(found.cycle, [mass.link for mass in found.masses]):
-        facts.add("note", note)
+    facts.add_all(("note", note) for note in notes(found.cycle, [mass.link for mass in found.masses]))
     rows = []
     for mass, sizes in zip(found.masses, found.sizes, strict=True):
         cells = [mass.name, str(mass.link), f"{mass.mass:g}"]
@@ -160,7 +148,7 @@ def inertia_text(found: Inertia) -> RenderableType:
             cells += [f"{sizes[place]:.6g}", input_text(motion, float(found.input[place]))]
         rows.append(cells)
     head = ["mass", "link", "kg", "greatest force [N]", "at", "least force [N]", "at"]
-    return page(_heading(found.cycle), facts, number_table(head, rows))
+    return page(found.cycle.motion.linkage.heading, facts, number_table(head, rows))
 
 
 def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
@@ -168,18 +156,15 @@ def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
     text = []
     for freedom in cycle.motion.idle:
         if any(f"link {link})" in freedom or f"link {link} " in freedom for link in links or [cycle.link]):
+            spin = retold(freedom)
             text.append(
                 say(
                     "the {freedom} is open in the linkage; points off that line move as the convention for "
                     "it says",
-                    freedom=retold(freedom),
+                    freedom=spin,
                 )
             )
     return text
-
-
-def _heading(cycle: Cycle) -> str:
-    return cycle.motion.linkage.heading
 
 
 def _whose(cycle: Cycle) -> str:
@@ -209,7 +194,7 @@ def as_dict(found: LeastPoint | NearestPath | Inertia) -> dict[str, Any]:
     """What was found as plain values: inputs in radians or lengths."""
     cycle = found.cycle
     motion = cycle.motion
-    common = {
+    return {
         "format": 1,
         "linkage": motion.linkage.name,
         "units": {"length": motion.linkage.length_unit, "angle": "rad", "time": "s", "mass": "kg"},
@@ -217,76 +202,49 @@ def as_dict(found: LeastPoint | NearestPath | Inertia) -> dict[str, Any]:
         "circuit": cycle.circuit.index,
         "branch": cycle.branch,
         "notes": notes(cycle, [mass.link for mass in found.masses] if isinstance(found, Inertia) else ()),
+        **_OWN[type(found)](found),
     }
-    if isinstance(found, LeastPoint):
-        return common | _least_dict(found)
-    if isinstance(found, NearestPath):
-        return common | _nearest_dict(found)
-    return common | _inertia_dict(found)
 
 
 def _least_dict(found: LeastPoint) -> dict[str, Any]:
     solver = found.solver
     return {
-        "link": found.link,
-        "of": found.of,
-        "measure": found.measure,
+        **named(found, "link", "of", "measure"),
         "box": np.stack([found.low, found.high], axis=1).tolist(),
-        "at": found.at.tolist(),
-        "value": found.value,
+        **named(found, "at", "value"),
         "lower_bound": found.bound,
-        "gap": found.gap,
-        "relative_gap": found.relative_gap,
-        "optimal": found.optimal,
+        **named(found, "gap", "relative_gap", "optimal"),
         "whole_cycle": found.cycle.closed,
-        "unit": found.unit,
-        "inputs": found.inputs.tolist(),
-        "weights": found.weights.tolist(),
-        "sides": list(found.sides),
-        "free": found.free.tolist(),
-        "before": [{"name": p.name, "at": list(p.at), "value": p.value} for p in found.before],
+        **named(found, "unit", "inputs", "weights", "sides", "free"),
+        "before": [named(point, "name", "at", "value") for point in found.before],
         "rounds": found.rounds,
-        "clarabel": None
-        if solver is None
-        else {
-            "status": solver.status,
-            "steps": solver.steps,
-            "primal": solver.primal,
-            "dual": solver.dual,
-            "residual": solver.residual,
-        },
+        "clarabel": solver and named(solver, "status", "steps", "primal", "dual", "residual"),
     }
 
 
 def _nearest_dict(found: NearestPath) -> dict[str, Any]:
     return {
-        "link": found.link,
-        "measure": found.measure,
-        "at": found.at.tolist(),
+        **named(found, "link", "measure", "at"),
         "places": len(found.wanted),
-        "rms": found.rms,
-        "greatest": found.greatest,
+        **named(found, "rms", "greatest"),
         "lower_bound": found.bound,
-        "starts": found.starts,
-        "agreeing": found.agreeing,
+        **named(found, "starts", "agreeing"),
     }
 
 
 def _inertia_dict(found: Inertia) -> dict[str, Any]:
-    high, low = int(found.torque.argmax()), int(found.torque.argmin())
+    ends = {"highest": int(found.torque.argmax()), "lowest": int(found.torque.argmin())}
     return {
-        "gravity": list(found.gravity),
-        "unit": found.unit,
+        **named(found, "gravity", "unit"),
         "period": found.cycle.period,
-        "highest": {"value": float(found.torque[high]), "at": float(found.input[high])},
-        "lowest": {"value": float(found.torque[low]), "at": float(found.input[low])},
+        **{
+            word: {"value": float(found.torque[row]), "at": float(found.input[row])}
+            for word, row in ends.items()
+        },
         "mean": found.mean,
         "masses": [
             {
-                "name": mass.name,
-                "link": mass.link,
-                "at": list(mass.at),
-                "mass": mass.mass,
+                **named(mass, "name", "link", "at", "mass"),
                 "greatest_force": float(sizes.max()),
                 "least_force": float(sizes.min()),
             }
@@ -295,85 +253,82 @@ def _inertia_dict(found: Inertia) -> dict[str, Any]:
     }
 
 
+_OWN: Mapping[type, Callable[[Any], dict[str, Any]]] = {
+    LeastPoint: _least_dict,
+    NearestPath: _nearest_dict,
+    Inertia: _inertia_dict,
+}
+
+
 def least_report(
     toml: Callable[[LeastPoint], str], name: str, figures: Sequence[str] = ("png",)
 ) -> Report[LeastPoint]:
     """How a point of least rate is reported, which has a name in the file that `toml` makes."""
-    return Report(
-        least_text,
-        as_dict,
-        {
-            "point.toml": text_file(toml),
-            "point.json": json_file(as_dict),
-            "rates.csv": columns_file(partial(_rate_columns, name=name)),
-            "poles.csv": columns_file(_pole_columns),
-            **figure_files(
-                "point", figures, lambda found: least_figure(found, poles_of(found.cycle, found.at), name)
-            ),
-        },
-        spoken=True,
+    files = {
+        "point.toml": text_file(toml),
+        "point.json": json_file(as_dict),
+        "rates.csv": columns_file(partial(_rate_columns, name=name)),
+        "poles.csv": columns_file(_pole_columns),
+    }
+    drawn: Files[LeastPoint] = figure_files(
+        "point", figures, lambda f: least_figure(f, poles_of(f.cycle, f.at), name)
     )
+    return Report(least_text, as_dict, {**files, **drawn}, spoken=True)
 
 
 def nearest_report(
     toml: Callable[[NearestPath], str], name: str, figures: Sequence[str] = ("png",)
 ) -> Report[NearestPath]:
     """How a point with a nearest path is reported, which has a name in the file that `toml` makes."""
-    return Report(
-        nearest_text,
-        as_dict,
-        {
-            "point.toml": text_file(toml),
-            "point.json": json_file(as_dict),
-            "path.csv": columns_file(_path_columns),
-            **figure_files("point", figures, lambda found: nearest_figure(found, name)),
-        },
-        spoken=True,
-    )
+    files = {
+        "point.toml": text_file(toml),
+        "point.json": json_file(as_dict),
+        "path.csv": columns_file(_path_columns),
+    }
+    drawn: Files[NearestPath] = figure_files("point", figures, lambda found: nearest_figure(found, name))
+    return Report(nearest_text, as_dict, {**files, **drawn}, spoken=True)
 
 
 def inertia_report(figures: Sequence[str] = ("png",)) -> Report[Inertia]:
     """How inertia forces are reported."""
-    return Report(
-        inertia_text,
-        as_dict,
-        {
-            "inertia.json": json_file(as_dict),
-            "inertia.csv": columns_file(_inertia_columns),
-            **figure_files("inertia", figures, inertia_figure),
-        },
-        spoken=True,
-    )
+    files = {"inertia.json": json_file(as_dict), "inertia.csv": columns_file(_inertia_columns)}
+    drawn = figure_files("inertia", figures, inertia_figure)
+    return Report(inertia_text, as_dict, {**files, **drawn}, spoken=True)
 
 
-def _input_head(cycle: Cycle) -> str:
+def _input_column(cycle: Cycle, inputs: Floats) -> dict[str, Floats]:
+    """Inputs as a column, angles in degrees."""
     motion = cycle.motion
-    length = motion.linkage.length_unit
-    return joint_column(
-        motion.input, slides=slides(motion, motion.input), order=0, length=length, angle="deg"
-    )
+    length, slide = motion.linkage.length_unit, slides(motion, motion.input)
+    name = joint_column(motion.input, slides=slide, order=0, length=length, angle="deg")
+    return {name: shown_value(motion, motion.input, inputs)}
 
 
-def _row_columns(cycle: Cycle) -> dict[str, Floats]:
-    return {"time_s": cycle.rates.time, _input_head(cycle): shown_inputs(cycle, cycle.rates.input)}
+def _row_columns(cycle: Cycle) -> dict[str, Any]:
+    return {"time_s": cycle.rates.time, **_input_column(cycle, cycle.rates.input)}
+
+
+def _coordinates(name: str, places: Floats, letters: str = "xyz") -> dict[str, Floats]:
+    """The coordinates of places (n, 3) as columns, by a name with a mark for the letter."""
+    return {name.format(letter): places[:, i] for i, letter in enumerate(letters)}
 
 
 def _rate_columns(found: LeastPoint, name: str) -> dict[str, Floats]:
     columns = _row_columns(found.cycle)
     unit = unit_in_column(found.unit)
     for point, at in [*((p.name, np.array(p.at)) for p in found.before), (name, found.at)]:
-        sizes = np.linalg.norm(found.cycle.rates.of(found.of, at), axis=1)
-        columns[f"{point}_{found.of}_{unit}"] = sizes
+        columns[f"{point}_{found.of}_{unit}"] = found.cycle.sizes(found.of, at)
     return columns
 
 
 def _path_columns(found: NearestPath) -> dict[str, Floats]:
     unit = found.cycle.motion.linkage.length_unit
-    columns = {_input_head(found.cycle): shown_inputs(found.cycle, found.inputs)}
-    for who, places in (("wanted", found.wanted), ("path", found.path)):
-        for i, letter in enumerate("xyz"):
-            columns[f"{who}_{letter}_{unit}"] = places[:, i]
-    return columns | {f"distance_{unit}": found.distances}
+    return {
+        **_input_column(found.cycle, found.inputs),
+        **_coordinates(f"wanted_{{}}_{unit}", found.wanted),
+        **_coordinates(f"path_{{}}_{unit}", found.path),
+        f"distance_{unit}": found.distances,
+    }
 
 
 def _inertia_columns(found: Inertia) -> dict[str, Floats]:
@@ -381,19 +336,21 @@ def _inertia_columns(found: Inertia) -> dict[str, Floats]:
     columns["force_N" if found.slides else "torque_Nm"] = found.torque
     columns |= {"power_W": found.power, "kinetic_energy_J": found.kinetic}
     for mass, force in zip(found.masses, found.force, strict=True):
-        for i, letter in enumerate("xyz"):
-            columns[f"{mass.name}_f{letter}_N"] = force[:, i]
+        columns |= {f"{mass.name}_{key}": own for key, own in _coordinates("f{}_N", force).items()}
     return columns
 
 
 def _pole_columns(found: LeastPoint) -> dict[str, Any]:
     poles = poles_of(found.cycle, found.at)
     unit = poles.cycle.motion.linkage.length_unit
-    columns: dict[str, Any] = _row_columns(poles.cycle) | {"status": poles.status}
-    for letters, values in (("uvw", poles.at), ("xyz", poles.place)):
-        for i, letter in enumerate(letters):
-            columns[f"{letter}_{unit}"] = values[:, i]
-    return columns | {f"remaining_{unit}_s2": poles.remaining, "condition": poles.condition}
+    return {
+        **_row_columns(poles.cycle),
+        "status": poles.status,
+        **_coordinates(f"{{}}_{unit}", poles.at, "uvw"),
+        **_coordinates(f"{{}}_{unit}", poles.place),
+        f"remaining_{unit}_s2": poles.remaining,
+        "condition": poles.condition,
+    }
 
 
 @text_of.register(LeastPoint)

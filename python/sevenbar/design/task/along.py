@@ -10,11 +10,11 @@ import numpy as np
 
 from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.check import TaskDesign
-from sevenbar.design.task.musts import pose_rooms, room_unit
+from sevenbar.design.task.musts import pose_rooms, room_scale
 from sevenbar.design.task.problem import TaskModel
-from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, Want
+from sevenbar.design.task.task import DesignTask, Want
+from sevenbar.design.task.wants.at_inputs import LineWanted, ReadingsWanted
 from sevenbar.design.task.wants.places import PlacesWanted
-from sevenbar.design.task.wants.straight import LineWanted
 from sevenbar.design.task.wants.wanted import Wanted
 
 #: Poses along a want, at least, and the longest step of an input from one to the next [rad].
@@ -46,13 +46,10 @@ class DesignAlong:
     @cached_property
     def ways(self) -> list[UsedWay]:
         """The used way of each want that has one."""
-        ends = np.cumsum([0, *(len(inputs) for inputs in self.design.solution.inputs)])
-        poses = self.design.solution.seed.poses
+        solution = self.design.solution
         return [
-            self._way(inputs, poses[first:last], round=one.stations.round)
-            for inputs, first, last, one in zip(
-                self.design.solution.inputs, ends[:-1], ends[1:], self.model.wanted, strict=True
-            )
+            self._way(inputs, solution.poses_of(i), round=one.stations.round)
+            for i, (inputs, one) in enumerate(zip(solution.inputs, self.model.wanted, strict=True))
         ]
 
     def _way(self, inputs: Floats, poses: Floats, *, round: bool) -> UsedWay:
@@ -81,26 +78,27 @@ class DesignAlong:
 
         Angles in (-pi, pi].
         """
-        want = self.task.wants[self.wants[place][0]]
-        own = self.design.solution.seed.own[place]
-        first, second = want.zeros if isinstance(want, FunctionWant) else (0.0, _level(want))
-        zeros = float(own[0]) if first is None else first, float(own[-1]) if second is None else second
-        drive = self.loop.linkage.drive
-        turns = self.loop.linkage.turns(drive.joint), self.loop.linkage.turns(drive.output)
+        linkage = self.loop.linkage
+        zeros = self.readings(place).zeros(self.design.solution.seed.own[place])
         first, second = (
-            float(short_way(zero)) if turn else zero for zero, turn in zip(zeros, turns, strict=True)
+            float(short_way(zero)) if linkage.turns(column) else zero
+            for zero, column in zip(zeros, (linkage.drive.joint, linkage.drive.output), strict=True)
         )
         return first, second
+
+    def readings(self, place: int) -> ReadingsWanted:
+        """A function or a dwell, by its place among the wants with a way."""
+        one = self.model.wanted[place]
+        assert isinstance(one, ReadingsWanted)
+        return one
 
     def outputs(self, place: int) -> Floats:
         """The output's readings (n,) along a function or a dwell, near those wanted."""
         read = self.ways[place].q[:, self.loop.output] - self.zeros(place)[1]
         if not bool(self.loop.numbers.turns[self.loop.output]):
             return read
-        want = self.task.wants[self.wants[place][0]]
-        begin = float(want.output[0]) if isinstance(want, FunctionWant) else 0.0
         read = np.unwrap(read)
-        return np.asarray(read - math.tau * np.round((read[0] - begin) / math.tau))
+        return np.asarray(read - math.tau * np.round((read[0] - self.readings(place).readings[0]) / math.tau))
 
     def places(self, place: int) -> Floats:
         """Where the points of a path or of poses, or the point of a straight line go (n, points, 3)."""
@@ -109,9 +107,7 @@ class DesignAlong:
 
     def stations(self, place: int) -> Floats:
         """Where these points are at the stations (n, points, 3)."""
-        first = sum(len(inputs) for inputs in self.design.solution.inputs[:place])
-        count = len(self.design.solution.inputs[place])
-        return self._put(self.model.wanted[place], self.design.solution.seed.poses[first : first + count])
+        return self._put(self.model.wanted[place], self.design.solution.poses_of(place))
 
     def _put(self, one: Wanted, q: Floats) -> Floats:
         assert isinstance(one, PlacesWanted | LineWanted)
@@ -130,14 +126,10 @@ class DesignAlong:
         for number, way in enumerate(self.ways):
             here = self.loop.here(self.values, way.q)
             for place, room in pose_rooms(self.loop, self.task.musts):
-                scale = math.degrees(1) if self.room_unit(place) == "deg" else self.loop.size
+                _, scale = room_scale(self.task.musts[place], self.loop)  # type: ignore[arg-type]
                 found.append((place, number, way.inputs, scale * room(here)[0].min(axis=1)))
         return found
 
     def room_unit(self, place: int) -> str:
         """The unit of the room of a must about poses: "deg", or the length unit."""
-        return room_unit(self.task.musts[place], self.loop.linkage)  # type: ignore[arg-type]
-
-
-def _level(want: Want) -> float | None:
-    return want.level if isinstance(want, DwellWant) else 0.0
+        return room_scale(self.task.musts[place], self.loop)[0]  # type: ignore[arg-type]

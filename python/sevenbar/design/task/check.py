@@ -21,11 +21,10 @@ from sevenbar.design.candidates import (
     within_limits,
 )
 from sevenbar.design.task.loop import TaskLoop
-from sevenbar.design.task.match import Placing
-from sevenbar.design.task.musts import FAULTS, pose_rooms, room_unit
+from sevenbar.design.task.musts import FAULTS, pose_rooms, room_scale
+from sevenbar.design.task.placing import Placing, moved, standing
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.solve import Solved
-from sevenbar.design.task.standing import moved, standing
 from sevenbar.design.task.task import FigureMust, Most
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted
@@ -59,6 +58,11 @@ class Met:
     greatest: float
     rms: float
     unit: str
+
+    @property
+    def shown(self) -> tuple[str, float]:
+        """The unit in which people read it, and what 1 is there: degrees for angles."""
+        return ("deg", math.degrees(1.0)) if self.unit == "rad" else (self.unit, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,8 +107,7 @@ def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
     """The design with its errors found anew from what is written, or why it does not do what is asked."""
     draft = model.loop.drawn(solution.seed.values)
     try:
-        linkage = Draft.of(draft.toml(), "design", agree=draft.agree).linkage
-        ways = _all_ways(model, solution, linkage)
+        linkage, ways = _opened(model, solution, draft)
         motion = linkage.motion(CHECK_SAMPLES)
     except (DescriptionError, RequestError, NotCoveredError) as error:
         return Refusal("assembly", str(error))
@@ -125,25 +128,15 @@ def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
         )
         for one, w in zip(model.wanted, ways, strict=True)
     )
-    return TaskDesign(
-        candidate,
-        solution.cost,
-        solution.optimality,
-        met,
-        figures,
-        room,
-        solution.seed.placing,
-        solution.seed.values,
-        solution,
-    )
+    cost, optimality, seed = solution.cost, solution.optimality, solution.seed
+    return TaskDesign(candidate, cost, optimality, met, figures, room, seed.placing, seed.values, solution)
 
 
-def _all_ways(model: TaskModel, solution: Solved, linkage: Linkage) -> list[list[_Way]]:
-    """The ways of each want."""
-    return [
-        _ways(one, linkage, inputs, u, solution.seed.placing)
-        for one, inputs, u in zip(model.wanted, solution.inputs, solution.seed.own, strict=True)
-    ]
+def _opened(model: TaskModel, solution: Solved, draft: Draft) -> tuple[Linkage, list[list[_Way]]]:
+    """The linkage as its file has it, and the ways of each want."""
+    linkage = Draft.of(draft.toml(), "design", agree=draft.agree).linkage
+    each = zip(model.wanted, solution.inputs, solution.seed.own, strict=True)
+    return linkage, [_ways(one, linkage, inputs, u, solution.seed.placing) for one, inputs, u in each]
 
 
 def _ways(one: Wanted, linkage: Linkage, inputs: Floats, u: Floats, placing: Placing) -> list[_Way]:
@@ -176,9 +169,9 @@ def _candidate(
         torn = _torn(model, number, solution, own)
         if torn is not None:
             return torn
-        places = isinstance(one, PlacesWanted)
-        figures = standing(solution.seed.placing, linkage.length_unit) if places and model.placed else {}
-        if places and model.placed and linkage.form == "drawn":
+        placed = isinstance(one, PlacesWanted) and model.placed
+        figures = standing(solution.seed.placing, linkage.length_unit) if placed else {}
+        if placed and linkage.form == "drawn":
             draft, figures = moved(draft, solution.seed.placing), {}
         unit = "deg" if one.turns else linkage.length_unit
         claim = Claim(solution.inputs[number], own[0].outputs, own[0].errors, unit, figures)
@@ -204,9 +197,7 @@ def _candidate(
 
 def _torn(model: TaskModel, number: int, solution: Solved, own: list[_Way]) -> Refusal | None:
     """Why no pass holds all poses that were solved for, each of which some pass comes near."""
-    loop, q = model.loop, solution.seed.poses
-    begin = sum(len(inputs) for inputs in solution.inputs[:number])
-    poses = q[begin : begin + len(solution.inputs[number])]
+    loop, poses = model.loop, solution.poses_of(number)
     one = model.wanted[number]
     here = loop.here(solution.seed.values, poses)
     left, _ = one.left(here.along(one.stations.by), solution.seed.own[number])
@@ -229,18 +220,15 @@ def _of_figures(model: TaskModel, draft: Draft, solution: Solved, motion: Motion
     found = model.figures.circuit(solution.seed.values, solution.seed.anchor)
     if found is None:
         return Refusal("assembly", "its circuit is lost")
-    circuit = found[1].index
-    none = np.empty(0)
-    read = model.figures.at(solution.seed.values, solution.seed.anchor, slopes=False)
-    if read is None or circuit >= len(motion.circuits):
+    circuit, values = found[1].index, model.figures.read(*found)
+    if not np.isfinite(list(values.values())).all() or circuit >= len(motion.circuits):
         return Refusal("figure", "a measure has no value there")
-    values = dict(zip(model.figures.names, read[0], strict=True))
     wanted = [want for want in model.figure_wants if not isinstance(want.value, str)]
     errors = np.array([(values[want.name] - float(want.value)) / want.unit for want in wanted] or [0.0])
     lowest = motion.circuits[circuit].transmission
-    claim = Claim(none, none, errors, "", {}, whole_turn=True)
+    claim = Claim(np.empty(0), np.empty(0), errors, "", {}, whole_turn=True)
     least = None if lowest is None else lowest.lowest
-    candidate = Candidate(draft, claim, motion.motion_type, least, circuit, 0, none)
+    candidate = Candidate(draft, claim, motion.motion_type, least, circuit, 0, np.empty(0))
     return within_limits(candidate, model.task.limits)
 
 
@@ -263,10 +251,8 @@ def missed_between(model: TaskModel, solution: Solved) -> dict[int, float]:
 
     Empty where none is, by more than rounding, or one for another reason.
     """
-    draft = model.loop.drawn(solution.seed.values)
     try:
-        linkage = Draft.of(draft.toml(), "design", agree=draft.agree).linkage
-        ways = _all_ways(model, solution, linkage)
+        linkage, ways = _opened(model, solution, model.loop.drawn(solution.seed.values))
     except (DescriptionError, RequestError, NotCoveredError):
         return {}
     if not all(ways):
@@ -304,8 +290,8 @@ def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: L
     for place, worst in _used_rooms(model, solution, ways, linkage).items():
         if not worst >= -MISSED:
             must = musts[place]
-            unit = room_unit(must, loop.linkage)  # type: ignore[arg-type]
-            missed = f"{-worst * (math.degrees(1) if unit == 'deg' else loop.size):.3g} {unit}"
+            unit, scale = room_scale(must, loop)  # type: ignore[arg-type]
+            missed = f"{-worst * scale:.3g} {unit}"
             return Refusal(FAULTS[type(must)], f"{must_words(must, loop.linkage)}: missed by {missed}")
         least = min(least, worst)
     for must in musts:

@@ -3,31 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from typing import Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.idle_link import refuse_idle_link
+from sevenbar.design.task import task as kinds
 from sevenbar.design.task.loop import TaskLoop
-from sevenbar.design.task.must_contradictions import Flaws, figure_flaw, of_must, value_flaw
-from sevenbar.design.task.musts import places_in
-from sevenbar.design.task.task import (
-    DesignTask,
-    DwellWant,
-    FigureMust,
-    FigureWant,
-    FunctionWant,
-    InBox,
-    InCone,
-    Most,
-    PathWant,
-    PoseMust,
-    PoseWant,
-    StraightWant,
-    Want,
+from sevenbar.design.task.must_contradictions import (
+    NOT_RISING,
+    Flaws,
+    figure_flaw,
+    not_positive,
+    of_must,
+    value_flaw,
 )
+from sevenbar.design.task.musts import places_in
+from sevenbar.design.task.task import DesignTask, Want
 from sevenbar.design.task.wanted_path import turning_back, wanted_inputs, wanted_places
 from sevenbar.errors import NotCoveredError, Problem, RequestError, shown, suggestion
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -61,25 +56,24 @@ def contradictions(task: DesignTask) -> Iterator[Problem]:
     yield from _free(task)
     if not task.wants:
         yield Problem("want", "none given; say what is wanted, as in [[want]] with kind = 'path'")
-    for i, want in enumerate(task.wants):
-        for key, message in _of_want(task, want, exact=_exact(task, i)):
-            yield Problem(f"want[{i + 1}]{key and '.' + key}", message)
-    for i, must in enumerate(task.musts):
-        for key, message in of_must(task, must):
-            yield Problem(f"must[{i + 1}]{key and '.' + key}", message)
-    about_poses = [i for i, must in enumerate(task.musts) if isinstance(must, PoseMust)]
+    found = [("want", i, _of_want(task, want)) for i, want in enumerate(task.wants, 1)]
+    found += [("must", i, of_must(task, must)) for i, must in enumerate(task.musts, 1)]
+    for table, number, flaws in found:
+        for key, message in flaws:
+            yield Problem(f"{table}[{number}]{key and '.' + key}", message)
+    about_poses = [i for i, must in enumerate(task.musts) if isinstance(must, kinds.PoseMust)]
     if task.wants and about_poses and not task.sampled:
         yield Problem(
             f"must[{about_poses[0] + 1}]",
             "is about poses, and measures alone are wanted; bound a measure of the whole circuit, as "
             "range:JOINT, ball_angle:JOINT or clearance, by a must with kind = 'figure'",
         )
-    places = [want for want in task.wants if isinstance(want, (PathWant, PoseWant))]
+    places = [want for want in task.wants if isinstance(want, (kinds.PathWant, kinds.PoseWant))]
     if task.placement != "fixed" and task.wants and not places:
         yield Problem(
             "placement", f"{task.placement!r} changes nothing: no path and no poses are wanted; leave it out"
         )
-    boxes = [i for i, must in enumerate(task.musts) if isinstance(must, InBox)]
+    boxes = [i for i, must in enumerate(task.musts) if isinstance(must, kinds.InBox)]
     if task.placement != "fixed" and boxes:
         yield Problem(
             f"must[{boxes[0] + 1}]",
@@ -98,7 +92,7 @@ def start_flaws(task: DesignTask) -> Iterator[Problem]:
     loop = TaskLoop(task.draft.holding(task.follow), task.names)
     circuits = loop.linkage.motion(OPENINGS).circuits
     for i, must in enumerate(task.musts):
-        if isinstance(must, InCone):
+        if isinstance(must, kinds.InCone):
             yield from _far_side(f"must[{i + 1}]", must, loop.linkage, circuits)
     q = closed_poses(loop, circuits)
     if q is None:
@@ -129,15 +123,13 @@ def closed_poses(loop: TaskLoop, circuits: Sequence[Circuit]) -> Floats | None:
 def _outside(task: DesignTask, loop: TaskLoop, q: Floats) -> Iterator[Problem]:
     """Points and joints that nothing moves, outside of the box in which they are to stay."""
     for i, must in enumerate(task.musts):
-        if not isinstance(must, InBox):
+        if not isinstance(must, kinds.InBox):
             continue
         numbers = places_in(loop, must)
         here = loop.here(loop.start, q)
         for name, number in zip(must.names, numbers, strict=True):
-            place, by = (
-                here.points[0, number],
-                here.points_by[:, number] * [*loop.scales, loop.units[loop.input]],
-            )
+            place = here.points[0, number]
+            by = here.points_by[:, number] * [*loop.scales, loop.units[loop.input]]
             out = (place < must.low) | (place > must.high)
             if out.any() and np.abs(by).max() < STILL * loop.size:
                 at = ", ".join(f"{x + 0.0:.6g}" for x in place)
@@ -147,7 +139,9 @@ def _outside(task: DesignTask, loop: TaskLoop, q: Floats) -> Iterator[Problem]:
                 )
 
 
-def _far_side(place: str, must: InCone, linkage: Linkage, circuits: Sequence[Circuit]) -> Iterator[Problem]:
+def _far_side(
+    place: str, must: kinds.InCone, linkage: Linkage, circuits: Sequence[Circuit]
+) -> Iterator[Problem]:
     """That a direction was left out of a cone and its rod is on the far side of the joint all along."""
     bend = ball_angle(linkage, must.joint, must.seat, must.stud)
     bends = [bend.at(circuit.q)[np.isfinite(circuit.q[:, bend.own]).all(axis=1)] for circuit in circuits]
@@ -172,7 +166,12 @@ def _free(task: DesignTask) -> Iterator[Problem]:
     if not task.free:
         names = ", ".join(d.name for d in task.draft.dimensions if d.kind != "speed")
         yield Problem("free", f"no number may change; give bounds of some of {names}")
-    used = _used_points(task)
+    used = {want.point for want in task.wants if isinstance(want, kinds.PathWant | kinds.StraightWant)}
+    used |= {name for must in task.musts if isinstance(must, kinds.InBox) for name in must.names}
+    measures = (
+        one for one in (*task.wants, *task.musts) if isinstance(one, kinds.FigureWant | kinds.FigureMust)
+    )
+    of_forces = any(is_of_forces(one.name) for one in measures)
     seen: set[str] = set()
     for one in task.free:
         place = f"free.{one.name}"
@@ -201,55 +200,26 @@ def _free(task: DesignTask) -> Iterator[Problem]:
                 f"begins at {d.value:g}{unit}, outside {low:g}:{high:g}; "
                 "give bounds that hold it, or another start",
             )
-        if d.kind == "mass" and not any(is_of_forces(name) for name in _figure_names(task)):
+        if d.kind == "mass" and not of_forces:
             yield Problem(
                 place, "no measure of forces is wanted or must hold, so this changes nothing; leave it out"
             )
         if d.name in task.follow:
             yield Problem(place, "is to follow from the others; leave it out here, or in follow")
-        owner = _owner(task, d.place)
+        # the point that it belongs to
+        owner = task.draft.raw["point"][int(str(d.place[1]))]["name"] if d.place[0] == "point" else None
         if owner is not None and owner not in used:
             yield Problem(
                 place, f"point '{owner}' is in no want and no must, so this changes nothing; leave it out"
             )
 
 
-def _owner(task: DesignTask, place: tuple[object, ...]) -> str | None:
-    """The point that a number belongs to."""
-    return task.draft.raw["point"][int(str(place[1]))]["name"] if place[0] == "point" else None
+def _of_want(task: DesignTask, want: Want) -> Flaws:
+    yield from not_positive("weight", want.weight, "weight")
+    yield from _FLAWS[type(want)](task, want)
 
 
-def _figure_names(task: DesignTask) -> list[str]:
-    return [one.name for one in (*task.wants, *task.musts) if isinstance(one, (FigureWant, FigureMust))]
-
-
-def _used_points(task: DesignTask) -> set[str]:
-    used = {want.point for want in task.wants if isinstance(want, (PathWant, StraightWant))}
-    return used | {name for must in task.musts if isinstance(must, InBox) for name in must.names}
-
-
-def _of_want(task: DesignTask, want: Want, *, exact: bool) -> Flaws:
-    if not (math.isfinite(want.weight) and want.weight > 0):
-        yield "weight", f"{want.weight:g} is no weight; give a number > 0"
-    match want:
-        case FunctionWant():
-            yield from _function(task, want, exact=exact)
-        case PathWant():
-            yield from _path(task, want, exact=exact)
-        case PoseWant():
-            yield from _poses(task, want, exact=exact)
-        case FigureWant():
-            yield from _figure(task, want)
-        case DwellWant():
-            yield from _range(task.draft.linkage, want)
-        case StraightWant():
-            yield from _point(task.draft.linkage, want.point)
-            yield from _range(task.draft.linkage, want)
-            if want.length is not None and not (math.isfinite(want.length) and want.length > 0):
-                yield "length", f"{want.length:g} is no length; give a number > 0"
-
-
-def _function(task: DesignTask, want: FunctionWant, *, exact: bool) -> Flaws:
+def _function(task: DesignTask, want: kinds.FunctionWant) -> Flaws:
     linkage = task.draft.linkage
     x, y = want.input, want.output
     if x.ndim != 1 or x.shape != y.shape or x.size < 2 or not np.isfinite([x, y]).all():
@@ -259,10 +229,10 @@ def _function(task: DesignTask, want: FunctionWant, *, exact: bool) -> Flaws:
     if linkage.turns(linkage.drive.joint) and np.ptp(x) > math.tau * (1 + 1e-12):
         yield "", f"the inputs go over {math.degrees(float(np.ptp(x))):g} deg; give a turn at most"
     free = sum(zero is None for zero in want.zeros)
-    yield from _too_many(task, x.size if exact else 0, free)
+    yield from _too_many(task, want, x.size, free)
 
 
-def _path(task: DesignTask, want: PathWant, *, exact: bool) -> Flaws:
+def _path(task: DesignTask, want: kinds.PathWant) -> Flaws:
     yield from _point(task.draft.linkage, want.point)
     rows = np.concatenate([want.places, want.places[:1]]) if want.closed else want.places
     try:
@@ -273,20 +243,18 @@ def _path(task: DesignTask, want: PathWant, *, exact: bool) -> Flaws:
         yield {"points": "places"}.get(key, key), message
         return
     yield from _phase(want)
-    timed = want.timing is not None
-    count = len(want.places) * (2 if timed else 1)
-    yield from _too_many(task, count if exact else 0, _placing(task) + want.phase)
+    count = len(want.places) * (1 if want.timing is None else 2)
+    yield from _too_many(task, want, count, _placing(task) + want.phase)
 
 
-def _poses(task: DesignTask, want: PoseWant, *, exact: bool) -> Flaws:
+def _poses(task: DesignTask, want: kinds.PoseWant) -> Flaws:
     linkage = task.draft.linkage
     count = len(linkage.joints)
     if not 1 <= want.link < count:
         yield "link", f"{want.link} is no moving link; give 1 to {count - 1}, link {count} is the ground"
         return
     yield from _idle(linkage, want.link, "a pose of it")
-    if not (math.isfinite(want.arm) and want.arm > 0):
-        yield "arm", f"{want.arm:g} is no length; give a number > 0"
+    yield from not_positive("arm", want.arm, "length")
     poses = want.poses
     if not poses.size:
         yield "poses", "none given; give tables of at, axis and angle, as in { at = [0, 0, 0], angle = 30 }"
@@ -303,47 +271,60 @@ def _poses(task: DesignTask, want: PoseWant, *, exact: bool) -> Flaws:
         else:
             yield from _going_one_way(want.timing, "timing", "input of pose")
     yield from _phase(want)
-    timed = want.timing is not None
-    count = len(poses) * (3 if timed else 2)
-    yield from _too_many(task, count if exact else 0, _placing(task) + want.phase)
+    count = len(poses) * (2 if want.timing is None else 3)
+    yield from _too_many(task, want, count, _placing(task) + want.phase)
 
 
-def _phase(want: PathWant | PoseWant) -> Flaws:
+def _phase(want: kinds.PathWant | kinds.PoseWant) -> Flaws:
     if want.phase and want.timing is None:
         yield "phase", "there are no inputs whose start could be free; give timing, too"
 
 
-def _figure(task: DesignTask, want: FigureWant) -> Flaws:
+def _figure(task: DesignTask, want: kinds.FigureWant) -> Flaws:
     flaw = figure_flaw(task.draft.linkage, want.name)
     if flaw:
         yield "name", flaw
         return
-    if not (math.isfinite(want.unit) and want.unit > 0):
-        yield "unit", f"{want.unit:g} is no unit; give a number > 0"
+    yield from not_positive("unit", want.unit, "unit")
     if isinstance(want.value, str):
         if want.value not in ("small", "great"):
-            yield (
-                "value",
-                f"{shown(want.value)} is neither a number nor 'small' nor 'great'; give one of them",
-            )
+            what = "is neither a number nor 'small' nor 'great'; give one of them"
+            yield "value", f"{shown(want.value)} {what}"
     elif not math.isfinite(want.value):
         yield "value", f"{want.value} is no value; give a finite number"
     else:
         if flaw := value_flaw(task.draft.linkage, want.name, float(want.value)):
             yield "value", flaw
         for i, other in enumerate(task.wants[: task.wants.index(want)]):
-            if isinstance(other, FigureWant) and other.name == want.name and other.value != want.value:
+            if isinstance(other, kinds.FigureWant) and other.name == want.name and other.value != want.value:
                 yield "name", f"want {i + 1} wants {want.name}, too, and another value; leave one out"
 
 
-def _range(linkage: Linkage, want: DwellWant | StraightWant) -> Flaws:
-    low, high = want.inputs
+def _straight(task: DesignTask, want: kinds.StraightWant) -> Flaws:
+    yield from _point(task.draft.linkage, want.point)
+    yield from _range(task, want)
+    if want.length is not None:
+        yield from not_positive("length", want.length, "length")
+
+
+def _range(task: DesignTask, want: kinds.DwellWant | kinds.StraightWant) -> Flaws:
+    linkage, (low, high) = task.draft.linkage, want.inputs
     if want.samples < FEWEST_SAMPLES:
         yield "samples", f"{want.samples} are too few; give {FEWEST_SAMPLES} or more"
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        yield "range", "its first end is not below its second one; give the lower end first"
+        yield "range", NOT_RISING
     elif linkage.turns(linkage.drive.joint) and high - low > math.tau * (1 + 1e-12):
         yield "range", f"goes over {math.degrees(high - low):g} deg of the input; give a turn at most"
+
+
+_FLAWS: Mapping[type, Callable[[DesignTask, Any], Flaws]] = {
+    kinds.FunctionWant: _function,
+    kinds.PathWant: _path,
+    kinds.PoseWant: _poses,
+    kinds.FigureWant: _figure,
+    kinds.DwellWant: _range,
+    kinds.StraightWant: _straight,
+}
 
 
 def _point(linkage: Linkage, name: str) -> Flaws:
@@ -377,13 +358,12 @@ def _placing(task: DesignTask) -> int:
     return {"fixed": 0, "free": 6, "free with scale": 7}[task.placement]
 
 
-def _exact(task: DesignTask, place: int) -> bool:
-    """Whether a want must be met exactly."""
-    return any(isinstance(must, Most) and must.want == place and must.most <= EXACT for must in task.musts)
-
-
-def _too_many(task: DesignTask, conditions: int, own: int) -> Flaws:
+def _too_many(task: DesignTask, want: Want, conditions: int, own: int) -> Flaws:
     """More that must be met exactly than numbers could meet; `own` are the want's own free numbers."""
+    place = [other is want for other in task.wants].index(True)
+    mosts = [must for must in task.musts if isinstance(must, kinds.Most)]
+    if not any(must.want == place and must.most <= EXACT for must in mosts):
+        return
     count = len(task.free) + own
     if conditions > count:
         yield (

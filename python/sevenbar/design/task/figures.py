@@ -11,8 +11,9 @@ from matplotlib.ticker import MaxNLocator
 from sevenbar.arrays import Floats
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.path_page import PathPage, path_page
-from sevenbar.design.task.task import DwellWant, FunctionWant, PathWant, PoseWant
-from sevenbar.design.task.words import must_words
+from sevenbar.design.task.wants.at_inputs import ReadingsWanted
+from sevenbar.design.task.wants.places import PlacesWanted
+from sevenbar.design.task.words import must_words, shown_in
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, OTHER, styled
@@ -27,33 +28,24 @@ COLOURS = (COMPUTED, OTHER, "#2a7f3f", "#8a4fa8", "#b8860b", "#404040")
 
 def want_figure(along: DesignAlong, number: int) -> Figure:
     """A want with a way, by its place among those: readings and error, or the path and its distances."""
-    want = along.wants[number][1]
-    if isinstance(want, (FunctionWant, DwellWant)):
-        return _readings(along, number, want)
-    return _places(along, number)
+    return (_readings if isinstance(along.wants[number][2], ReadingsWanted) else _places)(along, number)
 
 
-def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -> Figure:
+def _readings(along: DesignAlong, number: int) -> Figure:
     """The output's readings over the input's; below, the design's less those wanted."""
-    place = along.wants[number][0]
+    place, want = along.wants[number][0], along.readings(number)
     linkage = along.task.draft.linkage
     drive = linkage.drive
     zeros = along.zeros(number)
     x = along.ways[number].inputs - zeros[0]
     if linkage.turns(drive.joint):
         # on the turn of the readings
-        begin = float(want.input[0] if isinstance(want, FunctionWant) else want.inputs[0])
-        x = x - math.tau * np.round((x[0] - begin) / math.tau)
+        x = x - math.tau * np.round((x[0] - want.inputs[0]) / math.tau)
     y = along.outputs(number)
-    if isinstance(want, FunctionWant):
-        at, wanted = want.input, want.output
-    else:
-        at = np.linspace(*want.inputs, want.samples)
-        wanted = np.zeros(want.samples)
+    at, wanted = want.inputs, want.readings
     order = np.argsort(x)
     errors = np.interp(at, x[order], y[order]) - wanted
-    across, up = (_scale(linkage.turns(column)) for column in (drive.joint, drive.output))
-    units = [_unit(along, column) for column in (drive.joint, drive.output)]
+    (x_unit, across), (y_unit, up) = (shown_in(linkage, column) for column in (drive.joint, drive.output))
     points = len(at) <= MANY
     mark = (
         {"ls": "", "marker": "o", "mfc": "white", "ms": 5.0} if points else {"ls": (0, (4, 2.5)), "lw": 1.3}
@@ -69,9 +61,9 @@ def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -
         below.plot(across * at, up * errors, color=COMPUTED, **line)
         if np.abs(up * errors).max() < 1e-9:
             below.set_ylim(-1.0, 1.0)
-        top.set_ylabel(say("output reading [{unit}]", unit=units[1]))
-        below.set_ylabel(say("generated less\nwanted [{unit}]", unit=units[1]))
-        below.set_xlabel(say("input reading [{unit}]", unit=units[0]))
+        top.set_ylabel(say("output reading [{unit}]", unit=y_unit))
+        below.set_ylabel(say("generated less\nwanted [{unit}]", unit=y_unit))
+        below.set_xlabel(say("input reading [{unit}]", unit=x_unit))
         for axes in (top, below):
             axes.grid(lw=0.6)
             axes.xaxis.set_major_locator(MaxNLocator(9))
@@ -79,7 +71,7 @@ def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -
         figure.align_ylabels()
         reached = say(
             "error at most {greatest:.3g} {unit}, RMS {rms:.3g} {unit}",
-            greatest=up * met.greatest, rms=up * met.rms, unit=units[1],
+            greatest=up * met.greatest, rms=up * met.rms, unit=y_unit,
         )  # fmt: skip
         headline(figure, f"{_title(along)}\n{say('want {number}', number=place + 1)}: {reached}")
         handles, labels = top.get_legend_handles_labels()
@@ -89,16 +81,13 @@ def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -
 
 def _places(along: DesignAlong, number: int) -> Figure:
     """The path in space and from three sides, or the frames of poses, and the distance at each."""
-    place, want, _ = along.wants[number]
+    place, _, one = along.wants[number]
     way, found = along.places(number), along.stations(number)
     frames: list[tuple[Floats, str]] = []
-    if isinstance(want, PathWant):
-        wanted = want.places
-    elif isinstance(want, PoseWant):
-        ends = np.vstack([np.zeros(3), want.arm * np.eye(3)])
-        every = np.einsum("nij,pj->npi", want.poses[:, :3, :3], ends) + want.poses[:, None, :3, 3]
-        wanted = every[:, 0]
-        frames = [(every, OTHER), (found, COMPUTED)]
+    if isinstance(one, PlacesWanted):
+        wanted = one.places[:, 0]
+        if one.places.shape[1] > 1:
+            frames = [(one.places, OTHER), (found, COMPUTED)]
     else:
         # the places on the line through the ends of the way
         own = along.design.solution.seed.own[number]
@@ -123,7 +112,8 @@ def musts_figure(along: DesignAlong) -> Figure | None:
         return None
     linkage, task = along.task.draft.linkage, along.task
     units = list(dict.fromkeys(along.room_unit(place) for place, *_ in rooms))
-    across = _scale(linkage.turns(linkage.drive.joint))
+    joint = linkage.drive.joint
+    x_unit, across = shown_in(linkage, joint)
     with styled():
         figure = page_figure(6.4, 2.6 + 2.4 * len(units), pads=(0.05, 0.06))
         every = figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]
@@ -141,21 +131,10 @@ def musts_figure(along: DesignAlong) -> Figure | None:
             axes.grid(lw=0.6)
             axes.yaxis.set_major_locator(MaxNLocator(5))
             axes.legend(loc="best", frameon=True)
-        every[-1].set_xlabel(
-            say("input: {joint}", joint=f"{linkage.drive.joint} [{_unit(along, linkage.drive.joint)}]")
-        )
+        every[-1].set_xlabel(say("input: {joint}", joint=f"{joint} [{x_unit}]"))
         headline(figure, f"{_title(along)}\n{say('what must hold, with its room')}")
     return figure
 
 
 def _title(along: DesignAlong) -> str:
     return short(along.design.candidate.name, 60)
-
-
-def _scale(turns: bool) -> float:
-    return math.degrees(1.0) if turns else 1.0
-
-
-def _unit(along: DesignAlong, column: str) -> str:
-    linkage = along.task.draft.linkage
-    return "deg" if linkage.turns(column) else linkage.length_unit

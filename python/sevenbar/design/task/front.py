@@ -25,15 +25,7 @@ from sevenbar.design.course import SearchCourse
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.contradictions import refuse_contradictions
 from sevenbar.design.task.search import STARTS, DesignsFound, designed, named
-from sevenbar.design.task.task import (
-    DesignTask,
-    FigureMust,
-    FigureWant,
-    Most,
-    Must,
-    Want,
-    residual_unit,
-)
+from sevenbar.design.task.task import DesignTask, FigureMust, FigureWant, Most, Must, Want, residual_unit
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.progress import Progress, silent
 
@@ -112,9 +104,15 @@ def pareto(
     solved = missing = 0
     unfinished = ""
 
-    def search(bounded: int | None, bound: float, improved: int, given: Sequence[Floats], tries: int) -> int:
-        own = _bounded(task, (one, other), improved, bounded, bound)
-        found = designed(own, count=1, starts=tries, seed=seed, given=given)
+    def search(improved: int, musts: Sequence[Must], given: Sequence[ParetoPoint], tries: int) -> int:
+        """Designs in which one of the wants is improved."""
+        wants = tuple(
+            replace(want, weight=BESIDES) if i in (one, other) and i != improved else want
+            for i, want in enumerate(task.wants)
+        )
+        own = replace(task, wants=wants, musts=(*task.musts, *musts), goal="minimax")
+        begun = [point.design.values for point in given]
+        found = designed(own, count=1, starts=tries, seed=seed, given=begun)
         for design in found.designs:
             kept.append(ParetoPoint((_value(task, one, design), _value(task, other, design)), design))
         course.step(f"{len(kept)} points")
@@ -122,16 +120,18 @@ def pareto(
 
     try:
         for improved in (one, other):
-            if not search(None, math.inf, improved, [p.design.values for p in kept], starts):
+            if not search(improved, (), kept, starts):
                 raise RequestError(
                     f"pareto: no design is found for want {improved + 1} alone; solve the task first, "
                     "and ease what must hold"
                 )
         low, high = sorted(point.values[1] for point in kept)
-        for bound in _bounds(low, high, points):
-            given = sorted(kept, key=lambda point: abs(point.values[1] - bound))
+        # from the wide one to the narrow one, the ends left out
+        spread = np.geomspace if 0 < low * RATIO < high else np.linspace
+        for bound in spread(high, low, points)[1:-1]:
+            near = sorted(kept, key=lambda point: abs(point.values[1] - bound))
             solved += 1
-            missing += not search(other, bound, one, [p.design.values for p in given[:3]], 0)
+            missing += not search(one, [_must(task, other, bound)], near[:3], 0)
     except KeyboardInterrupt:
         if len(kept) < 2:
             raise
@@ -152,20 +152,6 @@ def _place(task: DesignTask, key: str, given: int | str) -> int:
         named = "".join(f", or {name}" for name in names if name)
         raise RequestError(f"{key}: {shown(given)} is no want of the task; give 1 to {count}{named}")
     return number - 1
-
-
-def _bounded(
-    task: DesignTask, pair: tuple[int, int], improved: int, bounded: int | None, bound: float
-) -> DesignTask:
-    """The task in which one want is improved, and another, perhaps, within a bound."""
-    wants = tuple(
-        replace(want, weight=BESIDES) if i in pair and i != improved else want
-        for i, want in enumerate(task.wants)
-    )
-    musts: tuple[Must, ...] = task.musts
-    if bounded is not None:
-        musts = (*musts, _must(task, bounded, bound))
-    return replace(task, wants=wants, musts=musts, goal="minimax")
 
 
 def _must(task: DesignTask, place: int, bound: float) -> Must:
@@ -193,13 +179,6 @@ def _value(task: DesignTask, place: int, design: TaskDesign) -> float:
 
 def _is_great(want: Want) -> bool:
     return isinstance(want, FigureWant) and want.value == "great"
-
-
-def _bounds(low: float, high: float, points: int) -> Floats:
-    """Bounds between the ends of a front, from the wide one to the narrow one, the ends left out."""
-    if 0 < low * RATIO < high:
-        return np.geomspace(high, low, points)[1:-1]
-    return np.linspace(high, low, points)[1:-1]
 
 
 def _front(task: DesignTask, pair: tuple[int, int], kept: Sequence[ParetoPoint]) -> tuple[ParetoPoint, ...]:

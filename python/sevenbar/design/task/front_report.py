@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -16,11 +15,10 @@ from sevenbar.design.tables import design_table
 from sevenbar.design.task.front import ParetoFront
 from sevenbar.design.task.report import TaskDesigns, as_dict, task_report
 from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
-from sevenbar.design.task.words import task_facts, want_words
+from sevenbar.design.task.words import measure_unit, shown_in, task_facts, want_words
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, styled
-from sevenbar.kinematics.measures import measures_named
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, page
@@ -34,32 +32,30 @@ class FrontFound(TaskDesigns):
     front: ParetoFront = field(kw_only=True)
 
     @property
-    def axes(self) -> list[tuple[str, str]]:
-        """Of both wants: a name for tables, and the unit."""
+    def axes(self) -> list[tuple[str, str, float]]:
+        """Of both wants: a name for tables, the unit, and what 1 of its value is there."""
         return [_axis(self.task, place) for place in self.front.wants]
 
     @property
     def values(self) -> Floats:
         """The two values of each point (n, 2) in the units of the axes."""
-        radians = [not isinstance(self.task.wants[place], FigureWant) for place in self.front.wants]
-        degrees = [own and unit == "deg" for own, (_, unit) in zip(radians, self.axes, strict=True)]
-        return self.front.values * np.where(degrees, math.degrees(1.0), 1.0)
+        return np.asarray(self.front.values * [scale for *_, scale in self.axes])
 
     @property
     def columns(self) -> dict[str, list[float]]:
         """The values of the points by the names that they have in tables."""
-        names = (f"{name}_{unit.replace(' ', '_')}" if unit else name for name, unit in self.axes)
+        names = (f"{name}_{unit.replace(' ', '_')}" if unit else name for name, unit, _ in self.axes)
         return {name: own.tolist() for name, own in zip(names, self.values.T, strict=True)}
 
 
-def _axis(task: DesignTask, place: int) -> tuple[str, str]:
+def _axis(task: DesignTask, place: int) -> tuple[str, str, float]:
     want, linkage = task.wants[place], task.draft.linkage
     if isinstance(want, FigureWant):
-        (measure,) = measures_named([want.name])
         off = "" if isinstance(want.value, str) else "off_"
-        return f"{off}{want.name}", measure.unit(linkage, linkage.drive.output).replace("_", " ")
-    turns = isinstance(want, FunctionWant | DwellWant) and linkage.turns(linkage.drive.output)
-    return f"want_{place + 1}_greatest", "deg" if turns else linkage.length_unit
+        return f"{off}{want.name}", measure_unit(want.name, linkage), 1.0
+    of_output = isinstance(want, FunctionWant | DwellWant)
+    shown = shown_in(linkage, linkage.drive.output) if of_output else (linkage.length_unit, 1.0)
+    return f"want_{place + 1}_greatest", *shown
 
 
 def front_report(
@@ -90,7 +86,7 @@ def _text(found: FrontFound) -> RenderableType:
         facts.add("", f"{front.missing} bounds had no design")
     if front.unfinished:
         facts.add("unfinished", front.unfinished, "bold yellow")
-    heads = [f"{name.replace('_', ' ')}\n[{unit}]" if unit else name for name, unit in found.axes]
+    heads = [f"{name.replace('_', ' ')}\n[{unit}]" if unit else name for name, unit, _ in found.axes]
     rows = [
         [
             *(f"{value:.5g}" for value in pair),
@@ -126,12 +122,10 @@ def front_figure(found: FrontFound) -> Any:
         axes.plot(values[:, 0], values[:, 1], color=COMPUTED, lw=0.8, ls=":", marker="o", ms=5.0, mfc="white")
         for i, (x, y) in enumerate(values, 1):
             axes.annotate(str(i), (x, y), xytext=(5, 5), textcoords="offset points")
-        labels = [
-            _label(front.task, place, name, unit)
-            for place, (name, unit) in zip(front.wants, found.axes, strict=True)
-        ]
-        axes.set_xlabel(labels[0])
-        axes.set_ylabel(labels[1])
+        pairs = zip(front.wants, found.axes, strict=True)
+        x_label, y_label = (_label(front.task, place, *axis[:2]) for place, axis in pairs)
+        axes.set_xlabel(x_label)
+        axes.set_ylabel(y_label)
         axes.xaxis.set_major_locator(MaxNLocator(7))
         axes.grid(lw=0.6)
         headline(figure, f"{short(found.name, 60)}\n{say('none is better in both')}")

@@ -48,7 +48,7 @@ class _Damped:
     """Slopes (r, k) with damping, over the unknowns that are free (k,), in units of a scale (free,)."""
 
     def __init__(self, by: Floats, free: Booleans, scale: Floats, weight: float) -> None:
-        self._free, self._scale = free, scale
+        self._by, self._free, self._scale = by, free, scale
         damped = np.concatenate([by[:, free] / scale, np.sqrt(weight) * np.eye(len(scale))])
         self._basis, self._triangle = np.linalg.qr(damped)
 
@@ -59,9 +59,16 @@ class _Damped:
         found[self._free] = along / self._scale
         return found
 
-    def length(self, step: Floats) -> float:
-        """The length of a step in its units."""
-        return float(np.linalg.norm(step[self._free] * self._scale))
+    def bent(self, ahead: Floats | None, left: Floats, step: Floats) -> Floats:
+        """A step with its second order, which follows a valley that bends; without it where it is large.
+
+        `left` are the residuals where it begins, `ahead` those after `SHARE` of it.
+        """
+        if ahead is None:
+            return step
+        bend = self.step(((left - ahead) / SHARE + self._by @ step) / SHARE)
+        longest, length = (np.linalg.norm(one[self._free] * self._scale) for one in (step, bend))
+        return step + bend if length <= MOST_BENT * longest else step
 
 
 def nearest_least(
@@ -99,7 +106,7 @@ def nearest_least(
         straight = -np.inf
         if steps >= STRAIGHT:
             straight = cost - float(((left + by @ step) ** 2).sum())
-            step = _bent(residuals, z, left, by, step, damped)
+            step = damped.bent(residuals(z + SHARE * step), left, step)
             tried += 1
         steps += 1
         then_z = np.clip(z + step, low, high)
@@ -125,19 +132,3 @@ def nearest_least(
             break
         cost -= gained
     return Nearest(z, stuck=growth > 2.0 and tried < evaluations)
-
-
-def _bent(
-    residuals: Callable[[Floats], Floats | None],
-    z: Floats,
-    left: Floats,
-    by: Floats,
-    step: Floats,
-    damped: _Damped,
-) -> Floats:
-    """A step with its second order, by which it follows a valley that bends; without it where it is large."""
-    ahead = residuals(z + SHARE * step)
-    if ahead is None:
-        return step
-    bend = damped.step(((left - ahead) / SHARE + by @ step) / SHARE)
-    return step + bend if damped.length(bend) <= MOST_BENT * damped.length(step) else step

@@ -1,11 +1,4 @@
-"""Wanted points and a curve of rows: the best order-keeping match, and the best place in space.
-
-The rigid motion that brings points P_j nearest to others w_j has the rotation of the singular vectors of
-`sum (w_j - w)(P_j - P)^T` (Kabsch); with s the singular values, the last with the sign of the determinant,
-the squares left are `|w|^2 + |P|^2 - 2 s`, s = s1 + s2 + s3, and with a free scale `|w|^2 - s^2 / |P|^2`.
-
-Source: docs/theory_design.md, (28).
-"""
+"""The best order-keeping match of wanted points with a curve of rows, as it is and placed in space."""
 
 from __future__ import annotations
 
@@ -15,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
+from sevenbar.design.task.placing import Placing, placed, turns
 
 #: Places along the wanted path, and along a curve, at which shapes are compared.
 SHAPE, CURVE = 24, 96
@@ -30,58 +24,18 @@ ROUNDS = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Placing:
-    """A similarity: `scale * rotation @ P + shift`."""
-
-    rotation: Floats
-    shift: Floats
-    scale: float = 1.0
-
-    def put(self, places: Floats) -> Floats:
-        """Places (.., 3) as they are moved."""
-        return np.asarray(self.scale * places @ self.rotation.T + self.shift)
-
-    def back(self, places: Floats) -> Floats:
-        """Places (.., 3) as they were before."""
-        return np.asarray((places - self.shift) @ self.rotation / self.scale)
-
-
-STILL = Placing(np.eye(3), np.zeros(3))
-
-
-@dataclass(frozen=True, eq=False)
 class Match:
-    """Rows (n,) of a curve matched with the wanted points, the placing, and the mean square left."""
+    """Rows (n,) of a curve matched with the wanted points, the mean square left, and the placing."""
 
     rows: Integers
-    placing: Placing
     error: float
+    placing: Placing
 
 
-def placed(wanted: Floats, found: Floats, *, scaled: bool = False, shares: Floats | None = None) -> Placing:
-    """The similarity that brings `found` (n, 3) nearest to `wanted` (n, 3); `scaled` where it may scale.
-
-    Squares count by their `shares` (n,), alike where none are given.
-    """
-    share = np.ones((len(wanted), 1)) if shares is None else shares[:, None]
-    far, near = ((share * places).sum(axis=0) / share.sum() for places in (wanted, found))
-    root = np.sqrt(share)
-    rotation, scale, _ = _turns((root * (wanted - far))[None], (root * (found - near))[None], scaled=scaled)
-    turn, size = rotation[0], float(scale[0])
-    return Placing(turn, far - size * turn @ near, size)
-
-
-def _turns(wanted: Floats, found: Floats, *, scaled: bool) -> tuple[Floats, Floats, Floats]:
-    """Rotations (m, 3, 3), scales (m,) and squares left (m,) for centred sets (m or 1, n, 3)."""
-    left, sizes, right = np.linalg.svd(np.swapaxes(wanted, 1, 2) @ found)
-    sign = np.sign(np.linalg.det(left @ right))
-    left[:, :, 2] *= sign[:, None]
-    total = sizes[:, 0] + sizes[:, 1] + sign * sizes[:, 2]
-    own, other = (wanted**2).sum(axis=(1, 2)), (found**2).sum(axis=(1, 2))
-    if scaled:
-        spread = np.maximum(other, np.finfo(float).tiny)
-        return left @ right, total / spread, own - total**2 / spread
-    return left @ right, np.ones_like(total), own + other - 2 * total
+def _with_lengths(curve: Floats, *, closed: bool) -> tuple[Floats, Floats]:
+    """The places of a curve, a closed one to its first place again, and the lengths along it."""
+    whole = np.concatenate([curve, curve[:1]]) if closed else curve
+    return whole, np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(whole, axis=0), axis=1))])
 
 
 def in_order(curve: Floats, wanted: Floats, *, closed: bool) -> tuple[Integers, float]:
@@ -124,13 +78,8 @@ def _followed(cost: Floats) -> tuple[Integers, Floats]:
     return rows, total.min(axis=1) / count
 
 
-def matched(
-    curve: Floats, wanted: Floats, *, curve_closed: bool, closed: bool, place: bool, scaled: bool
-) -> Match | None:
-    """The best order-keeping match of a curve with the wanted points, placed in space where it may be."""
-    if not place:
-        rows, error = in_order(curve, wanted, closed=curve_closed)
-        return Match(rows, STILL, error) if math.isfinite(error) else None
+def matched(curve: Floats, wanted: Floats, *, curve_closed: bool, closed: bool, scaled: bool) -> Match | None:
+    """The best order-keeping match of a curve with the wanted points, placed where it is best in space."""
     if closed and not curve_closed:
         return None
     placing = _by_shape(curve, wanted, curve_closed=curve_closed, closed=closed, scaled=scaled)
@@ -142,7 +91,7 @@ def matched(
         if not math.isfinite(error):
             break
         if best is None or error < best.error:
-            best = Match(rows, placing, error)
+            best = Match(rows, error, placing)
         placing = placed(wanted, curve[rows], scaled=scaled)
     return best
 
@@ -153,10 +102,8 @@ def by_length(curve: Floats, wanted: Floats, *, curve_closed: bool, closed: bool
     Near a sharp turn, where the nearest rows of points before and after it are the same, lengths tell which
     side is which. The best of all begins, both ways; `None` where the curve is too short.
     """
-    steps = np.linalg.norm(np.diff(wanted, axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(steps)])
-    whole = np.concatenate([curve, curve[:1]]) if curve_closed else curve
-    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(whole, axis=0), axis=1))])
+    _, along = _with_lengths(wanted, closed=False)
+    _, length = _with_lengths(curve, closed=curve_closed)
     if closed:
         # the lengths of a closed path are those of the curve, from its first point to its first again
         along *= length[-1] / (along[-1] + float(np.linalg.norm(wanted[-1] - wanted[0])))
@@ -206,7 +153,7 @@ def _by_shape(
     every = np.concatenate(stretches)
     middle = every.mean(axis=1, keepdims=True)
     far = own.mean(axis=0)
-    rotation, scale, left = _turns((own - far)[None], every - middle, scaled=scaled)
+    rotation, scale, left = turns((own - far)[None], every - middle, scaled=scaled)
     i = int(left.argmin())
     turn, size = rotation[i], float(scale[i])
     return Placing(turn, far - size * turn @ middle[i, 0], size)
@@ -214,7 +161,6 @@ def _by_shape(
 
 def _evenly(curve: Floats, count: int, *, closed: bool) -> tuple[Floats, float]:
     """Places (count, 3) at even lengths along a curve (rows, 3), and its length."""
-    whole = np.concatenate([curve, curve[:1]]) if closed else curve
-    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(whole, axis=0), axis=1))])
+    whole, length = _with_lengths(curve, closed=closed)
     at = np.linspace(0.0, length[-1], count, endpoint=not closed)
     return np.column_stack([np.interp(at, length, whole[:, k]) for k in range(3)]), float(length[-1])

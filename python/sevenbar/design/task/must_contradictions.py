@@ -3,24 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.task.task import (
-    Apart,
-    DesignTask,
-    FigureMust,
-    FigureWant,
-    FunctionWant,
-    InBox,
-    InCone,
-    InRange,
-    Most,
-    Must,
-    PathWant,
-)
+from sevenbar.design.task import task as kinds
+from sevenbar.design.task.task import DesignTask, Must
 from sevenbar.errors import RequestError, no_joint, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.stops import Cone
@@ -51,26 +41,22 @@ BOUNDS = {
     "rms_torque": (0.0, math.inf),
 }
 
+#: Of a range.
+NOT_RISING = "its first end is not below its second one; give the lower end first"
+
 #: Inputs of a turn that show whether a measure has a meaning.
 FEW = 12
 
 
 def of_must(task: DesignTask, must: Must) -> Flaws:
     """What is wrong with a must."""
-    linkage = task.draft.linkage
-    match must:
-        case InRange():
-            yield from _range(task, must)
-        case InCone():
-            yield from _cone(linkage, must)
-        case InBox():
-            yield from _box(task, must)
-        case Apart():
-            yield from _apart(linkage, must)
-        case FigureMust():
-            yield from _figure(task, must)
-        case Most():
-            yield from _most(task, must)
+    yield from _FLAWS[type(must)](task, must)
+
+
+def not_positive(key: str, value: float, what: str, give: str = "a number") -> Flaws:
+    """That a value is none of what must be greater than 0."""
+    if not (math.isfinite(value) and value > 0):
+        yield key, f"{value:g} is no {what}; give {give} > 0"
 
 
 def figure_flaw(linkage: Linkage, name: str) -> str:
@@ -89,7 +75,11 @@ def figure_flaw(linkage: Linkage, name: str) -> str:
         return no_joint(joint, names)
     if is_of_forces(name) and linkage.loading.is_empty:
         return "nothing acts on the linkage: no body, load or spring; write them into its file"
-    if name.startswith("transmission") and linkage.form != "rssr" and not _transmits(linkage):
+    if (
+        name.startswith("transmission")
+        and linkage.form != "rssr"
+        and all(circuit.transmission is None for circuit in linkage.motion(FEW).circuits)
+    ):
         return "this linkage has no transmission angle; leave it out"
     if kind in JOINT_EXTENTS:
         for circuit in linkage.motion(FEW).circuits[:1]:
@@ -113,12 +103,7 @@ def value_flaw(linkage: Linkage, name: str, value: float, key: str = "value") ->
     return ""
 
 
-def _transmits(linkage: Linkage) -> bool:
-    """Whether the linkage has a transmission angle: as its circuits have it."""
-    return any(circuit.transmission is not None for circuit in linkage.motion(FEW).circuits)
-
-
-def _range(task: DesignTask, must: InRange) -> Flaws:
+def _range(task: DesignTask, must: kinds.InRange) -> Flaws:
     linkage = task.draft.linkage
     try:
         column = linkage.column(must.column, "joint")
@@ -126,14 +111,14 @@ def _range(task: DesignTask, must: InRange) -> Flaws:
         yield "joint", str(error).removeprefix("joint: ")
         return
     if not must.low < must.high:
-        yield "range", "its first end is not below its second one; give the lower end first"
+        yield "range", NOT_RISING
         return
     drive = (linkage.drive.joint, linkage.drive.output)
     name = linkage.columns[column]
     # angles may be a turn further
     turn = math.tau if linkage.turns(column) else 0.0
     for i, want in enumerate(task.wants):
-        if not isinstance(want, FunctionWant) or name not in drive:
+        if not isinstance(want, kinds.FunctionWant) or name not in drive:
             continue
         which = drive.index(name)
         zero = want.zeros[which]
@@ -141,7 +126,7 @@ def _range(task: DesignTask, must: InRange) -> Flaws:
             yield "range", f"want {i + 1} needs {name} outside it; widen it, or want less"
     before = task.musts[: task.musts.index(must)]
     for i, other in enumerate(before):
-        if isinstance(other, InRange) and other.column == must.column:
+        if isinstance(other, kinds.InRange) and other.column == must.column:
             one, own = np.array([other.low]), np.array([must.low])
             if _beyond(one, must.low, must.high, turn) and _beyond(own, other.low, other.high, turn):
                 yield "range", f"has nothing in common with that of must {i + 1}; widen one of the two"
@@ -155,15 +140,15 @@ def _beyond(values: Floats, low: float, high: float, turn: float) -> bool:
     return bool(((values < low - slack) | (values > high + slack)).any())
 
 
-def _cone(linkage: Linkage, must: InCone) -> Flaws:
+def _cone(task: DesignTask, must: kinds.InCone) -> Flaws:
     try:
-        chosen(linkage, must.joint, Cone(must.angle, must.seat, must.stud))
+        chosen(task.draft.linkage, must.joint, Cone(must.angle, must.seat, must.stud))
     except RequestError as error:
         key, _, message = str(error).partition(": ")
         yield {"cone": "angle"}.get(key, key), message
 
 
-def _box(task: DesignTask, must: InBox) -> Flaws:
+def _box(task: DesignTask, must: kinds.InBox) -> Flaws:
     linkage = task.draft.linkage
     for axis, low, high in zip("xyz", must.low, must.high, strict=True):
         if not low < high:
@@ -179,15 +164,15 @@ def _box(task: DesignTask, must: InBox) -> Flaws:
                 f"this linkage has {', '.join(known)}",
             )
     for i, want in enumerate(task.wants):
-        if isinstance(want, PathWant) and want.point in must.names and task.placement == "fixed":
+        if isinstance(want, kinds.PathWant) and want.point in must.names and task.placement == "fixed":
             out = ((want.places < must.low) | (want.places > must.high)).any(axis=1)
             if out.any():
                 place = int(np.flatnonzero(out)[0]) + 1
                 yield "names", f"place {place} of want {i + 1} lies outside the box; widen it, or want less"
 
 
-def _apart(linkage: Linkage, must: Apart) -> Flaws:
-    count = len(linkage.joints)
+def _apart(task: DesignTask, must: kinds.Apart) -> Flaws:
+    count = len(task.draft.linkage.joints)
     first, second = must.links
     outside = [link for link in must.links if not 1 <= link <= count]
     if outside:
@@ -196,16 +181,14 @@ def _apart(linkage: Linkage, must: Apart) -> Flaws:
         yield "links", f"{first} is named twice; give two links"
     elif (first - second) % count in (1, count - 1):
         yield "links", f"{first} and {second} meet in a joint, so their distance is 0; give links that do not"
-    if not must.least > 0:
-        yield "least", f"{must.least:g} is no distance; give a length > 0"
+    yield from not_positive("least", must.least, "distance", "a length")
 
 
-def _figure(task: DesignTask, must: FigureMust) -> Flaws:
+def _figure(task: DesignTask, must: kinds.FigureMust) -> Flaws:
     if flaw := figure_flaw(task.draft.linkage, must.name):
         yield "name", flaw
         return
-    least = -math.inf if must.least is None else must.least
-    most = math.inf if must.most is None else must.most
+    least, most = _ends(must)
     if must.least is None and must.most is None:
         yield "", "has no end; give least, most, or both"
     elif not least <= most:
@@ -214,22 +197,38 @@ def _figure(task: DesignTask, must: FigureMust) -> Flaws:
         if end is not None and (flaw := value_flaw(task.draft.linkage, must.name, end, key)):
             yield key, flaw
     for i, other in enumerate(task.musts[: task.musts.index(must)]):
-        if isinstance(other, FigureMust) and other.name == must.name:
-            low = -math.inf if other.least is None else other.least
-            high = math.inf if other.most is None else other.most
+        if isinstance(other, kinds.FigureMust) and other.name == must.name:
+            low, high = _ends(other)
             if max(least, low) > min(most, high):
                 yield "name", f"must {i + 1} wants {must.name} outside these ends; leave one out, or widen it"
     for i, want in enumerate(task.wants):
-        same = isinstance(want, FigureWant) and want.name == must.name and not isinstance(want.value, str)
-        if same and not least <= want.value <= most:  # type: ignore[union-attr, operator]
+        if not isinstance(want, kinds.FigureWant) or want.name != must.name or isinstance(want.value, str):
+            continue
+        if not least <= want.value <= most:
             yield "name", f"want {i + 1} wants it outside these ends; widen them, or want another value"
 
 
-def _most(task: DesignTask, must: Most) -> Flaws:
+def _ends(must: kinds.FigureMust) -> tuple[float, float]:
+    return (
+        -math.inf if must.least is None else must.least,
+        math.inf if must.most is None else must.most,
+    )
+
+
+def _most(task: DesignTask, must: kinds.Most) -> Flaws:
     count = len(task.wants)
     if not 0 <= must.want < count:
         yield "want", f"{must.want + 1} is not a want; give its place, 1 to {count}"
-    elif isinstance(task.wants[must.want], FigureWant):
+    elif isinstance(task.wants[must.want], kinds.FigureWant):
         yield "want", "is a figure; bound it by a must with kind = 'figure', least and most"
-    if not must.most > 0:
-        yield "most", f"{must.most:g} is no bound; give a number > 0"
+    yield from not_positive("most", must.most, "bound")
+
+
+_FLAWS: Mapping[type, Callable[[DesignTask, Any], Flaws]] = {
+    kinds.InRange: _range,
+    kinds.InCone: _cone,
+    kinds.InBox: _box,
+    kinds.Apart: _apart,
+    kinds.FigureMust: _figure,
+    kinds.Most: _most,
+}

@@ -12,7 +12,6 @@ from sevenbar.arrays import Floats
 from sevenbar.design.candidates import Fault
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.task import Apart, InBox, InCone, InRange, Must, PoseMust
-from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.rods import distance_slopes
 from sevenbar.kinematics.loop.stops import Three
 from sevenbar.kinematics.ranges.ball_angle import has_length, line_angles, rod
@@ -32,10 +31,10 @@ def pose_rooms(loop: TaskLoop, musts: Sequence[Must]) -> list[tuple[int, Callabl
     return [(i, _ROOMS[type(must)](loop, must)) for i, must in enumerate(musts) if type(must) in _ROOMS]
 
 
-def room_unit(must: PoseMust, linkage: Linkage) -> str:
-    """The unit in which people read the room of a must about poses: "deg", or the length unit."""
-    turns = isinstance(must, InCone) or (isinstance(must, InRange) and linkage.turns(must.column))
-    return "deg" if turns else linkage.length_unit
+def room_scale(must: PoseMust, loop: TaskLoop) -> tuple[str, float]:
+    """The unit in which people read the room of a must about poses, and what 1 of the room is there."""
+    turns = isinstance(must, InCone) or (isinstance(must, InRange) and loop.linkage.turns(must.column))
+    return ("deg", math.degrees(1.0)) if turns else (loop.linkage.length_unit, float(loop.size))
 
 
 def _range(loop: TaskLoop, must: InRange) -> Callable[[Here], Rooms]:
@@ -71,9 +70,9 @@ def _cone(loop: TaskLoop, must: InCone) -> Callable[[Here], Rooms]:
 
 def _line(loop: TaskLoop, link: int, place: int, given: Three | None) -> tuple[int, int]:
     """The numbers of two places on a direction of a link, or on its rod, away from one of its joints."""
-    linkage, count = loop.linkage, len(loop.linkage.joints)
+    linkage = loop.linkage
     if given is None and has_length(linkage, link):
-        ends = loop.joint((link - 1) % count, ahead=True), loop.joint(link % count, ahead=False)
+        ends = loop.rod(link)
         return ends if place == link - 1 else ends[::-1]
     way = rod(linkage, link, place) if given is None else np.asarray(given)
     x, y, z = map(float, loop.size / np.linalg.norm(way) * way)
@@ -82,12 +81,8 @@ def _line(loop: TaskLoop, link: int, place: int, given: Three | None) -> tuple[i
 
 def places_in(loop: TaskLoop, must: InBox) -> list[int]:
     """The numbers of the points and joints that stay in a box."""
-    joints = [joint.name for joint in loop.linkage.joints]
     points = [point.name for point in loop.linkage.points]
-    return [
-        loop.named(name) if name in points else loop.joint(joints.index(name), ahead=True)
-        for name in must.names
-    ]
+    return [loop.named(name) if name in points else loop.joint(name) for name in must.names]
 
 
 def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
@@ -105,10 +100,7 @@ def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
 
 
 def _apart(loop: TaskLoop, must: Apart) -> Callable[[Here], Rooms]:
-    count = len(loop.linkage.joints)
-    rods = [(loop.joint(k - 1, ahead=True), loop.joint(k % count, ahead=False)) for k in must.links]
-
-    ends = [*rods[0], *rods[1]]
+    ends = [end for link in must.links for end in loop.rod(link)]
 
     def rooms(here: Here) -> Rooms:
         apart, by = distance_slopes(here.points[:, ends], here.points_by[:, ends])

@@ -39,13 +39,9 @@ class InputPass:
         """What the input gains in one round, 0 where it does not go round."""
         return math.tau * self.circuit.turns if self.closed else 0.0
 
-    def places(self, link: int, at: tuple[float, float, float]) -> Floats:
-        """Where a place of a link is along the rows (m, 3)."""
+    def point(self, link: int | str, at: tuple[float, float, float] | None = None) -> Floats:
+        """Where a place of a link, or a named point, is along the rows (m, 3)."""
         return self.circuit.point(link, at).position[self.rows]
-
-    def named(self, point: str) -> Floats:
-        """Where a named point is along the rows (m, 3)."""
-        return self.circuit.point(point).position[self.rows]
 
     def begins(self, timing: Floats, *, free: bool) -> tuple[Floats, Integers]:
         """What may be added to inputs (n,) so that they lie within the pass (p,), and their rows (p, n).

@@ -12,34 +12,31 @@ Source: docs/theory_design.md, (29).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.candidates import Fault
 from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
-from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.match import STILL, Placing, placed
-from sevenbar.design.task.musts import FAULTS, pose_rooms
-from sevenbar.design.task.rssr import loop_of
-from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
-from sevenbar.design.task.task import (
-    DesignTask,
-    FigureMust,
-    FigureWant,
-    Most,
-    PathWant,
-    PoseWant,
-    SampledWant,
-    StraightWant,
+from sevenbar.design.task import task as kinds
+from sevenbar.design.task.loop import Here, TaskLoop, loop_of
+from sevenbar.design.task.musts import FAULTS, Rooms, pose_rooms
+from sevenbar.design.task.placing import (
+    STILL,
+    Placing,
+    left_jacobian,
+    placed,
+    rigid_moves,
+    rotation_of_vector,
 )
+from sevenbar.design.task.task import DesignTask
+from sevenbar.design.task.wants.at_inputs import LineWanted, ReadingsWanted
 from sevenbar.design.task.wants.figures import Figures, figure_left
-from sevenbar.design.task.wants.joints import ReadingsWanted
 from sevenbar.design.task.wants.places import PlacesWanted, heights_of
-from sevenbar.design.task.wants.straight import LineWanted
 from sevenbar.design.task.wants.wanted import Stations, Wanted
 
 #: A step after which a passive joint is further away [rad, or of the size] has left its branch.
@@ -47,6 +44,15 @@ LONGEST_STEP = 1.2
 
 #: Poses of a want, with those between its stations, at which musts are held.
 HELD = 73
+
+#: What each kind of want is in a loop.
+WANTED: Mapping[type, Callable[[TaskLoop, Any], Wanted]] = {
+    kinds.FunctionWant: ReadingsWanted,
+    kinds.DwellWant: ReadingsWanted,
+    kinds.PathWant: PlacesWanted,
+    kinds.PoseWant: PlacesWanted,
+    kinds.StraightWant: LineWanted,
+}
 
 #: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
 FLAT = 1e-9
@@ -94,13 +100,11 @@ class TaskModel:
     def __init__(self, task: DesignTask, margins: Mapping[int, float] | None = None) -> None:
         self.task, self.margins = task, margins or {}
         self.loop = loop = loop_of(task)
-        self.wanted: list[Wanted] = [
-            self._wanted(loop, want) for want in task.wants if not isinstance(want, FigureWant)
-        ]
-        self.figure_wants = [want for want in task.wants if isinstance(want, FigureWant)]
+        self.wanted: list[Wanted] = [WANTED[type(want)](loop, want) for _, want in task.sampled]
+        self.figure_wants = [want for want in task.wants if isinstance(want, kinds.FigureWant)]
         #: The places among the task's wants of those at poses.
-        self.sampled = [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
-        self.figure_musts = [must for must in task.musts if isinstance(must, FigureMust)]
+        self.sampled = [i for i, _ in task.sampled]
+        self.figure_musts = [must for must in task.musts if isinstance(must, kinds.FigureMust)]
         names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
         self.figures = Figures(loop, list(dict.fromkeys(names)))
         self.rooms = pose_rooms(loop, task.musts)
@@ -110,15 +114,7 @@ class TaskModel:
         self.transmits = closed_form and (task.limits.transmission_lowest > 0 or task.goal == "transmission")
         self.turns = closed_form and task.limits.motion_type in INPUT_TURNS
         #: Wants, by their places among the sampled, whose residuals have been asked to stay small.
-        self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, Most)]
-
-    @staticmethod
-    def _wanted(loop: TaskLoop, want: SampledWant) -> Wanted:
-        if isinstance(want, (PathWant, PoseWant)):
-            return PlacesWanted(loop, want)
-        if isinstance(want, StraightWant):
-            return LineWanted(loop, want)
-        return ReadingsWanted(loop, want)
+        self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, kinds.Most)]
 
     @property
     def holds(self) -> bool:
@@ -130,7 +126,7 @@ class TaskProblem:
     """A task about a seed; `minimax` for the greatest residual, with the placing among the unknowns."""
 
     def __init__(self, model: TaskModel, seed: TaskSeed, *, minimax: bool = False) -> None:
-        self.model, self.loop = model, model.loop
+        self.model, self.loop, self.minimax = model, model.loop, minimax
         self._poses, self._anchor = seed.poses, seed.anchor
         self._period = seed.period
         self._base, self._turned = seed.placing, minimax and model.placed
@@ -166,27 +162,21 @@ class TaskProblem:
 
     def _all_stations(self) -> Stations:
         """Those of the wants, then those between them where something must hold there."""
-        width = len(self.start)
-        fixed, by = [np.empty(0)], [np.empty((0, width))]
-        held: list[tuple[Floats, Floats]] = []
+        width, count = len(self.start), 0
+        own, held = [(np.empty(0), np.empty((0, width)))], []
         self._rows: list[slice] = []
-        count = 0
-        for one, place in zip(self.model.wanted, self._own, strict=True):
+        for one, place, period in zip(self.model.wanted, self._own, self._periods, strict=True):
             steady = one.stations.fixed
-            matrix = np.zeros((len(steady), width))
-            matrix[:, place] = one.stations.by * one.stations.scales
-            fixed.append(steady)
-            by.append(matrix)
+            by = np.zeros((len(steady), width))
+            by[:, place] = one.stations.by * one.stations.scales
+            own.append((steady, by))
             self._rows.append(slice(count, count + len(steady)))
             count += len(steady)
-            if self.model.holds:
-                held += _spread(steady, matrix, one.stations, self._periods[len(self._rows) - 1])
+            if self.model.holds and len(steady) > 1:
+                held.append(_spread(steady, by, one.stations, period))
         self._count = count
-        return Stations(
-            np.concatenate([*fixed, *(part for part, _ in held)]),
-            np.concatenate([*by, *(part for _, part in held)]),
-            np.ones(width),
-        )
+        fixed, slopes = zip(*own, *held, strict=True)
+        return Stations(np.concatenate(fixed), np.concatenate(slopes), np.ones(width))
 
     def _between(self, seed: TaskSeed) -> Floats:
         """Poses of all stations, those between followed from the nearest."""
@@ -195,6 +185,10 @@ class TaskProblem:
         more = inputs[self._count :]
         from_row = np.abs(more[:, None] - inputs[: self._count]).argmin(axis=1)
         return np.concatenate([known, self.loop.closed(seed.values, more, known[from_row])])
+
+    def within(self, z: Floats) -> Floats:
+        """The unknowns within their bounds."""
+        return np.clip(z, self.low, self.high)
 
     def size(self, z: Floats) -> float:
         """The root of the weighted mean squares at z; infinite where there are none."""
@@ -248,15 +242,8 @@ class TaskProblem:
         found = self.at(z)
         self.take(z)
         placing = STILL if found is None else found.placing
-        return TaskSeed(
-            self.values(z),
-            self.own(z),
-            self._poses[: self._count],
-            self._anchor,
-            math.nan,
-            placing,
-            self._period,
-        )
+        poses = self._poses[: self._count]
+        return TaskSeed(self.values(z), self.own(z), poses, self._anchor, math.nan, placing, self._period)
 
     # ---- what is left there
 
@@ -290,21 +277,22 @@ class TaskProblem:
             parts.append((left, by))
         placing = self._placing(z, [left for left, _ in parts])
         lefts, lefts_by = self._placed(z, parts, placing)
-        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True)))
         figures = self._figures(values, slopes=slopes)
         if figures is None:
             return None
-        least: dict[Fault, float] = {"figure": float(figures[2].min(initial=math.inf))}
+        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True)))
+        rooms.append(("figure", *figures[1]))
+        least: dict[Fault, float] = {"figure": math.inf}
         for fault, own_room, _ in rooms:
             least[fault] = min(least.get(fault, math.inf), float(own_room.min(initial=math.inf)))
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
-        left = np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]])
-        room = np.concatenate([*(own_room for _, own_room, _ in rooms), figures[2]])
+        left = np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0][0]])
+        room = np.concatenate([own_room for _, own_room, _ in rooms])
         left_by, room_by = np.empty((len(left), 0)), np.empty((len(room), 0))
         if slopes:
             by_all = (w * r for w, r in zip(weights, lefts_by, strict=True))
-            left_by = np.concatenate([*by_all, self._wide(figures[1])])
-            room_by = np.concatenate([*(by for _, _, by in rooms), self._wide(figures[3])])
+            left_by = np.concatenate([*by_all, figures[0][1]])
+            room_by = np.concatenate([by for _, _, by in rooms])
         good = all(np.isfinite(part).all() for part in (left, left_by, room, room_by))
         return TaskValues(left, left_by, room, room_by, placing, least) if good else None
 
@@ -323,11 +311,11 @@ class TaskProblem:
         if self._turned:
             return self._moved(z)
         own = self._places()
-        shares = [np.full(len(found[i]), (one.weight / one.unit) ** 2 / one.count) for i, one in own]
+        shares = [(one.weight / one.unit) ** 2 / one.count for _, one in own]
         return placed(
             np.concatenate([one.places.reshape(-1, 3) for _, one in own]),
             np.concatenate([found[i] for i, _ in own]),
-            shares=np.concatenate(shares),
+            shares=np.repeat(shares, [len(found[i]) for i, _ in own]),
         )
 
     def _placed(
@@ -355,22 +343,17 @@ class TaskProblem:
         slopes: list[Floats],
     ) -> None:
         """Takes off the slopes what a small rigid motion of all places does."""
-        puts = [placing.put(parts[i][0]) for i, _ in own]
-        every = np.concatenate(puts)
-        weights = [
-            np.full(3 * len(put), one.weight / math.sqrt(one.count))
-            for put, (_, one) in zip(puts, own, strict=True)
-        ]
-        units = [np.full(3 * len(put), one.unit) for put, (_, one) in zip(puts, own, strict=True)]
-        weight = np.concatenate(weights)[:, None]
-        moves = weight / np.concatenate(units)[:, None] * rigid_moves(every - every.mean(axis=0))
+        counts = [one.count for _, one in own]
+        weight = np.repeat([one.weight / math.sqrt(one.count) for _, one in own], counts)[:, None]
+        unit = np.repeat([one.unit for _, one in own], counts)[:, None]
+        every = np.concatenate([placing.put(parts[i][0]) for i, _ in own])
+        moves = weight / unit * rigid_moves(every - every.mean(axis=0))
         basis, sizes, _ = np.linalg.svd(moves, full_matrices=False)
         basis = basis[:, sizes > FLAT * sizes[0]]
         joined = weight * np.concatenate([slopes[i] for i, _ in own])
         joined = (joined - basis @ (basis.T @ joined)) / weight
-        ends = np.cumsum([0, *(3 * len(put) for put in puts)])
-        for (i, _), first, last in zip(own, ends[:-1], ends[1:], strict=True):
-            slopes[i] = joined[first:last]
+        for (i, _), part in zip(own, np.split(joined, np.cumsum(counts)[:-1]), strict=True):
+            slopes[i] = part
 
     def _moved(self, z: Floats) -> Placing:
         """The placing moved by the last six unknowns: a turn about the middle of the places, and a shift."""
@@ -455,30 +438,32 @@ class TaskProblem:
             found.append(("motion type", room, wide(by_row)))
         return found
 
-    def _figures(self, values: Floats, *, slopes: bool) -> tuple[Floats, Floats, Floats, Floats] | None:
-        """Residuals of figures, rooms of figures, each with its slopes by the free numbers."""
+    def _figures(self, values: Floats, *, slopes: bool) -> tuple[Rooms, Rooms] | None:
+        """Residuals of figures, and their rooms, each with its slopes."""
         model = self.model
-        none = np.empty((0, self._k))
-        if not model.figures.names:
-            return np.empty(0), none, np.empty(0), none
-        found = model.figures.at(values, self._anchor, slopes=slopes)
+        found = model.figures.at(values, self._anchor, slopes=slopes) if model.figures.names else ((), ())
         if found is None:
             return None
-        read, by = found
-        place = {name: i for i, name in enumerate(model.figures.names)}
-        left, left_by, rooms, rooms_by = [], [none], [], [none]
-        for want in model.figure_wants:
-            value, own = figure_left(want, read[place[want.name]], by[place[want.name]])
-            left.append(want.weight * value)
-            left_by.append(want.weight * own[None])
-        for must in model.figure_musts:
-            value, own = read[place[must.name]], by[place[must.name]]
-            for way, end in ((1.0, must.least), (-1.0, must.most)):
-                if end is not None:
-                    unit = max(abs(end), 1e-3)
-                    rooms.append(way * (value - end) / unit)
-                    rooms_by.append(way * own[None] / unit)
-        return np.array(left), np.concatenate(left_by), np.array(rooms), np.concatenate(rooms_by)
+        read = {name: own for name, *own in zip(model.figures.names, *found, strict=True)}
+        lefts = [
+            (want.weight * value, want.weight * by)
+            for want in model.figure_wants
+            for value, by in [figure_left(want, *read[want.name])]
+        ]
+        rooms = [
+            (way * (value - end) / unit, way * by / unit)
+            for must in model.figure_musts
+            for value, by in [read[must.name]]
+            for way, end in ((1.0, must.least), (-1.0, must.most))
+            if end is not None
+            for unit in [max(abs(end), 1e-3)]
+        ]
+        return self._stacked(lefts), self._stacked(rooms)
+
+    def _stacked(self, rows: Sequence[tuple[float, Floats]]) -> Rooms:
+        """Single values with slopes (k,) by the free numbers, as (r,) with those by all unknowns."""
+        by = np.array([own for _, own in rows]).reshape(-1, self._k)
+        return np.array([value for value, _ in rows]), self._wide(by)
 
 
 def _sense(inputs: Floats) -> float:
@@ -486,21 +471,14 @@ def _sense(inputs: Floats) -> float:
     return 1.0 if (np.diff(inputs) >= 0).sum() * 2 >= len(inputs) - 1 else -1.0
 
 
-def _spread(steady: Floats, by: Floats, stations: Stations, period: float) -> list[tuple[Floats, Floats]]:
+def _spread(steady: Floats, by: Floats, stations: Stations, period: float) -> tuple[Floats, Floats]:
     """Inputs between those of a want, as many between any two: their fixed parts and slopes."""
     n = len(steady)
-    if n < 2:
-        return []
+    first = np.arange(n if stations.round else n - 1)
+    then = (first + 1) % n
     each = math.ceil(HELD / n)
-    found = []
-    for j in range(n if stations.round else n - 1):
-        then = (j + 1) % n
-        gain = 0.0 if then else period
-        for share in np.arange(1, each) / each:
-            found.append(
-                (
-                    np.array([(1 - share) * steady[j] + share * (steady[then] + gain)]),
-                    ((1 - share) * by[j] + share * by[then])[None],
-                )
-            )
-    return found
+    share = (np.arange(1, each) / each)[:, None]
+    inputs = (1 - share) * steady[first] + share * (steady[then] + np.where(then == 0, period, 0.0))
+    slopes = (1 - share)[:, :, None] * by[first] + share[:, :, None] * by[then]
+    # between the first two, then between the next
+    return inputs.T.ravel(), slopes.swapaxes(0, 1).reshape(-1, by.shape[1])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
@@ -19,7 +19,7 @@ from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
 from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust
-from sevenbar.design.task.words import must_words, task_facts, want_words
+from sevenbar.design.task.words import must_words, shown_in, task_facts, want_words
 from sevenbar.drawing.configuration import configuration
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.page import Facts, page
@@ -74,20 +74,16 @@ def design_figures(task: DesignTask, design: TaskDesign) -> dict[str, float]:
     along = DesignAlong(task, design)
     linkage = task.draft.linkage
     for number, ((place, want, _), met) in enumerate(zip(along.wants, design.met, strict=True)):
-        unit, scale = ("deg", 180 / math.pi) if met.unit == "rad" else (met.unit, 1.0)
+        unit, scale = met.shown
         own = f"want_{place + 1}_" if len(task.wants) > 1 else ""
         if own:
             figures[f"{own}greatest_{unit}"] = met.greatest * scale
             figures[f"{own}rms_{unit}"] = met.rms * scale
         if isinstance(want, FunctionWant):
-            zeros = along.zeros(number)
-            for key, zero, column in zip(
-                ("input_zero", "output_zero"), zeros, (linkage.drive.joint, linkage.drive.output), strict=True
-            ):
-                turns = linkage.turns(column)
-                figures[f"{own}{key}_{'deg' if turns else linkage.length_unit}"] = (
-                    math.degrees(zero) if turns else zero
-                )
+            ends = (("input", linkage.drive.joint), ("output", linkage.drive.output))
+            for (key, column), zero in zip(ends, along.zeros(number), strict=True):
+                of_column, times = shown_in(linkage, column)
+                figures[f"{own}{key}_zero_{of_column}"] = zero * times
         if isinstance(want, DwellWant):
             figures[f"{own}level_{unit}"] = along.zeros(number)[1] * scale
     figures |= design.figures
@@ -106,33 +102,25 @@ def task_report(
     for place in range(count):
         name = f"design_{place + 1}"
         files[f"{name}.toml"] = toml[f"{name}.toml"]
-        files |= figure_files(f"{name}_linkage", formats, partial(_of_linkage, place=place))
+        drawn: dict[str, Callable[[DesignAlong], Any]] = {"linkage": _linkage}
         for number, (want, _) in enumerate(task.sampled):
-            files |= figure_files(
-                f"{name}_want_{want + 1}", formats, partial(_of_want, place=place, number=number)
-            )
+            drawn[f"want_{want + 1}"] = partial(want_figure, number=number)
         if any(isinstance(must, PoseMust) for must in task.musts):
-            files |= figure_files(f"{name}_musts", formats, partial(_of_musts, place=place))
+            drawn["musts"] = musts_figure
+        for what, draw in drawn.items():
+            files |= figure_files(f"{name}_{what}", formats, partial(_drawn, place=place, draw=draw))
     return Report(text, as_dict, files | {name: toml[name] for name in ("summary.csv", "summary.json")})
 
 
-def _of_linkage(found: TaskDesigns, *, place: int) -> Any:
-    if place >= len(found.found.designs):
-        return None
-    own = found.found.designs[place].candidate
+def _drawn(found: TaskDesigns, *, place: int, draw: Callable[[DesignAlong], Any]) -> Any:
+    """A figure of a design, if there are as many."""
+    designs = found.found.designs
+    return draw(DesignAlong(found.task, designs[place])) if place < len(designs) else None
+
+
+def _linkage(along: DesignAlong) -> Any:
+    own = along.design.candidate
     return configuration(own.draft.linkage.motion(CHECK_SAMPLES), own.circuit)
-
-
-def _of_want(found: TaskDesigns, *, place: int, number: int) -> Any:
-    if place >= len(found.found.designs):
-        return None
-    return want_figure(DesignAlong(found.task, found.found.designs[place]), number)
-
-
-def _of_musts(found: TaskDesigns, *, place: int) -> Any:
-    if place >= len(found.found.designs):
-        return None
-    return musts_figure(DesignAlong(found.task, found.found.designs[place]))
 
 
 def _facts(found: TaskDesigns) -> list[tuple[str, str]]:
@@ -161,8 +149,6 @@ def text(found: TaskDesigns) -> RenderableType:
     if found.unfinished:
         facts.add("unfinished", found.unfinished, "bold yellow")
     tables = _tables(found) if found.found.designs else []
-    if any(_on_bound(design, found.task) for design in found.found.designs):
-        tables[-1] = Group(tables[-1], Text("* on its bound", style="dim"))
     tables += _reasons(found.found.designs)
     return page(f"Design: {found.name}", facts, *tables)
 
@@ -188,11 +174,6 @@ def _reasons(designs: Sequence[TaskDesign]) -> list[RenderableType]:
     return lines
 
 
-def _on_bound(design: TaskDesign, task: DesignTask) -> bool:
-    gap = ON_BOUND * (task.high - task.low)
-    return bool(((design.values <= task.low + gap) | (design.values >= task.high - gap)).any())
-
-
 def _bounded(design: TaskDesign, place: int, low: float, high: float) -> str:
     """A value; on a bound the bound itself, with a star: a zero is no 6e-15."""
     value, gap = float(design.values[place]), ON_BOUND * (high - low)
@@ -208,7 +189,7 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
     met: list[tuple[str, list[str]]] = []
     for number, (place, _) in enumerate(task.sampled):
         mets = [design.met[number] for design in designs]
-        own, scale = ("deg", 180 / math.pi) if mets[0].unit == "rad" else (mets[0].unit, 1.0)
+        own, scale = mets[0].shown
         met += [
             (f"want {place + 1}\ngreatest\n[{own}]", [f"{one.greatest * scale:.4g}" for one in mets]),
             (f"want {place + 1}\nRMS\n[{own}]", [f"{one.rms * scale:.4g}" for one in mets]),
@@ -229,7 +210,11 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
         own = task.draft.dimension(one.name).unit
         cells = [_bounded(design, k, one.low, one.high) for design in designs]
         free.append((f"{one.name}\n[{own}]" if own else one.name, cells))
-    return [*sheets(met, ACROSS), *sheets(rest, len(rest), words=["motion type"]), *sheets(free, ACROSS)]
+    tables: list[RenderableType] = [*sheets(met, ACROSS)]
+    tables += [*sheets(rest, len(rest), words=["motion type"]), *sheets(free, ACROSS)]
+    if any(cell.endswith("*") for _, cells in free for cell in cells):
+        tables[-1] = Group(tables[-1], Text("* on its bound", style="dim"))
+    return tables
 
 
 def as_dict(found: TaskDesigns) -> dict[str, Any]:

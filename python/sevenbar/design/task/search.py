@@ -175,14 +175,10 @@ def _search(
         if len(distinct(kept, scale_free=False)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
             break
         _take(model, look, count, kept, refusals)
-        course.step(_best(model.task, kept), done=int(course.done < course.total))
-
-
-def _best(task: DesignTask, kept: Sequence[TaskDesign]) -> str:
-    """The best so far: the error of a single want in its unit, the cost of several."""
-    if len(task.wants) > 1 and kept:
-        return f"best: {kept[0].cost:.3g}"
-    return least_error([design.candidate for design in kept])
+        # the error of a single want in its unit, the cost of several
+        several = len(model.task.wants) > 1 and bool(kept)
+        best = f"best: {kept[0].cost:.3g}" if several else least_error([one.candidate for one in kept])
+        course.step(best, done=int(course.done < course.total))
 
 
 def _worst(kept: Sequence[TaskDesign], count: int) -> float:

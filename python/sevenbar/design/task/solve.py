@@ -91,6 +91,11 @@ class Solved:
     room: float
     ended: Ended = "optimum"
 
+    def poses_of(self, place: int) -> Floats:
+        """The poses (n, columns) at the inputs of a want, by its place among those at poses."""
+        first = sum(len(inputs) for inputs in self.inputs[:place])
+        return self.seed.poses[first : first + len(self.inputs[place])]
+
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
@@ -131,54 +136,51 @@ def solved(
         return None
     problem, z = found.problem, found.z
     if not whole or found.size > most:
-        return _as_solved(problem, z, math.nan, minimax=False)
-    minimax = model.task.goal != "least squares"
-    if minimax:
+        return _as_solved(problem, z, math.nan)
+    if model.task.goal != "least squares":
         problem = TaskProblem(model, problem.seed(z), minimax=True)
         z = _lowered(problem)
     elif not _ended(problem, z):
-        problem, z = _programmed(problem, z, minimax=False)
+        problem, z = _programmed(problem, z)
         z = _descended(problem, z)
-    z, missed = settled(problem, z, minimax=minimax)
+    z, missed = _settled(problem, z)
     if model.task.goal == "minimax" and missed > ENDED:
-        problem, z = _programmed(problem, z, minimax=True)
-        z, missed = settled(problem, z, minimax=True)
-    if minimax and _exactly(model):
+        problem, z = _programmed(problem, z)
+        z, missed = _settled(problem, z)
+    if problem.minimax and _exactly(model):
         z = _kept(problem, z)
-    return _as_solved(problem, z, missed, minimax=minimax)
+    return _as_solved(problem, z, missed)
 
 
 def _ended(problem: TaskProblem, z: Floats) -> bool:
     """Whether least squares are done: nothing is left, or (1) is met as nearly as slopes alone lead to."""
     if problem.size(z) <= EXACT:
         return True
-    at = _conditions(problem, z, minimax=False)
+    at = _conditions(problem, z)
     return at is not None and _multipliers(at)[2] < ENDED
 
 
-def _as_solved(problem: TaskProblem, z: Floats, missed: float, *, minimax: bool) -> Solved | None:
+def _as_solved(problem: TaskProblem, z: Floats, missed: float) -> Solved | None:
     here = problem.at(z)
     if here is None:
         return None
-    cost = float(_heights(problem, here)[0].max()) if minimax else float(np.linalg.norm(here.left))
+    cost = _cost(problem, z) if problem.minimax else float(np.linalg.norm(here.left))
     room = float(here.room.min(initial=math.inf))
     ended: Ended = "optimum"
     if missed > SAID and cost > EXACT:
-        ended = "edge" if _at_edge(problem, z, minimax=minimax) else "valley"
+        ended = "edge" if _at_edge(problem, z) else "valley"
     return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room, ended)
 
 
-def _at_edge(problem: TaskProblem, z: Floats, *, minimax: bool) -> bool:
+def _at_edge(problem: TaskProblem, z: Floats) -> bool:
     """Whether the linkage does not close, or the cost jumps, a small step down the slope that (1) leaves."""
-    x = np.append(z, _cost(problem, z, minimax=True)) if minimax else z
-    at = _conditions(problem, x, minimax=minimax)
+    at = _conditions(problem, _with_cost(problem, z))
     if at is None:
         return False
     active, y, _ = _multipliers(at)
     rest = (at.gradient - at.room_by[active].T @ y)[: len(z)]
     step = BEYOND * rest / max(float(np.abs(rest).max(initial=0.0)), 1e-300)
-    beyond = _cost(problem, np.clip(z - step, problem.low, problem.high), minimax=minimax)
-    return beyond > JUMP * _cost(problem, z, minimax=minimax)
+    return _cost(problem, problem.within(z - step)) > JUMP * _cost(problem, z)
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,9 +199,8 @@ class _Squares:
 def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: float) -> _Squares | None:
     """Least squares with missed rooms as penalties."""
     problem = TaskProblem(model, seed)
-    z = np.clip(problem.start, problem.low, problem.high)
-    here = problem.at(problem.start)
-    if here is None:
+    z = problem.within(problem.start)
+    if problem.at(problem.start) is None:
         return None
     for weight in WEIGHTS:
 
@@ -254,29 +255,22 @@ def _heights(problem: TaskProblem, here: TaskValues) -> tuple[Floats, Floats]:
     return np.concatenate(heights), np.concatenate(slopes)
 
 
-def _bounds(problem: TaskProblem, z: Floats) -> tuple[Floats, Floats]:
-    """Rooms to the bounds that there are, and their slopes."""
+def _rooms(problem: TaskProblem, z: Floats, here: TaskValues) -> tuple[Floats, Floats]:
+    """Rooms, then those to the bounds that there are, and their slopes."""
     one = np.eye(len(z))
     low, high = np.isfinite(problem.low), np.isfinite(problem.high)
     return (
-        np.concatenate([(z - problem.low)[low], (problem.high - z)[high]]),
-        np.concatenate([one[low], -one[high]]),
+        np.concatenate([here.room, (z - problem.low)[low], (problem.high - z)[high]]),
+        np.concatenate([here.room_by, one[low], -one[high]]),
     )
 
 
 def _lowered(problem: TaskProblem) -> Floats:
     def heights(z: Floats) -> MinimaxValues | None:
         here = problem.at(z)
-        if here is None:
-            return None
-        room, by = _bounds(problem, z)
-        height, height_by = _heights(problem, here)
-        return MinimaxValues(
-            height, height_by, np.concatenate([here.room, room]), np.concatenate([here.room_by, by])
-        )
+        return None if here is None else MinimaxValues(*_heights(problem, here), *_rooms(problem, z, here))
 
-    start = np.clip(problem.start, problem.low, problem.high)
-    worth = WORTH[problem.model.task.goal]
+    start, worth = problem.within(problem.start), WORTH[problem.model.task.goal]
     if _exactly(problem.model):
         return lowered(heights, start, worth=worth, mended=lambda z: _kept(problem, z))
     return lowered(heights, start, worth=worth)
@@ -295,97 +289,80 @@ def _kept(problem: TaskProblem, z: Floats) -> Floats:
             break
         missed = here.room < 0
         step = np.linalg.lstsq(here.room_by[missed], here.room[missed], rcond=None)[0]
-        z = np.clip(z - step, problem.low, problem.high)
+        z = problem.within(z - step)
     return z
 
 
-@dataclass(frozen=True, eq=False)
-class _Aim:
-    """What is made least at unknowns x, its gradient (m,), rooms (c,) without the bounds, and their slopes.
-
-    x is z, and for the greatest residual t / unit behind it; the least squares are relative to the unit, too.
-    """
-
-    cost: float
-    gradient: Floats
-    room: Floats
-    room_by: Floats
-
-
-def _aim(problem: TaskProblem, x: Floats, unit: float, *, minimax: bool) -> _Aim | None:
-    here = problem.at(x[:-1] if minimax else x)
-    if here is None:
-        return None
-    if not minimax:
-        pull = np.asarray(2 * here.left_by.T @ here.left / unit)
-        return _Aim(float(here.left @ here.left) / unit, pull, here.room, here.room_by)
-    height, slopes = _heights(problem, here)
-    pull = np.append(np.zeros(len(x) - 1), 1.0)
-    below = np.column_stack([-slopes / unit, np.ones(len(height))])
-    by = np.concatenate([below, np.column_stack([here.room_by, np.zeros(len(here.room))])])
-    return _Aim(float(x[-1]), pull, np.concatenate([x[-1] - height / unit, here.room]), by)
-
-
-def _programmed(begun: TaskProblem, z: Floats, *, minimax: bool) -> tuple[TaskProblem, Floats]:
+def _programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
     """The unknowns after sequential quadratic programs, which hold the rooms: better ones, or the same.
 
     Where fewer heights are equal to the greatest than there are unknowns, linear programs go from side to
-    side of a valley; these know its curvature.
+    side of a valley; these know its curvature. Costs are relative to the first.
     """
     from scipy.optimize import minimize
 
     # what was begun stays at its poses, which may not be found again from others
+    minimax = begun.minimax
     problem = TaskProblem(begun.model, begun.seed(z), minimax=minimax)
-    begin = np.clip(problem.start, problem.low, problem.high)
-    x = np.append(begin, 1.0) if minimax else begin
-    now, unit = begun.at(z), _cost(begun, z, minimax=minimax)
-    first = _aim(problem, x, unit, minimax=minimax)
+    x = problem.within(problem.start)
+    if minimax:
+        x = np.append(x, 1.0)
+    now, unit = begun.at(z), _cost(begun, z)
+    first = _conditions(problem, x, unit)
     if now is None or first is None:
         return begun, z
-    last = [first]
+    last = first
+    ends = list(zip(problem.low, problem.high, strict=True))
+    # bounds are no rooms here; of squares the whole sum counts
+    own = slice(len(first.room) - int(np.isfinite(ends).sum()))
+    times, per = (1.0, 1.0) if minimax else (2.0, unit)
 
-    def at(x: Floats) -> _Aim | None:
-        found = _aim(problem, x, unit, minimax=minimax)
-        if found is not None:
-            last[0] = found
-        return found
+    def at(x: Floats) -> Conditions:
+        nonlocal last
+        last = _conditions(problem, x, unit) or last
+        return last
 
     def cost(x: Floats) -> float:
-        found = at(x)
-        return 1e3 if found is None else found.cost
+        here = _conditions(problem, x, unit)
+        return 1e3 if here is None else here.cost / per
 
     def slopes(x: Floats) -> Floats:
-        problem.take(x[:-1] if minimax else x)
-        return (at(x) or last[0]).gradient
+        problem.take(_unknowns(problem, x))
+        return times * at(x).gradient / per
 
-    rooms: Any = {
-        "type": "ineq",
-        "fun": lambda x: (at(x) or last[0]).room,
-        "jac": lambda x: (at(x) or last[0]).room_by,
-    }
-    ends = list(zip(problem.low, problem.high, strict=True))
+    rooms: Any = {"type": "ineq", "fun": lambda x: at(x).room[own], "jac": lambda x: at(x).room_by[own]}
     with np.errstate(all="ignore"):
         found = minimize(
             cost,
             x,
             jac=slopes,
             bounds=[*ends, (0.0, math.inf)] if minimax else ends,
-            constraints=[rooms] if len(first.room) else [],
+            constraints=[rooms] if len(first.room[own]) else [],
             method="SLSQP",
             options={"maxiter": FEWER if minimax else PROGRAMS, "ftol": 1e-14},
         )
-    end = np.asarray(found.x[:-1] if minimax else found.x)
+    end = np.asarray(_unknowns(problem, found.x))
     then = problem.at(end)
-    better = then is not None and (_lack(then), _cost(problem, end, minimax=minimax)) < (_lack(now), unit)
+    better = then is not None and (_lack(then), _cost(problem, end)) < (_lack(now), unit)
     return (problem, end) if better else (begun, z)
 
 
-def _cost(problem: TaskProblem, z: Floats, *, minimax: bool) -> float:
+def _cost(problem: TaskProblem, z: Floats) -> float:
     """The sum of squares, or the greatest height."""
     here = problem.at(z)
     if here is None:
         return math.inf
-    return float(_heights(problem, here)[0].max()) if minimax else float(here.left @ here.left)
+    return float(_heights(problem, here)[0].max()) if problem.minimax else float(here.left @ here.left)
+
+
+def _with_cost(problem: TaskProblem, z: Floats) -> Floats:
+    """The unknowns x of (1): z, and for the greatest residual t behind them."""
+    return np.append(z, _cost(problem, z)) if problem.minimax else z
+
+
+def _unknowns(problem: TaskProblem, x: Floats) -> Floats:
+    """The unknowns z of such x."""
+    return x[:-1] if problem.minimax else x
 
 
 def _descended(problem: TaskProblem, z: Floats) -> Floats:
@@ -395,13 +372,13 @@ def _descended(problem: TaskProblem, z: Floats) -> Floats:
     the exact gradient. It ends at a room: there the programs know better.
     """
     reach = FARTHEST
-    at = _conditions(problem, z, minimax=False)
+    at = _conditions(problem, z)
     for _ in range(DESCENTS):
         if at is None or reach < SHORTEST or not len(z) <= MOST_UNKNOWNS or _multipliers(at)[2] < ENDED:
             break
         low, high = z <= problem.low + ROUNDING, z >= problem.high - ROUNDING
         free = ~((low & (at.gradient > 0)) | (high & (at.gradient < 0)))
-        curved = _curved(problem, z, at, np.empty(0, dtype=np.int64), np.empty(0), minimax=False)
+        curved = _curved(problem, z, at, np.empty(0, dtype=np.int64), np.empty(0))
         if curved is None or not free.any():
             break
         while reach >= SHORTEST:
@@ -413,8 +390,8 @@ def _descended(problem: TaskProblem, z: Floats) -> Floats:
                 if not stopped.any():
                     break
                 free &= ~stopped
-            then_z = np.clip(z + step, problem.low, problem.high)
-            then = _conditions(problem, then_z, minimax=False)
+            then_z = problem.within(z + step)
+            then = _conditions(problem, then_z)
             kept = then is not None and not (then.room < np.minimum(at.room, 0.0) - ROUNDING).any()
             if then is not None and kept and then.cost < at.cost:
                 z, at, reach = then_z, then, min(4 * reach, MOST_REACH)
@@ -449,24 +426,21 @@ def _lack(here: TaskValues) -> float:
 # ---- the conditions of an optimum
 
 
-def _conditions(problem: TaskProblem, x: Floats, *, minimax: bool) -> Conditions | None:
-    """At unknowns x: z, and for the greatest residual t behind them."""
-    z = x[:-1] if minimax else x
+def _conditions(problem: TaskProblem, x: Floats, per: float = 1.0) -> Conditions | None:
+    """At unknowns x; for the greatest residual heights, and t behind them, are relative to `per`."""
+    z = _unknowns(problem, x)
     here = problem.at(z)
     if here is None:
         return None
-    room, by = _bounds(problem, z)
-    room, by = np.concatenate([here.room, room]), np.concatenate([here.room_by, by])
-    if not minimax:
+    room, by = _rooms(problem, z, here)
+    if not problem.minimax:
         columns = np.linalg.norm(here.left_by, axis=0)
         # at the least of a single figure its slopes vanish, so they alone are no unit
         size = float(np.linalg.norm(here.left))
         unit = max(size, LEAST) * max(float(columns.max(initial=0.0)), size, 1e-300)
-        gradient = here.left_by.T @ here.left
-        return Conditions(
-            gradient, here.left_by.T @ here.left_by, float(here.left @ here.left), room, by, unit
-        )
-    height, slopes = _heights(problem, here)
+        curved, gradient = here.left_by.T @ here.left_by, here.left_by.T @ here.left
+        return Conditions(gradient, curved, float(here.left @ here.left), room, by, unit)
+    height, slopes = (own / per for own in _heights(problem, here))
     gradient = np.append(np.zeros(len(z)), 1.0)
     room = np.concatenate([x[-1] - height, room])
     by = np.block([[-slopes, np.ones((len(height), 1))], [by, np.zeros((len(by), 1))]])
@@ -487,16 +461,11 @@ def _multipliers(at: Conditions) -> tuple[Integers, Floats, float]:
     return active, y, max(float(rest), missed, slack)
 
 
-def settled(problem: TaskProblem, z: Floats, *, minimax: bool) -> tuple[Floats, float]:
+def _settled(problem: TaskProblem, z: Floats) -> tuple[Floats, float]:
     """The unknowns after Newton's method on (1), where it makes them better; and what (1) is missed by."""
-    x = z
-    if minimax:
-        here = problem.at(z)
-        if here is None:
-            return z, math.inf
-        x = np.append(z, _heights(problem, here)[0].max())
+    x = _with_cost(problem, z)
     problem.take(z)
-    at = _conditions(problem, x, minimax=minimax)
+    at = _conditions(problem, x)
     if at is None:
         return z, math.inf
     active, y, missed = _multipliers(at)
@@ -504,20 +473,20 @@ def settled(problem: TaskProblem, z: Floats, *, minimax: bool) -> tuple[Floats, 
         if missed < MET:
             break
         rows = active[y > 0]
-        curved = _curved(problem, x, at, rows, y[y > 0], minimax=minimax)
+        curved = _curved(problem, x, at, rows, y[y > 0])
         if curved is None:
             break
         step = _newton(at, curved, rows)
         step *= min(1.0, FARTHEST / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-        then = _conditions(problem, x + step, minimax=minimax)
+        then = _conditions(problem, x + step)
         if then is None:
             break
         then_active, then_y, then_missed = _multipliers(then)
         if not then_missed < missed:
             break
         x, at, active, y, missed = x + step, then, then_active, then_y, then_missed
-        problem.take(x[:-1] if minimax else x)
-    return (x[:-1] if minimax else x), missed
+        problem.take(_unknowns(problem, x))
+    return _unknowns(problem, x), missed
 
 
 def _newton(at: Conditions, curved: Floats, active: Integers) -> Floats:
@@ -525,20 +494,17 @@ def _newton(at: Conditions, curved: Floats, active: Integers) -> Floats:
     rows, count = at.room_by[active], len(active)
     matrix = np.block([[curved, -rows.T], [rows, np.zeros((count, count))]])
     sides = np.concatenate([-at.gradient, -at.room[active]])
-    found: Floats = np.linalg.lstsq(matrix, sides, rcond=1e-13)[0][: len(curved)]
-    return found
+    return np.asarray(np.linalg.lstsq(matrix, sides, rcond=1e-13)[0][: len(curved)])
 
 
-def _curved(
-    problem: TaskProblem, x: Floats, at: Conditions, active: Integers, y: Floats, *, minimax: bool
-) -> Floats | None:
+def _curved(problem: TaskProblem, x: Floats, at: Conditions, active: Integers, y: Floats) -> Floats | None:
     """The second derivatives of f less those of the rooms by their multipliers."""
 
     def pull(point: Floats) -> Floats | None:
-        there = _conditions(problem, point, minimax=minimax)
+        there = _conditions(problem, point)
         return None if there is None else there.gradient - there.room_by[active].T @ y
 
-    exact = not minimax and at.cost <= EXACT**2 and not len(active)
+    exact = at.curved is not None and at.cost <= EXACT**2 and not len(active)
     found = at.curved if exact else _differences(pull, x)
     return found if found is not None and np.isfinite(found).all() else None
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.design.task.match import STILL, Placing
 from sevenbar.design.task.passes import InputPass, passes
+from sevenbar.design.task.placing import STILL, Placing
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.wants.figures import figure_left
 from sevenbar.design.task.wants.places import PlacesWanted
@@ -155,14 +155,11 @@ def apart(model: TaskModel, found: Sequence[TaskSeed], count: int) -> list[TaskS
         near = (
             bool(np.abs((one.values - other.values) / width).max(initial=0.0) < SAME)
             and bool(np.abs(short_way(one.anchor - other.anchor)).max() < SAME_POSE)
-            and _alike(one, other)
+            and all(
+                np.abs(a - b).max(initial=0.0) < SAME_POSE for a, b in zip(one.own, other.own, strict=True)
+            )
             for other in kept
         )
         if not any(near):
             kept.append(one)
     return kept
-
-
-def _alike(one: TaskSeed, other: TaskSeed) -> bool:
-    """Whether the poses of two seeds are nearly the same."""
-    return all(np.abs(a - b).max(initial=0.0) < SAME_POSE for a, b in zip(one.own, other.own, strict=True))

@@ -7,23 +7,8 @@ import math
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.task.task import (
-    Apart,
-    DesignTask,
-    DwellWant,
-    FigureMust,
-    FigureWant,
-    FunctionWant,
-    InBox,
-    InCone,
-    InRange,
-    Most,
-    Must,
-    PathWant,
-    PoseWant,
-    StraightWant,
-    Want,
-)
+from sevenbar.design.task import task as kinds
+from sevenbar.design.task.task import DesignTask, Must, Want
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import measures_named
 
@@ -61,28 +46,28 @@ def want_words(want: Want, linkage: Linkage) -> str:
     """What is wanted, in a line."""
     drive, unit = linkage.drive, linkage.length_unit
     match want:
-        case FunctionWant():
+        case kinds.FunctionWant():
             return (
                 f"{drive.output} over {drive.joint}: {len(want.input)} readings, "
                 f"{_ends(want.input[[0, -1]], linkage, drive.joint)} in, "
                 f"{_ends(want.output[[0, -1]], linkage, drive.output)} out"
             )
-        case PathWant():
+        case kinds.PathWant():
             extent = float(np.ptp(want.places, axis=0).max())
             return (
                 f"path of {want.point}: {len(want.places)} places, {'closed' if want.closed else 'open'}, "
                 f"{extent:.4g} {unit} across{_timed(want)}"
             )
-        case PoseWant():
+        case kinds.PoseWant():
             return f"link {want.link} in {len(want.poses)} poses, arm {want.arm:.4g} {unit}{_timed(want)}"
-        case FigureWant():
+        case kinds.FigureWant():
             if isinstance(want.value, str):
                 return f"{want.name} {want.value}"
-            return f"{want.name} {want.value:g}{_unit_of(want.name, linkage)}"
-        case DwellWant():
+            return f"{want.name} {want.value:g} {measure_unit(want.name, linkage)}".rstrip()
+        case kinds.DwellWant():
             level = "" if want.level is None else f" at {_value(want.level, linkage, drive.output)}"
             return f"{drive.output} still{level} over {_ends(np.array(want.inputs), linkage, drive.joint)}"
-        case StraightWant():
+        case kinds.StraightWant():
             length = "" if want.length is None else f", {want.length:g} {unit} or longer"
             return (
                 f"{want.point} along a straight line over "
@@ -94,27 +79,39 @@ def must_words(must: Must, linkage: Linkage) -> str:
     """What must hold, in a line."""
     unit = linkage.length_unit
     match must:
-        case InRange():
+        case kinds.InRange():
             return f"{must.column} within {_ends(np.array([must.low, must.high]), linkage, must.column)}"
-        case InCone():
+        case kinds.InCone():
             return f"{must.joint} within a cone of {math.degrees(must.angle):g} deg"
-        case InBox():
+        case kinds.InBox():
             sides = ", ".join(f"{low:g}:{high:g}" for low, high in zip(must.low, must.high, strict=True))
             return f"{', '.join(must.names)} in the box {sides} {unit}"
-        case Apart():
+        case kinds.Apart():
             return f"links {must.links[0]} and {must.links[1]} at least {must.least:g} {unit} apart"
-        case FigureMust():
+        case kinds.FigureMust():
             ends = [(">=", must.least), ("<=", must.most)]
-            each = [f"{sign} {end:g}{_unit_of(must.name, linkage)}" for sign, end in ends if end is not None]
+            own = measure_unit(must.name, linkage)
+            each = [f"{sign} {end:g} {own}".rstrip() for sign, end in ends if end is not None]
             return f"{must.name} {' and '.join(each)}"
-        case Most():
+        case kinds.Most():
             return f"each residual of want {must.want + 1} at most {must.most:.3g}"
 
 
-def _timed(want: PathWant | PoseWant) -> str:
+def _timed(want: kinds.PathWant | kinds.PoseWant) -> str:
     if want.timing is None:
         return ""
     return ", at given inputs" + (" from a free start" if want.phase else "")
+
+
+def shown_in(linkage: Linkage, column: str) -> tuple[str, float]:
+    """The unit in which people read a column, and what 1 of it is there: degrees for angles."""
+    return ("deg", math.degrees(1.0)) if linkage.turns(column) else (linkage.length_unit, 1.0)
+
+
+def measure_unit(name: str, linkage: Linkage) -> str:
+    """The unit in which a measure is read; empty without one."""
+    (measure,) = measures_named([name])
+    return measure.unit(linkage, linkage.drive.output).replace("_", " ")
 
 
 def _ends(values: Floats, linkage: Linkage, column: str) -> str:
@@ -123,12 +120,5 @@ def _ends(values: Floats, linkage: Linkage, column: str) -> str:
 
 
 def _value(value: float, linkage: Linkage, column: str) -> str:
-    if linkage.turns(column):
-        return f"{math.degrees(value):.6g} deg"
-    return f"{value:.6g} {linkage.length_unit}"
-
-
-def _unit_of(name: str, linkage: Linkage) -> str:
-    (measure,) = measures_named([name])
-    unit = measure.unit(linkage, linkage.drive.output).replace("_", " ")
-    return f" {unit}" if unit else ""
+    unit, scale = shown_in(linkage, column)
+    return f"{value * scale:.6g} {unit}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
@@ -36,6 +38,13 @@ class ChangedDesigns:
             lost = np.isnan(q[sample]).any(axis=1)
             q[sample, lost] = self.loop.closed(self._x[lost], self._q[lost], designs[sample])
         return q, sides
+
+    def in_blocks(self, changes: Floats, block: int) -> Iterator[tuple[slice, Floats, Floats]]:
+        """So many designs at once: which, the output less the nominal one's (.., n), determinants (.., n)."""
+        for start in range(0, len(changes), block):
+            part = slice(start, start + block)
+            q, determinants = self.followed(changes[part])
+            yield part, self.deviations(changes[part], q), determinants
 
     def _values(self, p: Floats, q: Floats) -> Floats:
         """The output (n,) of one design."""

@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.tolerance.linear import Linear
-from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
-from sevenbar.design.tolerance.words import output_unit, output_values, output_words
+from sevenbar.design.tolerance.samples import MonteCarlo
 from sevenbar.drawing.figure import headline, key_below, page_figure, tidy
 from sevenbar.drawing.names import quantity_label, short
 from sevenbar.drawing.space import measuring
@@ -42,9 +41,7 @@ def shares_figure(linear: Linear) -> Figure:
         for place, share in enumerate(shares):
             axes.annotate(f"{share:.1f} %", (share, place), (3, 0), textcoords="offset points", va="center")
         axes.set_xlim(0, 1.14 * max([*shares, 1e-9]))
-        axes.set_xlabel(
-            say("share in the variance over the cycle, {output} [%]", output=output_words(linear))
-        )
+        axes.set_xlabel(say("share in the variance over the cycle, {output} [%]", output=linear.words))
         label = axes.xaxis.label
         if label.get_window_extent(measuring(figure)).width > 0.7 * figure.bbox.width:
             label.set_text(label.get_text().replace(", ", ",\n", 1))
@@ -61,31 +58,25 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
     with styled():
         figure = page_figure(6.4 if len(passes) == 1 else 8.4, 4.6, pads=(0.04, 0.06))
         grid = figure.subplots(1, len(passes), sharey=True, squeeze=False)[0]
+        found = linear.found
+        what, unit = ("angle", "deg") if found.input_turns else ("position", found.linkage.length_unit)
+        label = quantity_label(found.input_name, what, unit)
         for axes, (name, rows) in zip(grid, passes, strict=True):
             _band(axes, linear, exact, rows)
-            axes.set_xlabel(_input_label(linear))
+            axes.set_xlabel(label)
             axes.grid(lw=0.6)
             axes.set_axisbelow(True)
             axes.margins(x=0)
-            if linear.found.input_turns:
+            if found.input_turns:
                 axes.xaxis.set_major_locator(DegreeLocator(9))
             if name:
                 axes.set_title(name, fontsize=letters())
-        grid[0].set_ylabel(
-            say("deviation, {output} [{unit}]", output=output_words(linear), unit=output_unit(linear))
-        )
+        grid[0].set_ylabel(say("deviation, {output} [{unit}]", output=linear.words, unit=linear.shown_unit))
         key_below(figure, grid[0].get_legend_handles_labels()[0])
         what = say("what the tolerances do, circuit {number}", number=linear.found.circuit.index)
         headline(figure, f"{short(linear.found.linkage.heading, 60)}\n{what}")
         tidy(figure)
     return figure
-
-
-def _input_label(linear: Linear) -> str:
-    found = linear.found
-    if found.input_turns:
-        return quantity_label(found.input_name, "angle", "deg")
-    return quantity_label(found.input_name, "position", found.linkage.length_unit)
 
 
 def _passes(linear: Linear) -> list[tuple[str, Integers]]:
@@ -114,7 +105,7 @@ def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) 
     )
 
     def shown(values: Floats) -> Floats:
-        return np.insert(output_values(linear, values)[rows], gaps, np.nan)
+        return np.insert(linear.shown(values)[rows], gaps, np.nan)
 
     turns = found.input_turns
     places = np.insert(np.degrees(x) if turns else x, gaps, np.nan)
@@ -123,15 +114,12 @@ def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) 
     axes.plot(places, sigma, color=LINEAR, lw=1.5, label=say("linear, 3 standard deviations"))
     axes.plot(places, -sigma, color=LINEAR, lw=1.5)
     if exact is not None:
-        names = {
-            LEVELS[0]: say("Monte Carlo, 99.73 % between"),
-            LEVELS[1]: say("Monte Carlo, 95 % between"),
-        }
-        styles = {LEVELS[0]: (0, (4, 2)), LEVELS[1]: (0, (1.2, 1.2))}
-        for level, (low, high) in {LEVELS[0]: (0, 4), LEVELS[1]: (1, 3)}.items():
-            axes.plot(
-                places, shown(exact.quantiles[low]), color=EXACT, lw=1.2, ls=styles[level], label=names[level]
-            )
-            axes.plot(places, shown(exact.quantiles[high]), color=EXACT, lw=1.2, ls=styles[level])
+        between = (
+            (0, 4, (0, (4, 2)), say("Monte Carlo, 99.73 % between")),
+            (1, 3, (0, (1.2, 1.2)), say("Monte Carlo, 95 % between")),
+        )
+        for low, high, dashes, label in between:
+            axes.plot(places, shown(exact.quantiles[low]), color=EXACT, lw=1.2, ls=dashes, label=label)
+            axes.plot(places, shown(exact.quantiles[high]), color=EXACT, lw=1.2, ls=dashes)
         axes.plot(places, shown(exact.quantiles[2]), color=EXACT, lw=1.0, label=say("Monte Carlo, median"))
     axes.axhline(0.0, color="#505050", lw=0.6, zorder=1)

@@ -14,7 +14,7 @@ import numpy as np
 from sevenbar.arrays import is_number
 from sevenbar.design.tolerance.linear import Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
-from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
+from sevenbar.design.tolerance.tolerances import Tolerances
 from sevenbar.errors import RequestError, check_word, shown
 from sevenbar.kinematics.linkage import Linkage
 
@@ -63,14 +63,7 @@ def tolerances_for(
     def estimate(chosen: Tolerances) -> Linear:
         return linear_estimate(found, chosen, distribution=distribution, output=output, quantity=quantity)
 
-    unit = found.linkage.length_unit
-    chosen = tolerances(
-        found.dimensions,
-        dict.fromkeys(names, 1.0),
-        length_unit=unit,
-        opening=found.opening,
-        following=found.followers,
-    )
+    chosen = found.tolerances(dict.fromkeys(names, 1.0))
     widths = np.where(chosen.widths > 0, found.small, 0.0)
     for _ in range(MOST_ROUNDS):
         linear = estimate(replace(chosen, widths=widths))

@@ -11,19 +11,22 @@ Source: docs/theory_design.md, (7).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from sevenbar.arrays import Floats, Integers, Words, counted
 from sevenbar.description.draft import HeldDimensions, held_of
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
-from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
+from sevenbar.design.tolerance.tolerances import Tolerances
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.numbers.dimensions import Dimension
+from sevenbar.text.words import say
 
 #: What tolerances may be given as.
 Given = Tolerances | Mapping[str, float | str]
@@ -62,6 +65,31 @@ class Linear:
     def unit(self) -> str:
         """The output's unit."""
         return self.found.outputs[self.found.place(self.output, self.quantity)].unit
+
+    @property
+    def words(self) -> str:
+        """The output as a sentence has it: "angle of rocker", "velocity of slider", "P.x"."""
+        one = self.found.outputs[self.found.place(self.output, self.quantity)]
+        if not one.joint:
+            return one.name
+        word = "angle" if one.quantity == "position" and one.unit == "rad" else one.quantity
+        return say("{quantity} of {joint}", quantity=say(word), joint=one.owner)
+
+    @property
+    def shown_unit(self) -> str:
+        """The unit in which people read the output: degrees for angles."""
+        return "deg" if self.unit == "rad" else self.unit.replace("^2", "²")
+
+    def shown(self, values: npt.ArrayLike) -> Floats:
+        """Values of the output in that unit."""
+        array = np.asarray(values, dtype=np.float64)
+        return np.degrees(array) if self.unit == "rad" else array
+
+    def shown_input(self, value: float) -> str:
+        """An input as people read it."""
+        if self.found.input_turns:
+            return f"{math.degrees(value):.4g}°"
+        return f"{value:.4g} {self.found.linkage.length_unit}"
 
     @property
     def input(self) -> Floats:
@@ -149,10 +177,7 @@ def linear_estimate(
     """
     found = of if isinstance(of, Sensitivities) else sensitivities(of)
     if not isinstance(given, Tolerances):
-        unit = found.linkage.length_unit
-        given = tolerances(
-            found.dimensions, given, length_unit=unit, opening=found.opening, following=found.followers
-        )
+        given = found.tolerances(given)
     given.deviations(distribution)
     status = found.clear(given.widths)
     place = found.place(output, quantity)
@@ -168,13 +193,5 @@ def linear_estimate(
             "tolerance: these are so great that the dead centres of the input may move past every row; "
             "give smaller ones"
         )
-    return Linear(
-        found,
-        given,
-        distribution,
-        one.owner if one.joint else one.name,
-        one.quantity,
-        status,
-        rows,
-        slopes[rows],
-    )
+    name = one.owner if one.joint else one.name
+    return Linear(found, given, distribution, name, one.quantity, status, rows, slopes[rows])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,14 +16,13 @@ from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.tolerances import CUT
-from sevenbar.design.tolerance.words import output_unit, output_values, output_words, shown_input
 from sevenbar.design.tolerance.worst import WorstCase
 from sevenbar.kinematics.loop.columns import unit_in_column
 from sevenbar.kinematics.measures import MEASURES
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
-from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, number_table, page
 from sevenbar.reporting.shown import drive_text
+from sevenbar.text.listed import named
 from sevenbar.text.words import retold, say, spoken
 
 #: Dimensions of a corner design that the page names; the JSON has all.
@@ -48,15 +46,9 @@ def text(findings: Findings) -> RenderableType:
     linear, worst, exact = findings.linear, findings.worst, findings.exact
     found = linear.found
     facts = Facts()
-    facts.add(
-        "output",
-        say(
-            "{output}, circuit {number} ({motion_type})",
-            output=output_words(linear),
-            number=found.circuit.index,
-            motion_type=say(found.circuit.motion_type),
-        ),
-    )
+    circuit, turns = found.circuit, say(found.circuit.motion_type)
+    output = {"output": linear.words, "number": circuit.index, "motion_type": turns}
+    facts.add("output", say("{output}, circuit {number} ({motion_type})", **output))
     unit = found.linkage.unit_of(found.input_name)
     facts.add("drive", drive_text(found.input_name, found.speed, unit))
     if linear.held.left_to_the_program:
@@ -65,12 +57,13 @@ def text(findings: Findings) -> RenderableType:
     if linear.distribution == "normal":
         errors = say("{errors}, the tolerance being {count:g} standard deviations", errors=errors, count=CUT)
     facts.add("errors", errors)
-    facts.add("worst case", _worst_text(worst))
+    most = float(linear.shown(linear.worst)[worst.at])
+    facts.add("worst case", _linear_text(linear, most, worst.at))
     facts.add("", _corner_text(worst))
     if tried := _tried_text(worst):
         facts.add("", tried)
     row = int(np.argmax(linear.deviation))
-    three = 3 * float(output_values(linear, linear.deviation)[row])
+    three = 3 * float(linear.shown(linear.deviation)[row])
     facts.add("3 sigma", _linear_text(linear, three, row))
     if exact is not None:
         facts.add("Monte Carlo", _samples_text(exact))
@@ -95,9 +88,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
         **linear.held.as_dict,
         "dimensions": [
             {
-                "name": effect.dimension.name,
-                "unit": effect.dimension.unit,
-                "value": effect.dimension.value,
+                **named(effect.dimension, "name", "unit", "value"),
                 "tolerance": effect.width,
                 "from": effect.source,
                 "greatest_effect": effect.greatest,
@@ -110,9 +101,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
         "worst_case": {
             "linear": float(linear.worst[worst.at]),
             "at_input": float(linear.input[worst.at]),
-            "corner": worst.corner,
-            "corner_low": worst.corner_low,
-            "corners": worst.corners,
+            **named(worst, "corner", "corner_low", "corners"),
             "corners_tried": worst.tried,
             "corners_that_do_not_close": worst.open,
             "exact_high": float(worst.high[worst.at]),
@@ -120,7 +109,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
         },
         "deviation": float(linear.deviation.max()),
         "measures": [
-            {"name": one.name, "unit": one.unit, "value": one.value}
+            named(one, "name", "unit", "value")
             | dict(zip(("worst_case", "deviation"), linear.measure(one.name), strict=True))
             for one in found.measures
         ],
@@ -129,16 +118,11 @@ def as_dict(findings: Findings) -> dict[str, Any]:
     }
     if exact is not None:
         plain_values["monte_carlo"] = {
-            "count": exact.count,
-            "seed": exact.seed,
-            "lost": exact.lost,
+            **named(exact, "count", "seed", "lost"),
             "reasons": dict(exact.reasons),
             "greatest": exact.greatest,
             "deviation": float(exact.deviation.max()),
-            "ratio": exact.ratio,
-            "ratio_error": exact.ratio_error,
-            "bias": exact.bias,
-            "bias_error": exact.bias_error,
+            **named(exact, "ratio", "ratio_error", "bias", "bias_error"),
             "linear_estimate_holds": exact.holds,
             "verdict": exact.verdict,
         }
@@ -152,7 +136,7 @@ def tolerance_report(figures: Sequence[str] = ("png",)) -> Report[Findings]:
         as_dict,
         {
             "tolerance.json": json_file(as_dict),
-            "dimensions.csv": _write_dimensions,
+            "dimensions.csv": columns_file(_dimensions),
             "deviation.csv": columns_file(_deviation),
             "sensitivities.csv": columns_file(_sensitivities),
             **figure_files("shares", figures, lambda found: shares_figure(found.linear)),
@@ -162,30 +146,19 @@ def tolerance_report(figures: Sequence[str] = ("png",)) -> Report[Findings]:
     )
 
 
-def _write_dimensions(findings: Findings, path: Path) -> None:
+def _dimensions(findings: Findings) -> dict[str, Any]:
     linear = findings.linear
-    head = (
-        "dimension",
-        "unit",
-        "value",
-        "tolerance",
-        "from",
-        f"greatest_effect_{_suffix(linear)}",
-        "share_of_variance",
-    )
-    lines = [
-        (
-            e.dimension.name,
-            e.dimension.unit,
-            e.dimension.value,
-            e.width,
-            e.source,
-            float(output_values(linear, e.greatest)),
-            e.share,
-        )
-        for e in linear.effects
-    ]
-    write_csv(path, head, lines)
+    effects = linear.effects
+    greatest = linear.shown([effect.greatest for effect in effects])
+    return {
+        "dimension": [effect.dimension.name for effect in effects],
+        "unit": [effect.dimension.unit for effect in effects],
+        "value": [effect.dimension.value for effect in effects],
+        "tolerance": [effect.width for effect in effects],
+        "from": [effect.source for effect in effects],
+        f"greatest_effect_{_suffix(linear)}": greatest,
+        "share_of_variance": [effect.share for effect in effects],
+    }
 
 
 def _deviation(findings: Findings) -> dict[str, Any]:
@@ -193,16 +166,16 @@ def _deviation(findings: Findings) -> dict[str, Any]:
     unit = _suffix(linear)
     columns = {
         "input": linear.input,
-        f"worst_case_{unit}": output_values(linear, linear.worst),
-        f"corner_high_{unit}": output_values(linear, worst.high),
-        f"corner_low_{unit}": output_values(linear, worst.low),
-        f"deviation_{unit}": output_values(linear, linear.deviation),
+        f"worst_case_{unit}": linear.shown(linear.worst),
+        f"corner_high_{unit}": linear.shown(worst.high),
+        f"corner_low_{unit}": linear.shown(worst.low),
+        f"deviation_{unit}": linear.shown(linear.deviation),
     }
     if exact is not None:
-        columns[f"monte_carlo_mean_{unit}"] = output_values(linear, exact.mean)
-        columns[f"monte_carlo_deviation_{unit}"] = output_values(linear, exact.deviation)
+        columns[f"monte_carlo_mean_{unit}"] = linear.shown(exact.mean)
+        columns[f"monte_carlo_deviation_{unit}"] = linear.shown(exact.deviation)
         for level, quantile in zip(LEVELS, exact.quantiles, strict=True):
-            columns[f"monte_carlo_q{100 * level:g}_{unit}"] = output_values(linear, quantile)
+            columns[f"monte_carlo_q{100 * level:g}_{unit}"] = linear.shown(quantile)
     return columns
 
 
@@ -210,29 +183,19 @@ def _sensitivities(findings: Findings) -> dict[str, Any]:
     linear = findings.linear
     slopes = {"input": linear.input}
     for dimension, column in zip(linear.found.dimensions, linear.slopes.T, strict=True):
-        slopes[f"{dimension.name}_{_per(_suffix(linear), dimension.unit)}"] = output_values(linear, column)
+        per = f"{_suffix(linear)}_per_{unit_in_column(dimension.unit) or 'one'}"
+        slopes[f"{dimension.name}_{per}"] = linear.shown(column)
     return slopes
 
 
 def _suffix(linear: Linear) -> str:
-    return unit_in_column(output_unit(linear))
-
-
-def _per(unit: str, dimension: str) -> str:
-    """The unit of a derivative, as columns of tables have it."""
-    return f"{unit}_per_{unit_in_column(dimension) or 'one'}"
-
-
-def _worst_text(worst: WorstCase) -> str:
-    linear = worst.linear
-    most = float(output_values(linear, linear.worst)[worst.at])
-    return _linear_text(linear, most, worst.at)
+    return unit_in_column(linear.shown_unit)
 
 
 def _linear_text(linear: Linear, value: float, row: int) -> str:
     """An estimate by derivatives at a row."""
-    shown = f"± {value:.4g} {output_unit(linear)}"
-    return say("{value} at {input}, linear", value=shown, input=shown_input(linear, linear.input[row]))
+    shown = f"± {value:.4g} {linear.shown_unit}"
+    return say("{value} at {input}, linear", value=shown, input=linear.shown_input(linear.input[row]))
 
 
 def _corner_text(worst: WorstCase) -> str:
@@ -243,7 +206,7 @@ def _corner_text(worst: WorstCase) -> str:
     design = ", ".join(named)
     if more:
         design = say("{dimensions} and {count} more", dimensions=design, count=more)
-    high, low = (float(output_values(linear, side)[worst.at]) for side in (worst.high, worst.low))
+    high, low = (float(linear.shown(side)[worst.at]) for side in (worst.high, worst.low))
     if not (math.isfinite(high) and math.isfinite(low)):
         return say(
             "{open} of {tried} designs with every dimension at an end of its tolerance do not close there, "
@@ -251,16 +214,16 @@ def _corner_text(worst: WorstCase) -> str:
             open=worst.open, tried=worst.tried, design=design,
         )  # fmt: skip
     share = f"{abs(100 * worst.difference):.2g} %"
+    other = say("the opposite errors") if worst.opposite else say("other ends")
+    more_or_less = (
+        say("{share} more than linear", share=share)
+        if worst.difference > 0
+        else say("{share} less than linear", share=share)
+    )
     return say(
         "exactly {high:+.4g} with {design}; {low:+.4g} with {other}: {comparison}",
-        high=high,
-        design=design,
-        low=low,
-        other=say("the opposite errors") if worst.opposite else say("other ends"),
-        comparison=say("{share} more than linear", share=share)
-        if worst.difference > 0
-        else say("{share} less than linear", share=share),
-    )
+        high=high, design=design, low=low, other=other, comparison=more_or_less,
+    )  # fmt: skip
 
 
 def _tried_text(worst: WorstCase) -> str:
@@ -279,15 +242,13 @@ def _tried_text(worst: WorstCase) -> str:
 
 def _samples_text(exact: MonteCarlo) -> str:
     linear = exact.linear
-    seen = float(output_values(linear, exact.greatest))
-    three = 3 * float(output_values(linear, exact.deviation).max())
+    three = 3 * float(linear.shown(exact.deviation).max())
     return say(
         "{count} designs (seed {seed}): 3 sigma ± {sigma}, greatest {seen:.4g}; exact over linear deviation "
         "{ratio}, bias {bias} of one",
-        count=exact.count,
-        seed=exact.seed,
-        sigma=f"{three:.4g} {output_unit(linear)}",
-        seen=seen,
+        **named(exact, "count", "seed"),
+        sigma=f"{three:.4g} {linear.shown_unit}",
+        seen=float(linear.shown(exact.greatest)),
         ratio=_with_error(exact.ratio, exact.ratio_error),
         bias=_with_error(exact.bias, exact.bias_error),
     )
@@ -307,18 +268,16 @@ def _effects_table(linear: Linear) -> Table:
             effect.dimension.name,
             f"{effect.dimension.value:.7g}",
             f"± {effect.width:.4g} {effect.dimension.unit}".rstrip(),
-            _effect_text(linear, effect.greatest) if effect.greatest > least else say("none"),
-            shown_input(linear, effect.at) if effect.greatest > least else "-",
+            f"± {float(linear.shown(effect.greatest)):.4g} {linear.shown_unit}"
+            if effect.greatest > least
+            else say("none"),
+            linear.shown_input(effect.at) if effect.greatest > least else "-",
             f"{100 * effect.share:.1f} %",
             effect.source,
         )
         for effect in linear.effects
     )
     return number_table(heads, rows, words=[6])
-
-
-def _effect_text(linear: Linear, value: float) -> str:
-    return f"± {float(output_values(linear, value)):.4g} {output_unit(linear)}"
 
 
 def _measures_table(linear: Linear) -> Table:

@@ -80,20 +80,16 @@ class MonteCarlo(Printed):
     @property
     def holds(self) -> bool | None:
         """Whether the linear estimate holds; `None` where the samples are too few to tell."""
-        off_ratio, off_bias = abs(self.ratio - 1), abs(self.bias)
-        if self.lost:
+        if self.lost or self._off_ratio(-SURE) or self._off_bias(-SURE):
             return False
-        if (
-            off_ratio - SURE * self.ratio_error > RATIO_HOLDS
-            or off_bias - SURE * self.bias_error > BIAS_HOLDS
-        ):
-            return False
-        if (
-            off_ratio + SURE * self.ratio_error <= RATIO_HOLDS
-            and off_bias + SURE * self.bias_error <= BIAS_HOLDS
-        ):
-            return True
-        return None
+        return None if self._off_ratio(SURE) or self._off_bias(SURE) else True
+
+    def _off_ratio(self, errors: float) -> bool:
+        """Whether the ratio is off, so many statistical errors farther."""
+        return abs(self.ratio - 1) + errors * self.ratio_error > RATIO_HOLDS
+
+    def _off_bias(self, errors: float) -> bool:
+        return abs(self.bias) + errors * self.bias_error > BIAS_HOLDS
 
     @property
     def verdict(self) -> str:
@@ -115,14 +111,14 @@ class MonteCarlo(Printed):
             because.append(
                 say("{share:.3g} % of the samples do not go round ({why})", share=lost, why=self.why_lost)
             )
-        if abs(self.ratio - 1) - SURE * self.ratio_error > RATIO_HOLDS:
+        if self._off_ratio(-SURE):
             share = 100 * abs(self.ratio - 1)
             because.append(
                 say("the standard deviation is {share:.3g} % greater", share=share)
                 if self.ratio > 1
                 else say("the standard deviation is {share:.3g} % smaller", share=share)
             )
-        if abs(self.bias) - SURE * self.bias_error > BIAS_HOLDS:
+        if self._off_bias(-SURE):
             because.append(say("the mean is off by {bias:.2g} standard deviations", bias=abs(self.bias)))
         return say("the linear estimate does not hold, because {reasons}", reasons=say(" and ").join(because))
 
@@ -166,20 +162,16 @@ def monte_carlo(
     else:
         linear = linear_estimate(of, given, distribution=distribution, output=output, quantity=quantity)
     changes = linear.tolerances.drawn(count, linear.distribution, np.random.default_rng(seed))
-    designs = ChangedDesigns(linear)
     exact = np.empty((changes.shape[1], len(linear.rows)))
     gap = np.zeros(changes.shape[1], dtype=bool)
-    whole_turn = linear.found.circuit.goes_round
+    whole_turn = linear.found.circuit.goes_round and len(linear.rows) == len(linear.status)
     block = max(1, BLOCK // len(linear.rows))
     course = SearchCourse(len(exact), progress)
-    for start in range(0, len(exact), block):
-        part = slice(start, start + block)
-        moved = changes[:, part].T
-        q, determinants = designs.followed(moved)
-        exact[part] = designs.deviations(moved, q)
-        if whole_turn and len(linear.rows) == len(linear.status):
+    for part, found, determinants in ChangedDesigns(linear).in_blocks(changes.T, block):
+        exact[part] = found
+        if whole_turn:
             gap[part] = _gaps(determinants)
-        course.step(done=len(moved))
+        course.step(done=len(determinants))
     lost = gap | np.isnan(exact).any(axis=1)
     kept = exact[~lost]
     reasons, looked_at = _reasons(linear, changes.T[lost])

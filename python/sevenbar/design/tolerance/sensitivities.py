@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from sevenbar.arrays import Booleans, Floats, Integers, Words, short_way
 from sevenbar.description.draft import Draft
 from sevenbar.design.tolerance.outputs import Output, outputs_of, slopes_of, values_of
+from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
 from sevenbar.errors import NotCoveredError, RequestError, check_word, shown, suggestion
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable, chosen_circuit
@@ -126,6 +127,16 @@ class Sensitivities(Printed):
     def input_turns(self) -> bool:
         """Whether the input is an angle, not a slide."""
         return bool(self.loop.numbers.turns[self.loop.input])
+
+    def tolerances(self, given: Mapping[str, float | str]) -> Tolerances:
+        """Half widths of the dimensions by name or pattern, as `tolerances` has them."""
+        return tolerances(
+            self.dimensions,
+            given,
+            length_unit=self.linkage.length_unit,
+            opening=self.opening,
+            following=self.followers,
+        )
 
     def designs(self, changes: Floats) -> Floats:
         """The numbers (.., dimensions) of designs changed by so much, with what follows from them."""

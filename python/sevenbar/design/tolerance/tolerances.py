@@ -13,7 +13,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, check_word, shown, suggestion
 from sevenbar.kinematics.numbers.dimensions import Dimension
-from sevenbar.text.ranges import split_name
+from sevenbar.text.ranges import split_named
 from sevenbar.text.units import LENGTHS
 
 #: ISO 2768-1, table 1: permissible deviations [mm] of linear dimensions up to each size [mm], from 0.5 mm on.
@@ -113,18 +113,18 @@ def tolerances(
                 f"tolerance: no dimension {shown(pattern)}; {suggestion(pattern, names)}"
                 f"this linkage has {', '.join(names)}"
             )
+        if place is not None and names[place] in following:
+            raise RequestError(
+                f"tolerance: {names[place]} follows from the others; leave its tolerance or follow out"
+            )
+        if place is not None and names[place] in opening:
+            raise RequestError(
+                f"tolerance: {names[place]}: an error of it alone would open this overconstrained loop, so "
+                "that only play or bending could take it up; leave it out"
+            )
         for k in matched:
             if names[k] in following:
-                if place is not None:
-                    raise RequestError(
-                        f"tolerance: {names[k]} follows from the others; leave its tolerance or follow out"
-                    )
                 continue
-            if names[k] in opening and place is not None:
-                raise RequestError(
-                    f"tolerance: {names[k]}: an error of it alone would open this overconstrained loop, so "
-                    "that only play or bending could take it up; leave it out"
-                )
             width = _width(pattern, value, dimensions[k], length_unit)
             if names[k] in opening:
                 opened[names[k]] = None
@@ -158,16 +158,12 @@ def _exactly(name: str, dimensions: Sequence[Dimension]) -> int | None:
 def parsed_tolerances(given: Sequence[str]) -> dict[str, float | str]:
     """Tolerances of a command line, `L1=0.5`; raises `RequestError` for one without name or value."""
     found: dict[str, float | str] = {}
+    hint = f"give one as in {_EXAMPLES}"
     for word in given:
-        parts = split_name(word)
-        if parts is None:
-            raise RequestError(
-                f"--tolerance: {shown(word)} is not a name and a half width; give one as in {_EXAMPLES}"
-            )
-        name, value = parts
-        # the last of one name counts, after patterns that were given before it
-        found.pop(name, None)
-        found[name] = value
+        for name, value in split_named("--tolerance", [word], "a name and a half width", hint).items():
+            # the last of one name counts, after patterns that were given before it
+            found.pop(name, None)
+            found[name] = value
     return found
 
 

@@ -125,9 +125,8 @@ def worst_case(
     changes, corners = corners_of(linear)
     designs, course = ChangedDesigns(linear), SearchCourse(len(changes), progress)
     deviations = np.empty((len(changes), len(linear.rows)))
-    for start in range(0, len(changes), BLOCK):
-        part = slice(start, start + BLOCK)
-        deviations[part] = designs.deviations(changes[part], designs.followed(changes[part])[0])
+    for part, found, _ in designs.in_blocks(changes, BLOCK):
+        deviations[part] = found
         course.step(done=len(changes[part]))
     return WorstCase(linear, corners, changes, deviations)
 

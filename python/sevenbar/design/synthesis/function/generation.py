@@ -32,8 +32,8 @@ from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.function.precision import reflected
 from sevenbar.design.synthesis.function.starts import ON_BRANCH, Start, chosen, starts
+from sevenbar.design.task.loop import RssrLoop
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
-from sevenbar.design.task.rssr import RssrLoop
 from sevenbar.design.task.solve import solved
 from sevenbar.design.task.task import DesignTask, FreeNumber, FunctionWant, Most
 from sevenbar.design.wish import Wish, wish_of_function, wish_of_pairs

@@ -10,8 +10,8 @@ from sevenbar.design.candidates import CHECK_SAMPLES
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign
-from sevenbar.design.task.match import STILL
 from sevenbar.design.task.path_page import PathPage, path_page
+from sevenbar.design.task.placing import STILL
 from sevenbar.drawing.names import short
 from sevenbar.text.words import say
 

@@ -17,10 +17,8 @@ from sevenbar.description.gallery import names as gallery_names
 from sevenbar.description.values import TableForm
 from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
-from sevenbar.design.task.file.musts import must_of
 from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form
-from sevenbar.design.task.file.units import amount
-from sevenbar.design.task.file.wants import want_of
+from sevenbar.design.task.file.tables import amount, must_of, want_of
 from sevenbar.design.task.task import DesignTask, FreeNumber, Most, Must, Want
 from sevenbar.errors import (
     DescriptionError,
@@ -82,7 +80,9 @@ def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskF
     musts = [*_musts(draft.linkage, form, known, mistakes), *exact]
     limits = Limits()
     with mistakes.of("limits", LimitsForm):
-        limits = _limits(form.limits, draft.linkage)
+        unit, size = draft.linkage.length_unit, form.limits.size
+        ends = size and (amount("size", size[0], unit), amount("size", size[1], unit))
+        limits = Limits(form.limits.transmission, ends, form.limits.motion_type)
     if not mistakes.found:
         task = DesignTask(
             draft,
@@ -122,6 +122,10 @@ class _Mistakes:
 def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) -> Draft:
     """The linkage that a task is about; `DescriptionError` where there is none."""
     given = raw.get("linkage")
+
+    def wrong(message: str) -> DescriptionError:
+        return DescriptionError([Problem("linkage", message)], source)
+
     if isinstance(given, dict):
         try:
             return Draft.of_tables(given, source, agree=agree)
@@ -139,22 +143,16 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
             "give a file in the folder of this one, as in 'rssr.toml', a name of the gallery, "
             "or a table [linkage]"
         )
-        raise DescriptionError([Problem("linkage", f"{what}; {hint}")], source)
+        raise wrong(f"{what}; {hint}")
     name = given.strip()
     path = folder / name
     if not path.exists() and name in gallery_names():
         return Draft.of(toml_text(name), name, agree=agree)
     if not path.is_file():
         near = suggestion(name, gallery_names())
-        raise DescriptionError(
-            [
-                Problem(
-                    "linkage",
-                    f"{shown(name)}: no such file in the folder of this one, nor such a name in the "
-                    f"gallery; {near}give one",
-                )
-            ],
-            source,
+        raise wrong(
+            f"{shown(name)}: no such file in the folder of this one, nor such a name in the gallery; {near}"
+            "give one"
         )
     return Draft.of(toml_text(path), str(path), agree=agree)
 
@@ -207,9 +205,3 @@ def _musts(linkage: Linkage, form: TaskForm, wants: list[Want], mistakes: _Mista
         with mistakes.of(f"must[{i + 1}]", type(one)):
             found.append(must_of(one, linkage, wants))
     return found
-
-
-def _limits(form: LimitsForm, linkage: Linkage) -> Limits:
-    unit = linkage.length_unit
-    ends = form.size and (amount("size", form.size[0], unit), amount("size", form.size[1], unit))
-    return Limits(form.transmission, ends, form.motion_type)

@@ -6,7 +6,7 @@ Angles are in degrees where no unit is given, lengths in the linkage's own unit.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BeforeValidator, Field, StrictBool, ValidationError, WithJsonSchema
 
@@ -261,26 +261,17 @@ class LimitsForm(TableForm):
     ] = 0.0
 
 
-#: The forms of the tables by their kinds.
-WANTS: dict[str, type[TableForm]] = {
-    "function": FunctionForm,
-    "path": PathForm,
-    "poses": PosesForm,
-    "figure": FigureForm,
-    "dwell": DwellForm,
-    "straight": StraightForm,
-}
-MUSTS: dict[str, type[TableForm]] = {
-    "range": RangeMust,
-    "cone": ConeMust,
-    "box": BoxMust,
-    "apart": ApartMust,
-    "figure": FigureMustForm,
-    "most": MostMust,
-}
-
 WantForm = FunctionForm | PathForm | PosesForm | FigureForm | DwellForm | StraightForm
 MustForm = RangeMust | ConeMust | BoxMust | ApartMust | FigureMustForm | MostMust
+
+
+def _by_kind(forms: Any) -> dict[str, type[TableForm]]:
+    return {get_args(form.model_fields["kind"].annotation)[0]: form for form in get_args(forms)}
+
+
+#: The forms of the tables by their kinds.
+WANTS, MUSTS = _by_kind(WantForm), _by_kind(MustForm)
+
 _Want = Annotated[WantForm, Field(discriminator="kind")]
 _Must = Annotated[MustForm, Field(discriminator="kind")]
 

@@ -49,8 +49,7 @@ class Figures:
                 for name, one in mass_gradient(motion, circuit.index, only=self.names).items():
                     own[name] = own[name] + self._loop.mass_slopes(one.slopes)
             rest = [i for i, name in enumerate(self.names) if not np.isfinite(own.get(name, np.nan)).all()]
-            for i, name in enumerate(self.names):
-                by[i] = own[name] if i not in rest else 0.0
+            by = np.array([np.zeros(len(values)) if i in rest else own[n] for i, n in enumerate(self.names)])
             if rest:
                 by[rest] = self._differences(values, anchor)[rest]
         return np.array(read), by
@@ -60,12 +59,9 @@ class Figures:
         for k, scale in enumerate(self._loop.scales):
             step = np.zeros(len(values))
             step[k] = STEP * scale
-            ends = [self.at(values + way * step, anchor, slopes=False) for way in (1, -1)]
-            up, down = ends
-            none = up is None or down is None
-            columns.append(
-                np.zeros(len(self.names)) if none else (up[0] - down[0]) / (2 * step[k])  # type: ignore[index]
-            )
+            up, down = (self.at(values + way * step, anchor, slopes=False) for way in (1, -1))
+            none = np.zeros(len(self.names))
+            columns.append(none if up is None or down is None else (up[0] - down[0]) / (2 * step[k]))
         return np.stack(columns, axis=1)
 
     def read(self, motion: Motion, circuit: Circuit) -> dict[str, float]:

@@ -8,17 +8,13 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.match import (
-    Placing,
-    by_length,
-    in_order,
-    matched,
-    placed,
-)
+from sevenbar.design.task.match import Match, by_length, in_order, matched
 from sevenbar.design.task.passes import InputPass
+from sevenbar.design.task.placing import Placing, placed
 from sevenbar.design.task.task import PathWant, PoseWant
 from sevenbar.design.task.wants.wanted import Begun, Stations, Wanted
 from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.loop.stops import Three
 
 #: Of the rows of a pass one in so many is tried as the one that takes the first pose.
 FIRST_AT = 2
@@ -40,19 +36,17 @@ class PlacesWanted:
     turns = False
 
     def __init__(self, loop: TaskLoop, want: PathWant | PoseWant) -> None:
-        self._loop = loop
         self.weight = want.weight
-        self._name: str | None = None
+        #: The points as a circuit knows them: by a name, or each as a link and a place on it.
+        self._seen: list[tuple[int | str, Three | None]]
         if isinstance(want, PathWant):
-            point = next(p for p in loop.linkage.points if p.name == want.point)
-            self.link, self._name = point.link, want.point
-            self.numbers = [loop.named(want.point)]
+            self._seen, self.numbers = [(want.point, None)], [loop.named(want.point)]
             self.places = want.places[:, None, :]
             self.unit, self.closed = float(np.ptp(want.places, axis=0).max()), want.closed
         else:
-            ends = [(0.0, 0.0, 0.0), *(tuple(map(float, end)) for end in want.arm * np.eye(3))]
-            self.link, self._ends = want.link, ends
-            self.numbers = [loop.place(want.link, end) for end in ends]  # type: ignore[arg-type]
+            ends: list[Three] = [(0.0, 0.0, 0.0), *(tuple(map(float, e)) for e in want.arm * np.eye(3))]  # type: ignore[list-item]
+            self._seen = [(want.link, end) for end in ends]
+            self.numbers = [loop.place(want.link, end) for end in ends]
             self.places = np.einsum("nij,pj->npi", want.poses[:, :3, :3], ends) + want.poses[:, None, :3, 3]
             self.unit, self.closed = want.arm, False
         n = len(self.places)
@@ -73,9 +67,7 @@ class PlacesWanted:
 
     def curve(self, one: InputPass) -> Floats:
         """The points along a pass (rows, p, 3)."""
-        if self._name is not None:
-            return one.named(self._name)[:, None]
-        return np.stack([one.places(self.link, end) for end in self._ends], axis=1)  # type: ignore[arg-type]
+        return np.stack([one.point(*which) for which in self._seen], axis=1)
 
     def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
         """By the inputs of its timing, or by the best order-keeping match."""
@@ -84,16 +76,16 @@ class PlacesWanted:
             return []
         if self.timing is not None:
             return self._timed(one, curve, placing)
-        if self._name is None:
+        if len(self._seen) > 1:
             return self._poses(one, curve, placing)
         return self._path(one, curve[:, 0], placing, scaled=scaled)
 
     def _timed(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
         assert self.timing is not None
-        found: list[Begun] = []
-        for phase, rows in zip(*one.begins(self.timing, free=self.phase), strict=True):
-            u = np.array([phase] if self.phase else [])
-            found.append(self._begun(u, rows, curve, placing))
+        found = [
+            self._begun(np.array([phase] * self.phase), rows, curve, placing)
+            for phase, rows in zip(*one.begins(self.timing, free=self.phase), strict=True)
+        ]
         return sorted(found, key=lambda begun: begun.error)[:1]
 
     def _begun(self, u: Floats, rows: Integers, curve: Floats, placing: Placing | None) -> Begun:
@@ -104,23 +96,25 @@ class PlacesWanted:
 
     def _path(self, one: InputPass, curve: Floats, placing: Placing | None, *, scaled: bool) -> list[Begun]:
         wanted = self.places[:, 0]
-        own = curve if placing is None else placing.put(curve)
         ways = {"curve_closed": one.closed, "closed": self.closed}
-        match = matched(own, wanted, **ways, place=placing is None, scaled=scaled)
-        if match is None:
+        if placing is not None:
+            match: Match | None = Match(*in_order(placing.put(curve), wanted, closed=one.closed), placing)
+        else:
+            match = matched(curve, wanted, **ways, scaled=scaled)
+        if match is None or not math.isfinite(match.error):
             return []
-        put = match.placing if placing is None else placing
         # the same as before, and by lengths along the curve, which tell the sides of a cusp apart
-        other = by_length(put.put(curve), wanted, **ways)
+        other = by_length(match.placing.put(curve), wanted, **ways)
         error = match.error / 3 / self.unit**2
-        return [
-            Begun(one.unwound(rows), rows, error, put) for rows in (match.rows, other) if rows is not None
-        ]
+        found = (match.rows, other) if other is not None else (match.rows,)
+        return [Begun(one.unwound(rows), rows, error, match.placing) for rows in found]
 
     def _poses(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
         """In order, the linkage placed so that some row takes the first pose."""
         n = len(self.places)
-        tried = [placing] if placing is not None else self._firsts(curve)
+        # that bring every other row of the curve to the first pose
+        firsts = (placed(self.places[0], curve[row]) for row in range(0, len(curve), FIRST_AT))
+        tried = firsts if placing is None else [placing]
         best: Begun | None = None
         for put in tried:
             rows, error = in_order(
@@ -132,17 +126,7 @@ class PlacesWanted:
             return []
         return [self._begun(best.u, best.rows, curve, placing)]
 
-    def _firsts(self, curve: Floats) -> list[Placing]:
-        """Placings that bring every other row of a curve (rows, p, 3) to the first pose."""
-        return [placed(self.places[0], curve[row]) for row in range(0, len(curve), FIRST_AT)]
-
-    def errors(
-        self,
-        circuit: Circuit,
-        rows: slice,
-        u: Floats,  # noqa: ARG002
-        placing: Placing,
-    ) -> Floats:
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:  # noqa: ARG002
         """The distances (n p,) on rows of an analysis [length]."""
         one = InputPass(circuit, np.arange(len(circuit.q))[rows], closed=False, turns=True)
         off = placing.put(self.curve(one)) - self.places

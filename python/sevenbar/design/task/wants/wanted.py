@@ -9,8 +9,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.task.loop import Here
-from sevenbar.design.task.match import Placing
 from sevenbar.design.task.passes import InputPass
+from sevenbar.design.task.placing import Placing
 from sevenbar.kinematics.circuits.circuit import Circuit
 
 
