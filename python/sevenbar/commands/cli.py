@@ -247,14 +247,13 @@ def modes(
     check_targets([] if out is None else [out], force=force)
     value = input_value("--at", at, loaded, input_joint)
     found = loaded.assembly_modes(value, input=loaded.columns[column])
-    draw = partial(_draw_modes, loaded, found, loaded.columns[column])
+
+    def draw(path: Path) -> None:
+        from sevenbar.drawing import plot
+
+        plot.save(plot.modes_overview(loaded, found, input=loaded.columns[column]), path)
+
     deliver(found, modes_report(loaded, column), json=json, also={} if out is None else {out: draw})
-
-
-def _draw_modes(linkage: sb.Linkage, found: sb.Modes, held: str, path: Path) -> None:
-    from sevenbar.drawing import plot
-
-    plot.save(plot.modes_overview(linkage, found, input=held), path)
 
 
 @app.command("plot", cls=Command)

@@ -221,15 +221,10 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     with written_whole(target) as file, rc_context(STYLE):
         figure.savefig(file, format=ending, dpi=PNG_DPI, metadata=dates.get(ending))
         if ending == "eps":
-            _without_date(file)
+            # nor the name of a file aside, so that one figure gives the same bytes
+            dated, lines = (b"%%CreationDate", b"%%Title"), file.read_bytes().split(b"\n")
+            file.write_bytes(b"\n".join(line for line in lines if not line.startswith(dated)))
     return target
-
-
-def _without_date(file: Path) -> None:
-    """Takes the date and the name of a file aside out of an EPS, so that one figure gives the same bytes."""
-    dated = (b"%%CreationDate", b"%%Title")
-    lines = [line for line in file.read_bytes().split(b"\n") if not line.startswith(dated)]
-    file.write_bytes(b"\n".join(lines))
 
 
 @contextmanager

@@ -56,7 +56,10 @@ def chinese_font() -> str | None:
 @cache
 def _installed() -> str | None:
     # a font that has one weight only is drawn in that, which matplotlib would note for each text
-    logging.getLogger("matplotlib.font_manager").addFilter(_no_note_of_weights)
+    note = "findfont: Failed to find font weight"
+    logging.getLogger("matplotlib.font_manager").addFilter(
+        lambda record: not record.getMessage().startswith(note)
+    )
     found = _known()
     if found is None:
         # the list that matplotlib keeps may be older than the font
@@ -65,10 +68,6 @@ def _installed() -> str | None:
                 fontManager.addfont(path)
         found = _known()
     return found
-
-
-def _no_note_of_weights(record: logging.LogRecord) -> bool:
-    return not record.getMessage().startswith("findfont: Failed to find font weight")
 
 
 def _known() -> str | None:

@@ -291,14 +291,8 @@ def _cut(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str) 
 
 def _time_above(axes: Axes, motion: Motion, line: DrawnPass) -> None:
     rate, start = math.degrees(motion.speed), line.input[0]
-
-    def time(angle: Any) -> Any:
-        return (angle - start) / rate
-
-    def angle(time: Any) -> Any:
-        return start + time * rate
-
-    above = axes.secondary_xaxis("top", functions=(time, angle))
+    there_and_back = (lambda angle: (angle - start) / rate), (lambda time: start + time * rate)
+    above = axes.secondary_xaxis("top", functions=there_and_back)
     above.set_xlabel(say("time [s]"))
 
 

@@ -132,8 +132,8 @@ def _files(
     )
     draw = {name: one for kind, name, one in known if kind in kinds}
     for name, point in points.items() if "point" in kinds else ():
-        path = partial(plot.point_path, motion, point, circuit, name=name, **pictures)
-        draw[f"path_{_file_name(name)}"] = path
+        part = re.sub(r"[^\w.-]+", "_", name).strip("_.") or "point"
+        draw[f"path_{part}"] = partial(plot.point_path, motion, point, circuit, name=name, **pictures)
     if "modes" in kinds:
         chosen = chosen_circuit(motion, circuit)
         # a limit is no place to show modes at: there two are one
@@ -150,8 +150,3 @@ def _files(
 
 def _drawn(draw: Callable[[], Figure], _motion: Motion) -> Figure:
     return draw()
-
-
-def _file_name(name: str) -> str:
-    """The name of a point as a part of a file's name."""
-    return re.sub(r"[^\w.-]+", "_", name).strip("_.") or "point"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import COMPONENTS, Forces
-from sevenbar.forces.shaking import Shaking, shaking_along
-from sevenbar.forces.sizing import Bearing, Sizing
+from sevenbar.forces.shaking import Shaking
+from sevenbar.forces.sizing import Sizing
 from sevenbar.reporting.shown import Shown, number
 from sevenbar.text.words import retold, say
 
@@ -66,16 +66,6 @@ def body_text(body: Body, mass: float | None) -> str:
         return drawn if body.mass else say("{drawn}, of steel", drawn=drawn)
     centre = say("{mass}, centre {place}", mass=shown, place=triple_text(body.centre or ()))
     return centre if body.tensor.any() else say("{body}, a point", body=centre)
-
-
-def bodies_texts(loading: Loading, resolved: Mapping[int, Body]) -> list[tuple[str, str]]:
-    """A line for each body: its link, and what it is."""
-    found = []
-    for link in sorted(loading.bodies):
-        for body in loading.bodies[link]:
-            own = resolved[link].mass if len(loading.bodies[link]) == 1 else None
-            found.append((say("link {number}", number=link), body_text(body, own)))
-    return found
 
 
 def load_text(load: Load, shown: Callable[[float], str]) -> str:
@@ -146,7 +136,10 @@ def acting_text(loading: Loading) -> str:
 def acting_facts(forces: Forces, sliding: Sequence[str]) -> list[tuple[str, str]]:
     """What acts, a line each; `sliding` are the joints that slide."""
     loading, place = forces.loading, Places(forces)
-    lines = bodies_texts(loading, forces.bodies)
+    lines = []
+    for link, bodies in sorted(loading.bodies.items()):
+        mass = forces.bodies[link].mass if len(bodies) == 1 else None
+        lines += [(say("link {number}", number=link), body_text(body, mass)) for body in bodies]
     for i, load in enumerate(loading.loads, 1):
         lines.append((say("load {number}", number=i), load_text(load, place.plain)))
     for i, spring in enumerate(loading.springs, 1):
@@ -299,8 +292,9 @@ def unbounded_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str
         return []
     lost = [
         name
-        for name, reaction in forces.reactions.items()
-        if reaction.determinate.any() and not _any_known(found.bearings[name])
+        for name, bearing in found.bearings.items()
+        if forces.reactions[name].determinate.any()
+        and not any(math.isfinite(getattr(bearing, part).peak.value) for part in LISTED)
     ]
     text = say(
         "forces in {joints} grow without bound at the change points, where a link in line with its "
@@ -308,10 +302,6 @@ def unbounded_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str
         joints=", ".join(lost),
     )
     return [(say("no bound"), text)] if lost else []
-
-
-def _any_known(bearing: Bearing) -> bool:
-    return any(math.isfinite(getattr(bearing, part).peak.value) for part in LISTED)
 
 
 def known_alone(forces: Forces) -> list[str]:
@@ -324,11 +314,6 @@ def known_alone(forces: Forces) -> list[str]:
             size = f"{COMPONENTS[3 + which]} {number(greatest(reaction.force[:, which]))} N"
             found.append(say("{force} of {joint}", force=size, joint=name))
     return found
-
-
-def shaking_found(forces: Forces) -> Shaking | None:
-    """How the linkage shakes the ground; `None` at rest and where a row has no rates."""
-    return None if forces.at_rest or not forces.bodies else shaking_along(forces)
 
 
 def shaking_facts(forces: Forces, found: Shaking | None) -> list[tuple[str, str]]:

@@ -16,7 +16,7 @@ from rich.text import Text
 from sevenbar.curves.curve import Peak
 from sevenbar.forces.counterweights import Balance
 from sevenbar.forces.result import COMPONENTS, Forces
-from sevenbar.forces.shaking import Shaking
+from sevenbar.forces.shaking import Shaking, shaking_along
 from sevenbar.forces.sizing import Burden, Sizing
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
@@ -49,7 +49,8 @@ class CircuitForces:
     ) -> CircuitForces:
         """With the sizing for an unevenness."""
         found = forces.sizing(unevenness=unevenness)
-        return cls(motion, circuit, forces, found, force_words.shaking_found(forces))
+        shakes = forces.bodies and not forces.at_rest
+        return cls(motion, circuit, forces, found, shaking_along(forces) if shakes else None)
 
 
 def forces_report(

@@ -198,10 +198,14 @@ def _(found: InstantCentres) -> str:
 @text_of.register(Sensitivity)
 def _(found: Sensitivity) -> str:
     rows, columns, numbers = found.position.shape
-    # each number by what it moves most, its unit and the greatest derivative
+    # each number by what it moves most, its unit and the greatest derivative; 0 where none is known
+    sizes = np.nan_to_num(np.abs(found.position)).max(axis=0, initial=0.0)
+    moved = [found.columns[place] for place in sizes.argmax(axis=0)]
     most = [
         f"{name} [{unit}]: " + (f"{column} {value:.3g}" if value else "moves nothing")
-        for name, unit, column, value in zip(found.names, found.units, *_moved_most(found), strict=True)
+        for name, unit, column, value in zip(
+            found.names, found.units, moved, sizes.max(axis=0).tolist(), strict=True
+        )
     ]
     facts = [
         ("status", rows_text(found.status)),
@@ -210,13 +214,6 @@ def _(found: Sensitivity) -> str:
         ("opening", ", ".join(found.opening)),
     ]
     return lines(f"Sensitivity of {columns} columns by {numbers} numbers: {rows} rows", facts)
-
-
-def _moved_most(found: Sensitivity) -> tuple[list[str], list[float]]:
-    """The column that each number moves most, and by how much for one of it; 0 where none is known."""
-    sizes = np.nan_to_num(np.abs(found.position)).max(axis=0, initial=0.0)
-    places = sizes.argmax(axis=0)
-    return [found.columns[place] for place in places], sizes.max(axis=0).tolist()
 
 
 @text_of.register(Output)

@@ -102,7 +102,7 @@ def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
 
 def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
     """The rows as written, one a link, to the last digit if `exact`; a joint's own value is no dimension."""
-    digits = _every_digit if exact else "{:.6g}".format
+    digits = (lambda number: f"{number!r}".removesuffix(".0")) if exact else "{:.6g}".format
     unit = linkage.length_unit
     columns = {
         "length": say("length [{unit}]", unit=unit),
@@ -129,10 +129,6 @@ def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
         rows.append((f"{place}", named, *cells))
     heads = (say("link"), say("joint before it"), *(columns[key] for key in kept))
     return Sheet(heads, tuple(rows), frozenset(range(len(heads))) - {1})
-
-
-def _every_digit(number: float) -> str:
-    return f"{number!r}".removesuffix(".0")
 
 
 def circuit_facts(motion: Motion, circuit: Circuit, *, brief: bool = False) -> list[tuple[str, str]]:

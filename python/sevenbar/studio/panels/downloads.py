@@ -124,10 +124,6 @@ class Scene:
         return self.view
 
 
-def _toml(scene: Scene) -> tuple[str, bytes]:
-    return f"{scene.stem}.toml", scene.draft.toml().encode()
-
-
 def _exported(word: str) -> Callable[[Scene], tuple[str, bytes]]:
     def write(scene: Scene) -> tuple[str, bytes]:
         view = scene.moving()
@@ -179,7 +175,7 @@ DOWNLOADS: dict[str, Callable[[Scene], tuple[str, bytes]]] = {
     "page that plays (HTML)": _page,
     "motion (CSV)": _exported("csv"),
     **{f"report and figures ({ending.upper()})": _figures(ending) for ending in FIGURES},
-    "linkage (TOML)": _toml,
+    "linkage (TOML)": lambda scene: (f"{scene.stem}.toml", scene.draft.toml().encode()),
     **{f"motion ({word.upper()})": _exported(word) for word in FORMATS if word not in (*POSED, "csv")},
     **{f"pose ({word.upper()})": _exported(word) for word in POSED},
 }
