@@ -92,7 +92,7 @@ class Tab:
         with self._client.atomic():
             self._transport.show()
             self._scenery.show()
-            self._forces.show_arrows()
+            self._forces.arrows.show()
             self._curves.show()
         # at once, without waiting for the end of viser's own interval
         self._client.flush()

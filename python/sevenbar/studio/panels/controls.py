@@ -16,7 +16,7 @@ PAUSE = 0.8
 
 
 def put(control: Any, value: object) -> None:
-    """Sets a control's value."""
+    """Sets a control's value, which viser's types have as read only."""
     control.value = value
 
 

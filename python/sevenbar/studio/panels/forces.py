@@ -122,15 +122,11 @@ class ForcesPanel:
         self._hint = gui.add_html("")
         self._home = gui.add_folder("What acts", visible=False)
         self._boxes: list[viser.GuiCheckboxHandle] = []
-        self._arrows = ForceArrows(gui, worker, session, stage)
+        self.arrows = ForceArrows(gui, worker, session, stage)
         self._facts = gui.add_html("")
         self._switches: tuple[Switch, ...] | None = None
         self._shown: tuple[object, ...] = ()
         self._text = ""
-
-    def show_arrows(self) -> None:
-        """Moves the arrows to the pose on view."""
-        self._arrows.show()
 
     def show(self) -> None:
         """Shows the switches as they are now; the facts follow when nothing changes any more."""
