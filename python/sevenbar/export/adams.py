@@ -13,7 +13,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
 from sevenbar.export.adams_file import Column, CommandFile, number, word_of
-from sevenbar.export.adams_forces import add_forces, loads_left_out
+from sevenbar.export.adams_forces import add_forces
 from sevenbar.export.mass import MASSLESS, BodyMass, has_masses, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, foot_of, length_of
 from sevenbar.kinematics.loop.joints import KINDS
@@ -110,7 +110,8 @@ class _LinkageFile(CommandFile):
     def _head(self) -> None:
         unit = self.linkage.length_unit
         written = "mm" if unit == "um" else unit
-        left_out = loads_left_out(self.linkage.loading)
+        loading = self.linkage.loading
+        left_out = loading.left_out(loads=sum(load.table is not None for load in loading.loads))
         own = f"the linkage; parts that have none weigh {MASSLESS:g} of the heaviest"
         whose = own if has_masses(self.linkage) else "the drawn bodies in steel"
         self.lines += [
@@ -118,7 +119,7 @@ class _LinkageFile(CommandFile):
             "! An ADAMS/View command file written by Sevenbar from the documentation of the language;",
             "! it has not been run in ADAMS. Lengths in " + written + ", masses in kg; masses are those of",
             f"! {whose}. Plain angles in functions are in radians."
-            + " No gravity." * (not any(self.linkage.loading.gravity)),
+            + " No gravity." * (not any(loading.gravity)),
             *([f"! Left out, for it follows a table: {left_out}."] if left_out else []),
             *(f"! Idle freedom: {_ascii(words)}." for words in self.linkage.idle),
             *(f"! Redundant constraint, which the solver takes out itself: {_ascii(words)}."

@@ -7,15 +7,8 @@ import math
 import numpy as np
 
 from sevenbar.export.adams_file import CommandFile, number
-from sevenbar.export.left_out import left_out
 from sevenbar.forces.acting import Load, Spring, Three
-from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.loop.rigid import placed, pose
-
-
-def loads_left_out(loading: Loading) -> str:
-    """What is not in the file, in words: loads by tables; empty without any."""
-    return left_out(loading, loads=sum(load.table is not None for load in loading.loads))
 
 
 def add_forces(file: CommandFile, drive: str) -> None:

@@ -10,7 +10,6 @@ from xml.etree import ElementTree as Xml
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.export.left_out import left_out
 from sevenbar.export.mass import BodyMass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.kinematics.loop.rigid import half_turn, pose, zyx_turns
@@ -42,7 +41,7 @@ def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> 
         )
     )
     loading = linkage.loading
-    missing = left_out(loading, gravity=True, loads=len(loading.loads), springs=len(loading.springs))
+    missing = loading.left_out(gravity=True, loads=len(loading.loads), springs=len(loading.springs))
     if missing:
         robot.append(Xml.Comment(f" Left out, for URDF has no place for it: {missing}. "))
     for colour in dict.fromkeys(part.colour for part in assembly.parts):

@@ -39,6 +39,16 @@ class Loading:
         """Whether nothing has a mass, and nothing acts."""
         return not (any(self.bodies.values()) or self.loads or self.springs)
 
+    def left_out(self, *, gravity: bool = False, loads: int = 0, springs: int = 0) -> str:
+        """What a file leaves out of it, in words: gravity, and so many loads and springs; empty without any.
+
+        >>> Loading(gravity=(0, 0, -9.81)).left_out(gravity=True, loads=1, springs=2)
+        'gravity, 1 load, 2 springs'
+        """
+        counts = {"load": loads, "spring": springs}
+        words = [f"{count} {what}{'s' * (count > 1)}" for what, count in counts.items() if count]
+        return ", ".join(["gravity", *words] if gravity and any(self.gravity) else words)
+
     def breaks(self, *, turns: int) -> tuple[float, ...]:
         """Inputs [rad] in so many turns at which a load sets in, ends, or its table has a corner."""
         corners = [x for load in self.loads for x in (load.between or (load.table or ((),))[0])]
