@@ -69,10 +69,8 @@ def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> 
             Xml.SubElement(element, "axis", xyz=" ".join("1" if a == step.axis else "0" for a in range(3)))
             if step.freedom == "slide":
                 low, high = scale * np.nanmin(values), scale * np.nanmax(values)
-                Xml.SubElement(
-                    element, "limit", lower=_number(low), upper=_number(high),
-                    effort=_number(EFFORT), velocity=_number(VELOCITY),
-                )  # fmt: skip
+                limits = {"lower": low, "upper": high, "effort": EFFORT, "velocity": VELOCITY}
+                Xml.SubElement(element, "limit", {key: _number(value) for key, value in limits.items()})
             if step.driven:
                 Xml.SubElement(element, "mimic", joint=joint.name, multiplier=_number(scale * joint.advance))
             if last:

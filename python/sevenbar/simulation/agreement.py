@@ -168,24 +168,15 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
     linkage, circuit = course.motion.linkage, course.circuit
     bodies = _links(linkage, model, record, len(course.lead))
     values = joint_values(linkage, bodies)
-    theory = JointValues(
-        course.q,
-        circuit.dq[course.rows],
-        circuit.ddq[course.rows],
-        np.zeros_like(values.gap),
-        np.zeros_like(values.tilt),
-    )
+    closed = np.zeros_like(values.gap)
+    theory = JointValues(course.q, circuit.dq[course.rows], circuit.ddq[course.rows], closed, closed)
     _unwind(values, theory, linkage.turning)
     points = {}
     for point in linkage.points:
         place = placed(linkage.point_frames[point.link - 1], point.at)
         trace = circuit.point(point.link, point.at)
-        points[point.name] = (
-            PointValues(*bodies.point(point.link - 1, place)),
-            PointValues(
-                trace.position[course.rows], trace.velocity[course.rows], trace.acceleration[course.rows]
-            ),
-        )
+        own = (part[course.rows] for part in (trace.position, trace.velocity, trace.acceleration))
+        points[point.name] = PointValues(*bodies.point(point.link - 1, place)), PointValues(*own)
     returned = None
     if course.closes:
         ends = bodies.frames[[0, -1]]
@@ -204,18 +195,12 @@ def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> BodyS
     kept = [number for number, body in enumerate(model.bodies) if body.link]
     rows = len(record.time) - first
 
-    def with_ground(values: Floats, ground: Floats) -> Floats:
+    def with_ground(name: str) -> Floats:
+        ground = linkage.ground if name == "frames" else np.zeros(3)
         own = np.broadcast_to(ground, (rows, 1, *ground.shape))
-        return np.concatenate([values[first:, kept], own], axis=1)
+        return np.concatenate([getattr(record, name)[first:, kept], own], axis=1)
 
-    still = np.zeros(3)
-    return BodyStates(
-        with_ground(record.frames, linkage.ground),
-        with_ground(record.velocity, still),
-        with_ground(record.acceleration, still),
-        with_ground(record.spin, still),
-        with_ground(record.spin_rate, still),
-    )
+    return BodyStates(*map(with_ground, ("frames", "velocity", "acceleration", "spin", "spin_rate")))
 
 
 def _unwind(values: JointValues, theory: JointValues, turns: Booleans) -> None:
