@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.export.parts import Assembly, Ball, Bar, Seat, assemble, hub_height
+from sevenbar.export.parts import Assembly, Ball, Bar, Seat, Solid, assemble, hub_height
 from sevenbar.export.pose import Pose
 from sevenbar.kinematics.loop.joints import Shape
 
@@ -64,35 +64,28 @@ def _choices(shape: Shape) -> list[Seat]:
 def _overlap(assembly: Assembly) -> float:
     """The squared depth of all overlaps of unlike links [heights of a hub, summed over poses]."""
     pose, unit = assembly.pose, assembly.unit
-    count = len(pose.frames)
-    starts, ends, radii, bodies = [], [], [], []
-    for part in assembly.parts:
-        if part.body >= count:
-            continue
-        for solid in part.add:
-            if isinstance(solid, Ball):
-                first = last = solid.centre
-                radius = solid.radius
-            else:
-                first, last = solid.start, solid.end
-                radius = 0.6 * solid.width if isinstance(solid, Bar) else solid.radius
-            starts.append(first)
-            ends.append(last)
-            radii.append(radius)
-            bodies.append(part.body)
-    body = np.array(bodies)
+    solids = [(part.body, *_segment(s)) for part in assembly.parts for s in part.add]
+    kept = zip(*(solid for solid in solids if solid[0] < len(pose.frames)), strict=True)
+    body, starts, ends, radii = map(np.array, kept)
     one, two = np.triu_indices(len(body), 1)
     unlike = body[one] != body[two]
     one, two = one[unlike], two[unlike]
-    reach = (np.array(radii)[one] + np.array(radii)[two]) / unit
+    reach = (radii[one] + radii[two]) / unit
     total = 0.0
     for frames in (pose.frames, *pose.others):
         turn, shift = frames[body, :3, :3], frames[body, :3, 3]
-        a = np.einsum("kij,kj->ki", turn, np.array(starts)) + shift
-        b = np.einsum("kij,kj->ki", turn, np.array(ends)) + shift
+        a = np.einsum("kij,kj->ki", turn, starts) + shift
+        b = np.einsum("kij,kj->ki", turn, ends) + shift
         depth = np.maximum(reach - _distances(a[one], b[one], a[two], b[two]) / unit, 0.0)
         total += float((depth**2).sum())
     return total / (1 + len(pose.others))
+
+
+def _segment(solid: Solid) -> tuple[Floats, Floats, float]:
+    """The ends of the line of a solid, and its radius about it."""
+    if isinstance(solid, Ball):
+        return solid.centre, solid.centre, solid.radius
+    return solid.start, solid.end, 0.6 * solid.width if isinstance(solid, Bar) else solid.radius
 
 
 def _distances(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:

@@ -69,18 +69,15 @@ def write_mat(motion: Motion, path: Path, units: Units, _progress: Progress = si
     """Writes a MATLAB 5 file: `note` (JSON text), `columns` (cells), `circuits` (an array of structures)."""
     with of_extra("export", "mat needs scipy"):
         from scipy.io import savemat
-    records = []
+    records: list[dict[str, Any]] = []
     for circuit in motion.circuits:
-        arrays = circuit_arrays(motion, circuit, units)
-        record: dict[str, Any] = {"index": circuit.index, "motion_type": circuit.motion_type} | arrays
-        for name, values in arrays.items():
-            if values.ndim == 1:
-                # MATLAB's own way: time runs down
-                record[name] = _cells(values) if values.dtype.kind == "U" else values[:, None]
-        records.append(record)
+        records.append({"index": circuit.index, "motion_type": circuit.motion_type})
+        for name, values in circuit_arrays(motion, circuit, units).items():
+            # MATLAB's own way: time runs down
+            down = values if values.ndim > 1 else values[:, None]
+            records[-1][name] = _cells(values) if values.dtype.kind == "U" else down
     circuits = np.empty(len(records), dtype=[(name, object) for name in records[0]])
-    for i, record in enumerate(records):
-        circuits[i] = tuple(record.values())
+    circuits[:] = [tuple(record.values()) for record in records]
     content = {
         "note": json.dumps(note(motion, units)),
         "columns": _cells(np.array(motion.linkage.columns)),
@@ -91,19 +88,13 @@ def write_mat(motion: Motion, path: Path, units: Units, _progress: Progress = si
 
 def write_json(motion: Motion, path: Path, units: Units, _progress: Progress = silent) -> None:
     """Writes one JSON object: the note, and `circuits` with their rows; null stands for no value."""
-    whole = note(motion, units) | {
-        "circuits": [
-            {
-                "index": circuit.index,
-                "motion_type": circuit.motion_type,
-                "closed": circuit.closed,
-                "turns": circuit.turns,
-                "rows": len(circuit.time),
-            }
-            | {name: _plain(values) for name, values in circuit_arrays(motion, circuit, units).items()}
-            for circuit in motion.circuits
-        ]
-    }
+    circuits = []
+    for circuit in motion.circuits:
+        own = {name: getattr(circuit, name) for name in ("index", "motion_type", "closed", "turns")}
+        arrays = circuit_arrays(motion, circuit, units)
+        plain = {name: _plain(values) for name, values in arrays.items()}
+        circuits.append({**own, "rows": len(circuit.time), **plain})
+    whole = note(motion, units) | {"circuits": circuits}
     path.write_text(json.dumps(whole, allow_nan=False) + "\n", encoding="utf-8")
 
 
