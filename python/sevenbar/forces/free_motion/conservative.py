@@ -226,10 +226,10 @@ class _Seeker:
         marks = course.marks(laps)
         inside = marks[(way * (marks - place) > 1e-13 * course.length) & (way * (aim - marks) > 0)]
         ordered = np.append(inside[::way], aim)
-        if not course.closed and abs(ordered[-1] - aim) == 0:
+        if not course.closed:
             ordered = ordered[way * (ordered - place) > 0]
-            if not ordered.size:
-                return None
+        if not ordered.size:
+            return None
         kinetic = self.kinetic(ordered)
         scale = max(float(np.abs(kinetic).max()), self.reference[1])
         slopes = np.abs(course.slope(ordered))
