@@ -1,8 +1,6 @@
 """What Sevenbar returns are values: they are copied, pickled and sent to other processes, used or not."""
 
 import copy
-import importlib
-import inspect
 import math
 import multiprocessing
 import pickle
@@ -20,7 +18,6 @@ from sevenbar.description import gallery
 from sevenbar.description.draft import Draft
 from sevenbar.design.wish import wish_of_function
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.answers import ANSWERED_BY
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.law import Law
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
@@ -313,11 +310,3 @@ def test_a_design_s_wish_keeps_its_function_through_a_copy(again):
     readings = np.linspace(0, 1.5, 7)
     assert same(wish.function(readings), twin.function(readings))
     assert same(replace(wish, function=None), replace(twin, function=None))
-
-
-def test_what_answers_a_circuit_takes_its_linkage_and_the_circuit():
-    for module, name in ANSWERED_BY.values():
-        function = getattr(importlib.import_module(f"sevenbar.kinematics.{module}"), name)
-        first, second, *_ = inspect.signature(function).parameters
-        assert first in ("linkage", "loop"), name
-        assert second == "circuit", name

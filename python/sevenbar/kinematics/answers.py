@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,26 +18,15 @@ from sevenbar.kinematics.loop.geometry import Point
 
 # the engines are for those who ask
 if TYPE_CHECKING:
+    from sevenbar.forces.counterweights import Balance
+    from sevenbar.forces.free_motion.equilibria import Equilibrium
+    from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Loading
     from sevenbar.forces.result import Forces
+    from sevenbar.kinematics.circuits.circuit_values import Sensitivity
+    from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
     from sevenbar.kinematics.dynamics.forces import ForceSolver
-
-#: What answers most questions, a function of linkage and circuit: its module, imported when it is asked, and
-#: its name.
-ANSWERED_BY = {
-    "transmission_angle": ("transmission", "transmission_angle"),
-    "transmission": ("transmission", "transmission_extremes"),
-    "sensitivity": ("numbers.sensitivity", "sensitivity_of"),
-    "joint_ranges": ("ranges.circuit_extents", "joint_ranges"),
-    "ball_cones": ("ranges.circuit_extents", "ball_cones"),
-    "bends": ("ranges.circuit_extents", "bends"),
-    "clearances": ("ranges.circuit_extents", "clearances"),
-    "ball_cone": ("ranges.circuit_extents", "cone_of"),
-    "allowed": ("ranges.allowed", "allowed"),
-    "counterweights": ("dynamics.balance", "balance_of"),
-    "free_motion": ("dynamics.free", "free_motion_of"),
-    "equilibria": ("dynamics.free", "equilibria_of"),
-}
+    from sevenbar.kinematics.loop.stops import Cone
 
 #: A mechanical advantage, and the input [rad, or length] at which it is had.
 Place = tuple[float, float]
@@ -73,13 +60,6 @@ class LinkageAnswers:
         """Copied and pickled by the linkage."""
         return LinkageAnswers, (self.linkage,)
 
-    def __getattr__(self, question: str) -> Callable[..., Any]:
-        """What answers a question of `ANSWERED_BY` for a circuit."""
-        if question not in ANSWERED_BY:
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {question!r}")
-        module, name = ANSWERED_BY[question]
-        return partial(getattr(importlib.import_module(f"sevenbar.kinematics.{module}"), name), self.linkage)
-
     def point(self, name: str) -> Point:
         """A named point; `RequestError` where there is none of the name."""
         points = {point.name: point for point in self.linkage.points}
@@ -90,6 +70,18 @@ class LinkageAnswers:
             f"point: no point {shown(name)}; {suggestion(name, list(points))}{known}; "
             "or give a link and a place, as in point(2, at=(10, 0, 0))"
         )
+
+    def transmission_angle(self, circuit: Circuit) -> Floats | None:
+        """On each row (n,) [rad]; `None` where it is not defined."""
+        from sevenbar.kinematics.transmission import transmission_angle
+
+        return transmission_angle(self.linkage, circuit)
+
+    def transmission(self, circuit: Circuit) -> Extremes | None:
+        """The extremes of it [rad]; `None` where it is not defined."""
+        from sevenbar.kinematics.transmission import transmission_extremes
+
+        return transmission_extremes(self.linkage, circuit)
 
     def advantage(self, circuit: Circuit) -> Extremes | None:
         """The lowest and highest mechanical advantage; `None` where the output stands still on the way."""
@@ -151,9 +143,73 @@ class LinkageAnswers:
 
         return loading_with(self.linkage, **given)
 
+    def sensitivity(self, circuit: Circuit) -> Sensitivity:
+        """By every number of the description."""
+        from sevenbar.kinematics.numbers.sensitivity import sensitivity_of
+
+        return sensitivity_of(self.linkage, circuit)
+
+    def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
+        """Of every column but a ball's, by name."""
+        from sevenbar.kinematics.ranges.circuit_extents import joint_ranges
+
+        return joint_ranges(self.linkage, circuit)
+
+    def ball_cones(self, circuit: Circuit) -> Mapping[str, BallCone]:
+        """Of balls and universal joints, by name."""
+        from sevenbar.kinematics.ranges.circuit_extents import ball_cones
+
+        return ball_cones(self.linkage, circuit)
+
+    def ball_cone(self, circuit: Circuit, joint: str, given: Cone | None) -> BallCone:
+        """Of one, between directions that are given."""
+        from sevenbar.kinematics.ranges.circuit_extents import cone_of
+
+        return cone_of(self.linkage, circuit, joint, given)
+
+    def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
+        """Of balls and universal joints on the rows (n,) [rad], by name."""
+        from sevenbar.kinematics.ranges.circuit_extents import bends
+
+        return bends(self.linkage, circuit)
+
+    def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
+        """Of links that share no joint."""
+        from sevenbar.kinematics.ranges.circuit_extents import clearances
+
+        return clearances(self.linkage, circuit)
+
+    def allowed(self, circuit: Circuit) -> Allowed:
+        """What part of a circuit is within the stops."""
+        from sevenbar.kinematics.ranges.allowed import allowed
+
+        return allowed(self.linkage, circuit)
+
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) of the report frame in the plane of a planar loop (..., 2), `None` for others."""
         from sevenbar.kinematics.solvers.plane_and_sphere import plane_of
 
         plane = plane_of(self.linkage)
         return None if plane is None else plane.coordinates(places)
+
+    def counterweights(
+        self, circuit: Circuit, forces: Forces, links: Sequence[int], how: Mapping[str, Any]
+    ) -> Balance:
+        """On links, for the least shaking of these forces."""
+        from sevenbar.kinematics.dynamics.balance import balance_of
+
+        return balance_of(self.linkage, circuit, forces, links, how)
+
+    def free_motion(
+        self, circuit: Circuit, loading: Loading, duration: float | str, **how: Any
+    ) -> FreeMotion:
+        """How a circuit moves by itself."""
+        from sevenbar.kinematics.dynamics.free import free_motion_of
+
+        return free_motion_of(self.linkage, circuit, loading, duration, **how)
+
+    def equilibria(self, circuit: Circuit, loading: Loading, torque: float) -> tuple[Equilibrium, ...]:
+        """Where a circuit can rest."""
+        from sevenbar.kinematics.dynamics.free import equilibria_of
+
+        return equilibria_of(self.linkage, circuit, loading, torque)

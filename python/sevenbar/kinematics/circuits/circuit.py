@@ -1,15 +1,12 @@
 """One circuit: its rows, rates, extremes and dead centres, points and links along it."""
 
-# what a circuit asks its linkage is known by its question alone
-# mypy: disable-error-code="no-any-return"
-
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +14,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, Integers, Words, counted, triple, whole_number
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
-from sevenbar.kinematics.circuits.with_extents import WithExtents
+from sevenbar.kinematics.circuits.with_extents import ExtentAnswers, WithExtents
 from sevenbar.kinematics.loop.rigid import placed, pose
 from sevenbar.text.printing import Printed
 
@@ -28,13 +25,56 @@ if TYPE_CHECKING:
     from sevenbar.forces.counterweights import Balance
     from sevenbar.forces.free_motion.equilibria import Equilibrium
     from sevenbar.forces.free_motion.result import FreeMotion
+    from sevenbar.forces.loading import Loading
     from sevenbar.forces.result import Forces
     from sevenbar.kinematics.circuits.instant_centres import InstantCentres
     from sevenbar.kinematics.circuits.link_motion import LinkMotion
+    from sevenbar.kinematics.loop.geometry import Point
     from sevenbar.kinematics.loop.screw_axes import ScrewAxes, Twists
 
 #: An output that moves less than this compared with the input [rad, or relative to the size] rests.
 AT_REST = 1e-12
+
+
+class Answers(ExtentAnswers, Protocol):
+    """What a circuit asks its linkage when it is asked itself: each is its own question of that name."""
+
+    def point(self, name: str) -> Point:
+        """A named point; raises `RequestError` where there is none."""
+
+    def transmission_angle(self, circuit: Circuit) -> Floats | None:
+        """On each row (n,) [rad]."""
+
+    def transmission(self, circuit: Circuit) -> Extremes | None:
+        """The extremes of it [rad]."""
+
+    def advantage(self, circuit: Circuit) -> Extremes | None:
+        """The extremes of the mechanical advantage."""
+
+    def sensitivity(self, circuit: Circuit) -> Sensitivity:
+        """By every number of the description."""
+
+    def plane_coordinates(self, places: Floats) -> Floats | None:
+        """Places (..., 3) in the plane of a planar loop (..., 2), `None` for others."""
+
+    def loading(self, given: Mapping[str, Any]) -> Loading:
+        """What acts, with what is given in place of what the linkage has."""
+
+    def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
+        """On its rows, with what is given in place of what the linkage has."""
+
+    def counterweights(
+        self, circuit: Circuit, forces: Forces, links: Sequence[int], how: Mapping[str, Any]
+    ) -> Balance:
+        """On links, for the least shaking of these forces."""
+
+    def free_motion(
+        self, circuit: Circuit, loading: Loading, duration: float | str, **how: Any
+    ) -> FreeMotion:
+        """How it moves by itself."""
+
+    def equilibria(self, circuit: Circuit, loading: Loading, torque: float) -> tuple[Equilibrium, ...]:
+        """Where it can rest."""
 
 
 def _given(**acting: object) -> dict[str, object]:
@@ -96,8 +136,7 @@ class Circuit(Printed, WithExtents):
     speed: float
     _point: Callable[[int, Floats], Trace] = field(repr=False)
     _frames: Floats = field(repr=False)
-    #: What answers for its linkage, `LinkageAnswers`.
-    _answers: Any = field(repr=False)
+    _answers: Answers = field(repr=False)
     #: The extremes of the transmission angle where the closed form has them.
     _transmission: Extremes | None = field(repr=False)
 

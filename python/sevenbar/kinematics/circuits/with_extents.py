@@ -1,13 +1,10 @@
 """What a circuit is asked of how far it takes its joints, balls and links."""
 
-# what a circuit asks its linkage is known by its question alone
-# mypy: disable-error-code="no-any-return"
-
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import ends_here
@@ -17,12 +14,35 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
 
 
+class ExtentAnswers(Protocol):
+    """What a circuit asks its linkage of it."""
+
+    def joint_ranges(self, circuit: Any) -> Mapping[str, JointRange]:
+        """Of every column but a ball's."""
+
+    def ball_cones(self, circuit: Any) -> Mapping[str, BallCone]:
+        """Of balls and universal joints."""
+
+    def ball_cone(self, circuit: Any, joint: str, given: Cone | None) -> BallCone:
+        """Of one, between directions that are given."""
+
+    def bends(self, circuit: Any) -> Mapping[str, Floats]:
+        """Of each on its rows (n,) [rad]."""
+
+    def clearances(self, circuit: Any) -> tuple[Clearance, ...]:
+        """Of links that share no joint."""
+
+    def allowed(self, circuit: Any) -> Allowed:
+        """What is within the stops."""
+
+
 class WithExtents:
     """What a circuit says of how far it takes its joints and links: found exactly, where rates are zero."""
 
-    _answers: Any
-
     if TYPE_CHECKING:
+
+        @property
+        def _answers(self) -> ExtentAnswers: ...
 
         def fleeting(self) -> Any:
             """The circuit for one look at its rows."""
