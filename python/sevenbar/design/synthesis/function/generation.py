@@ -186,9 +186,7 @@ def _found(
     refused: list[tuple[float, Refusal]] = []
     by_transmission = wish.exact and wish.function is None
     key = (lambda c: -(c.transmission_lowest or 0.0)) if by_transmission else None
-    best: list[Candidate] = []
-    unfinished = ""
-    try:
+    with course.until_stopped(kept):
         # first the best of all; where starts end in one design, each with its own zero of the input
         for hold in (False, True):
             ends: list[Floats] = []
@@ -207,17 +205,11 @@ def _found(
                     else:
                         refused.append((error, result))
                 course.step(transmits_best(kept) if by_transmission else least_error(kept))
-            best = distinct(ranked(kept, key), scale_free=True, count=count)
-            if len(best) == count:
+            if len(distinct(ranked(kept, key), scale_free=True, count=count)) == count:
                 break
             if not hold:
                 course.longer(len(begun))
-        course.end()
-    except KeyboardInterrupt:
-        if not kept:
-            raise
-        best = distinct(ranked(kept, key), scale_free=True, count=count)
-        unfinished = course.unfinished
+    best = distinct(ranked(kept, key), scale_free=True, count=count)
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
     return Synthesis(
         wish.title,
@@ -228,7 +220,7 @@ def _found(
         len(begun),
         seed,
         wish,
-        unfinished,
+        course.unfinished,
     )
 
 

@@ -75,40 +75,45 @@ def starts(wish: Wish, seed: int) -> tuple[Floats, Floats]:
 
 def chosen(wish: Wish, limits: Limits, rows: Floats, zeros: Floats, most: int) -> list[Start]:
     """The most promising starts that differ: little error, limits nearly kept, all points on one branch."""
-    scored: list[tuple[float, Start]] = []
     used = wish.input
     if wish.function is None:
         used = np.linspace(wish.input[0], wish.input[-1], BETWEEN)
-    square = transmissions(rows, zeros[:, :1] + used)
-    ratio = np.abs(rows).max(axis=1) / rows[:, 2:5].min(axis=1)
-    missed = np.maximum(
-        math.sin(limits.transmission_lowest) - np.sqrt(np.maximum(square.min(axis=1), 0.0)), 0.0
-    )
-    missed = missed + 0.1 * np.maximum(np.log(ratio / limits.ratio), 0.0)
+    square = transmissions(rows, zeros[:, :1] + used).min(axis=1)
+    missed = limits_missed(limits, rows, square)
     if limits.motion_type in INPUT_TURNS:
         turn = np.linspace(0.0, math.tau, 36, endpoint=False)
         missed = missed + np.maximum(-transmissions(rows, turn).min(axis=1), 0.0)
+    inputs = np.concatenate([wish.input, wish.point_input])
+    wanted = np.concatenate([wish.output, wish.point_output])
+    scores: list[Floats] = []
+    found: list[Start] = []
     for branch in (0, 1):
-        inputs, wanted = (
-            np.concatenate(pair)
-            for pair in ((wish.input, wish.point_input), (wish.output, wish.point_output))
-        )
         off = short_way(outputs(rows, zeros[:, :1] + inputs, branch) - zeros[:, 1:] - wanted)
         count = wish.input.size
         at_points = np.abs(off[:, count:]).max(axis=1, initial=0.0)
-        rms = np.sqrt((off[:, :count] ** 2).mean(axis=1)) + missed
+        score = np.sqrt((off[:, :count] ** 2).mean(axis=1)) + missed
         if wish.exact and wish.function is None:
-            rms = rms + 1.0 - square.min(axis=1)
-        good = np.isfinite(off).all(axis=1) & (square.min(axis=1) > 0) & (at_points < ON_BRANCH)
-        scored += [(float(rms[i]), Start(rows[i], zeros[i], branch)) for i in np.flatnonzero(good)]
-    scored.sort(key=lambda pair: pair[0])
-    found: list[Start] = []
-    seen = np.empty((0, 8))
-    for _, point in scored:
-        own = np.concatenate([np.arctan(point.row), np.cos(point.zeros)])
-        if not len(seen) or np.abs(seen - own).max(axis=1).min() > START_APART:
-            found.append(point)
-            seen = np.concatenate([seen, own[None]])
-        if len(found) == most:
+            score = score + 1.0 - square
+        good = np.isfinite(off).all(axis=1) & (square > 0) & (at_points < ON_BRANCH)
+        scores.append(score[good])
+        found += [Start(row, own, branch) for row, own in zip(rows[good], zeros[good], strict=True)]
+    places = np.array([[*np.arctan(one.row), *np.cos(one.zeros)] for one in found])
+    return [found[i] for i in first_apart(np.concatenate(scores), places, START_APART, most)]
+
+
+def limits_missed(limits: Limits, rows: Floats, square: Floats) -> Floats:
+    """How far designs (n, 6), with these least squared sines of transmission (n,), are from limits."""
+    late = math.sin(limits.transmission_lowest) - np.sqrt(np.maximum(square, 0.0))
+    ratio = np.abs(rows).max(axis=1) / rows[:, 2:5].min(axis=1)
+    return np.asarray(np.maximum(late, 0.0) + 0.1 * np.maximum(np.log(ratio / limits.ratio), 0.0))
+
+
+def first_apart(scores: Floats, places: Floats, apart: float, most: int) -> list[int]:
+    """The numbers of the least scores (n,), so many at most, whose places (n, k) are so far apart."""
+    kept: list[int] = []
+    for i in np.argsort(scores, kind="stable"):
+        if len(kept) == most:
             break
-    return found
+        if (np.abs(places[kept] - places[i]).max(axis=1) > apart).all():
+            kept.append(int(i))
+    return kept

@@ -40,6 +40,7 @@ from sevenbar.design.survey.skew_closure import START, N
 from sevenbar.design.survey.task import SurveyTask, SwingWish, refuse_without_swing
 from sevenbar.design.synthesis.function.generation import USUAL, Synthesis, check_count
 from sevenbar.design.synthesis.function.precision import reflected
+from sevenbar.design.synthesis.function.starts import first_apart, limits_missed
 from sevenbar.text.progress import Progress, silent
 
 #: Designs of the global search, and inputs of a turn at which they are checked.
@@ -86,14 +87,13 @@ def swing_generation(
     refuse_without_swing(limits.motion_type)
     check_count(count)
     course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
-    chosen, searched = _chosen(want, limits, course.total - 1, seed)
+    begun = _begun(want, limits, course.total - 1, seed)
     course.step()
     kept: list[Candidate] = []
     refused: list[tuple[float, Refusal]] = []
-    unfinished = ""
     ends: list[Floats] = []
-    try:
-        for numbers, branch in chosen:
+    with course.until_stopped(kept):
+        for numbers, branch in begun:
             held = numbers[N] if _most_alike(ends) >= ENOUGH else None
             polished = Polish(_task(want, limits, held), numbers, branch, worth=WORTH).polished()
             ends.append(np.abs(polished[:6]) / np.abs(polished[:6]).max())
@@ -105,11 +105,6 @@ def swing_generation(
             else:
                 refused.append((far, result))
             course.step(transmits_best(kept))
-        course.end()
-    except KeyboardInterrupt:
-        if not kept:
-            raise
-        unfinished = course.unfinished
     order = ranked(kept, lambda c: -(c.transmission_lowest or 0.0))
     best = distinct(order, scale_free=True, mirrored=True, count=count)
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
@@ -118,10 +113,10 @@ def swing_generation(
         limits,
         tuple(renamed(best, want.title)),
         refusals,
-        searched,
-        len(chosen),
+        SEARCHED,
+        len(begun),
         seed,
-        unfinished=unfinished,
+        unfinished=course.unfinished,
     )
 
 
@@ -142,8 +137,8 @@ def _task(want: SwingWish, limits: Limits, held: float | None) -> SurveyTask:
     return SurveyTask(want, bounds, transmission_lowest=0.0, ratio=ratio ** (1 - MARGIN), rank="transmission")
 
 
-def _chosen(want: SwingWish, limits: Limits, most: int, seed: int) -> tuple[list[tuple[Floats, int]], int]:
-    """Crank-rockers of a Sobol sequence that are nearest to the wish and differ; how many were looked at.
+def _begun(want: SwingWish, limits: Limits, most: int, seed: int) -> list[tuple[Floats, int]]:
+    """Crank-rockers of a Sobol sequence that are nearest to the wish and differ.
 
     Each as the numbers (8,) of `skew_closure`, the input's start at its low end, and the branch.
     """
@@ -158,29 +153,22 @@ def _chosen(want: SwingWish, limits: Limits, most: int, seed: int) -> tuple[list
     inputs = np.linspace(0.0, math.tau, LOOKED_AT + 1)
     square = transmissions(rows, inputs).min(axis=1)
     rows, square = rows[square > MARGIN], square[square > MARGIN]
-    ratio = np.abs(rows).max(axis=1) / rows[:, 2:5].min(axis=1)
-    late = math.sin(limits.transmission_lowest) - np.sqrt(square)
-    missed = np.maximum(late, 0.0) + 0.1 * np.maximum(np.log(ratio / limits.ratio), 0.0)
-    scored: list[tuple[float, int, int, float]] = []
+    missed = limits_missed(limits, rows, square)
+    begun: list[tuple[Floats, int]] = []
+    far: list[Floats] = []
     for branch in (0, 1):
         angles = np.unwrap(outputs(rows, inputs, branch), axis=1)
-        low, high = angles.argmin(axis=1), angles.argmax(axis=1)
-        stroke = (inputs[high] - inputs[low]) % math.tau
+        low, high = inputs[angles.argmin(axis=1)], inputs[angles.argmax(axis=1)]
+        stroke = (high - low) % math.tau
         off = np.abs(np.maximum(stroke, math.tau - stroke) - want.slow) / 2
-        far = np.abs(np.ptp(angles, axis=1) - want.angle) + off + missed
         rocks = np.abs(angles[:, -1] - angles[:, 0]) < 1.0
-        scored += [(float(far[i]), int(i), branch, float(inputs[low[i]])) for i in np.flatnonzero(rocks)]
-    chosen: list[tuple[Floats, int]] = []
-    seen: list[Floats] = []
-    for _, i, branch, start in sorted(scored):
-        own = np.abs(np.arctan(rows[i]))
-        if any(np.abs(own - other).max() < START_APART for other in seen):
-            continue
-        seen.append(own)
-        chosen.append((np.array([*rows[i], math.pi / 2, start]), branch))
-        if len(chosen) == most:
-            break
-    return chosen, SEARCHED
+        far.append((np.abs(np.ptp(angles, axis=1) - want.angle) + off + missed)[rocks])
+        begun += [
+            (np.array([*row, math.pi / 2, start]), branch)
+            for row, start in zip(rows[rocks], low[rocks], strict=True)
+        ]
+    own = np.abs(np.arctan([numbers[:6] for numbers, _ in begun]))
+    return [begun[i] for i in first_apart(np.concatenate(far), own, START_APART, most)]
 
 
 def _judged(
