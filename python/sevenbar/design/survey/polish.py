@@ -30,7 +30,6 @@ from sevenbar.design.survey.skew_closure import (
     START,
     Poses,
     Values,
-    least_square,
     poses,
 )
 from sevenbar.design.survey.tally import Kept, SurveyTally
@@ -228,16 +227,14 @@ def draft_of(numbers: Floats, branch: int, sense: float, name: str) -> Draft:
     """A description of a linkage in the pose where its readings start: both joints are at zero there."""
     first = poses(numbers, np.zeros(1), branch)
     assert first is not None
-    lengths = numbers[:6] * scale_of(numbers)
-    m, n, l1, _, l3, d = lengths.tolist()
-    s, c = math.sin(numbers[ANGLE]), math.cos(numbers[ANGLE])
-    a, b = float(numbers[START]), float(first.output[0])
-    up, along = l3 * math.sin(b), l3 * math.cos(b)
+    m, n, l1, _, l3, d = (numbers[:6] * scale_of(numbers)).tolist()
+    crank, rocker, axis = first.crank_frame[0][0], first.rocker_frame[0][0], first.rocker_frame[2][0]
+    ground, hinge = np.array([0.0, 0.0, n]), m * axis + [0.0, d, 0.0]
     joints = [
-        {"name": "crank", "kind": "R", "at": [0.0, 0.0, n], "axis": [0.0, 0.0, 1.0]},
-        {"name": "A", "kind": "S", "at": [l1 * math.cos(a), l1 * math.sin(a), n]},
-        {"name": "B", "kind": "S", "at": [m * s - c * up, d + along, m * c + s * up]},
-        {"name": "rocker", "kind": "R", "at": [m * s, d, m * c], "axis": [sense * s, 0.0, sense * c]},
+        {"name": "crank", "kind": "R", "at": ground.tolist(), "axis": [0.0, 0.0, 1.0]},
+        {"name": "A", "kind": "S", "at": (ground + l1 * crank).tolist()},
+        {"name": "B", "kind": "S", "at": (hinge + l3 * rocker).tolist()},
+        {"name": "rocker", "kind": "R", "at": hinge.tolist(), "axis": (sense * axis + 0.0).tolist()},
     ]
     return Draft.made(name, "mm", drive={"joint": "crank", "output": "rocker"}, joint=joints)
 
@@ -257,7 +254,7 @@ def judged(task: SurveyTask, numbers: Floats, kept: Kept) -> Candidate | Refusal
     errors, reached = _errors(task, dense, angles)
     if flaw := _too_far(task, float(np.abs(errors).max())):
         return flaw
-    lowest = math.asin(math.sqrt(min(max(least_square(numbers, dense), 0.0), 1.0)))
+    lowest = math.asin(math.sqrt(min(float(found.square.min()), 1.0)))
     if lowest < task.transmission_lowest - ROUNDING:
         wish = math.degrees(task.transmission_lowest)
         return Refusal(

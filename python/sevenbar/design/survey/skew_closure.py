@@ -115,9 +115,3 @@ def _vectors(x: Values, y: Values | int, z: Values | int) -> Values:
 
 def _dot(a: Values, b: Values) -> Values:
     return np.asarray(np.einsum("...i,...i->...", a, b))
-
-
-def least_square(numbers: Floats, inputs: Floats) -> float:
-    """The least squared sine of the transmission angle at inputs (k,); negative out of reach."""
-    w = reach(numbers, inputs)[3]
-    return float(w.min() / (numbers[L2] * numbers[L3]) ** 2)

@@ -38,7 +38,6 @@ from sevenbar.design.task.solve import solved
 from sevenbar.design.task.task import DesignTask, FreeNumber, FunctionWant, Most
 from sevenbar.design.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.errors import RequestError
-from sevenbar.text.expression import function_of
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
 
@@ -154,18 +153,8 @@ def function_generation(
     else:
         if zeros is not None:
             raise RequestError("zeros: are chosen for a function; leave them out, or give pairs of angles")
-        title = name or (f"y = {function}" if isinstance(function, str) else "y(x)")
-        called = function_of(function) if isinstance(function, str) else function
-        assert called is not None
-        wish = wish_of_function(
-            called,
-            x_range,
-            input_range,
-            output_range,
-            points=precision,
-            title=title,
-            formula=function if isinstance(function, str) else None,
-        )
+        assert function is not None
+        wish = wish_of_function(function, x_range, input_range, output_range, points=precision, title=name)
     return _found(wish, limits, tolerance, count, seed, progress)
 
 
