@@ -79,7 +79,9 @@ def chosen(wish: Wish, limits: Limits, rows: Floats, zeros: Floats, most: int) -
     if wish.function is None:
         used = np.linspace(wish.input[0], wish.input[-1], BETWEEN)
     square = transmissions(rows, zeros[:, :1] + used).min(axis=1)
-    missed = limits_missed(limits, rows, square)
+    late = math.sin(limits.transmission_lowest) - np.sqrt(np.maximum(square, 0.0))
+    ratio = np.abs(rows).max(axis=1) / rows[:, 2:5].min(axis=1)
+    missed = np.maximum(late, 0.0) + 0.1 * np.maximum(np.log(ratio / limits.ratio), 0.0)
     if limits.motion_type in INPUT_TURNS:
         turn = np.linspace(0.0, math.tau, 36, endpoint=False)
         missed = missed + np.maximum(-transmissions(rows, turn).min(axis=1), 0.0)
@@ -98,22 +100,8 @@ def chosen(wish: Wish, limits: Limits, rows: Floats, zeros: Floats, most: int) -
         scores.append(score[good])
         found += [Start(row, own, branch) for row, own in zip(rows[good], zeros[good], strict=True)]
     places = np.array([[*np.arctan(one.row), *np.cos(one.zeros)] for one in found])
-    return [found[i] for i in first_apart(np.concatenate(scores), places, START_APART, most)]
-
-
-def limits_missed(limits: Limits, rows: Floats, square: Floats) -> Floats:
-    """How far designs (n, 6), with these least squared sines of transmission (n,), are from limits."""
-    late = math.sin(limits.transmission_lowest) - np.sqrt(np.maximum(square, 0.0))
-    ratio = np.abs(rows).max(axis=1) / rows[:, 2:5].min(axis=1)
-    return np.asarray(np.maximum(late, 0.0) + 0.1 * np.maximum(np.log(ratio / limits.ratio), 0.0))
-
-
-def first_apart(scores: Floats, places: Floats, apart: float, most: int) -> list[int]:
-    """The numbers of the least scores (n,), so many at most, whose places (n, k) are so far apart."""
     kept: list[int] = []
-    for i in np.argsort(scores, kind="stable"):
-        if len(kept) == most:
-            break
-        if (np.abs(places[kept] - places[i]).max(axis=1) > apart).all():
+    for i in np.argsort(np.concatenate(scores), kind="stable"):
+        if len(kept) < most and (np.abs(places[kept] - places[i]).max(axis=1) > START_APART).all():
             kept.append(int(i))
-    return kept
+    return [found[i] for i in kept]

@@ -1,6 +1,6 @@
 """Swing and time ratio: RSSR crank-rockers whose output rocks through an angle, slower one way than back.
 
-Of crank-rockers drawn in closed form those nearest to the wish are polished as the best of a survey are. With
+The crank-rockers of a survey that are nearest to the wish are polished as the best of every survey are. With
 G of `closure`, (1), the input u at the low end, the stroke s of the crank and the swing w
 
     G_alpha(u) = 0,      G_alpha(u + s) = 0,      beta(u + s) - beta(u) = w                               (1)
@@ -31,26 +31,26 @@ from sevenbar.design.candidates import (
     transmits_best,
     within_limits,
 )
-from sevenbar.design.closure import draft_of, outputs, scaled, transmissions
+from sevenbar.design.closure import draft_of, outputs, scaled
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import MARGIN, Limits
 from sevenbar.design.survey.polish import Polish, swung
 from sevenbar.design.survey.skew_closure import START, N
-from sevenbar.design.survey.task import SurveyTask, SwingWish, refuse_without_swing
+from sevenbar.design.survey.tally import SurveyTally
+from sevenbar.design.survey.task import SurveyTask, SwingWish, drawn_numbers, refuse_without_swing
 from sevenbar.design.synthesis.function.generation import USUAL, Synthesis, check_count
 from sevenbar.design.synthesis.function.precision import reflected
-from sevenbar.design.synthesis.function.starts import first_apart, limits_missed
 from sevenbar.text.progress import Progress, silent
 
-#: Designs of the global search, and inputs of a turn at which they are checked.
-SEARCHED, LOOKED_AT = 16384, 72
+#: Designs of the survey, and inputs of a turn at which one is checked.
+SEARCHED, LOOKED_AT = 131072, 72
+
+#: The angle between axes, as bounds [rad].
+SQUARE = math.pi / 2, math.pi / 2
 
 #: How many of them are refined for each design requested, and at least.
 FITTED_EACH, FITTED_LEAST = 4, 24
-
-#: Two starts are one where the arctangent of no ratio differs by more.
-START_APART = 0.12
 
 #: Of starts that end in one design so many are enough; those that follow keep their own N, so that designs
 #: differ.
@@ -128,8 +128,8 @@ def _most_alike(ends: list[Floats]) -> int:
 
 def _task(want: SwingWish, limits: Limits, held: float | None) -> SurveyTask:
     """The wish as polishing has it: axes at right angles, L3 = 1, the limits of the size; N may be `held`."""
-    ratio, square = limits.ratio, math.pi / 2
-    bounds = dict.fromkeys(("M", "N", "D"), (-ratio, ratio)) | {"angle": (square, square)}
+    ratio = limits.ratio
+    bounds = dict.fromkeys(("M", "N", "D"), (-ratio, ratio)) | {"angle": SQUARE}
     bounds |= dict.fromkeys(("L1", "L2"), (1 / ratio, ratio)) | {"L3": (1.0, 1.0)}
     if held is not None:
         bounds["N"] = held, held
@@ -138,37 +138,22 @@ def _task(want: SwingWish, limits: Limits, held: float | None) -> SurveyTask:
 
 
 def _begun(want: SwingWish, limits: Limits, most: int, seed: int) -> list[tuple[Floats, int]]:
-    """Crank-rockers of a Sobol sequence that are nearest to the wish and differ.
+    """The crank-rockers of a survey that are nearest to the wish, each of another part of the space.
 
     Each as the numbers (8,) of `skew_closure`, the input's start at its low end, and the branch.
     """
-    from scipy.stats import qmc
-
-    draws = qmc.Sobol(5, seed=seed).random(SEARCHED)
-    rows = np.ones((SEARCHED, 6))
-    # a point reflection makes M positive
-    rows[:, 0] = 4.0 * draws[:, 0]
-    rows[:, [1, 5]] = 8.0 * draws[:, 1:3] - 4.0
-    rows[:, [2, 3]] = 8.0 ** (2 * draws[:, 3:] - 1)
-    inputs = np.linspace(0.0, math.tau, LOOKED_AT + 1)
-    square = transmissions(rows, inputs).min(axis=1)
-    rows, square = rows[square > MARGIN], square[square > MARGIN]
-    missed = limits_missed(limits, rows, square)
-    begun: list[tuple[Floats, int]] = []
-    far: list[Floats] = []
-    for branch in (0, 1):
-        angles = np.unwrap(outputs(rows, inputs, branch), axis=1)
-        low, high = inputs[angles.argmin(axis=1)], inputs[angles.argmax(axis=1)]
-        stroke = (high - low) % math.tau
-        off = np.abs(np.maximum(stroke, math.tau - stroke) - want.slow) / 2
-        rocks = np.abs(angles[:, -1] - angles[:, 0]) < 1.0
-        far.append((np.abs(np.ptp(angles, axis=1) - want.angle) + off + missed)[rocks])
-        begun += [
-            (np.array([*row, math.pi / 2, start]), branch)
-            for row, start in zip(rows[rocks], low[rocks], strict=True)
-        ]
-    own = np.abs(np.arctan([numbers[:6] for numbers, _ in begun]))
-    return [begun[i] for i in first_apart(np.concatenate(far), own, START_APART, most)]
+    task = SurveyTask(
+        want,
+        {"angle": SQUARE},
+        SEARCHED,
+        seed,
+        tolerance=math.pi,
+        transmission_lowest=0.0,
+        ratio=limits.ratio,
+    )
+    best = SurveyTally.of(task.core().tally(0, SEARCHED)).best[:most]
+    rows = drawn_numbers(task, [kept.index for kept in best])
+    return [(np.append(row, kept.start), kept.branch) for row, kept in zip(rows, best, strict=True)]
 
 
 def _judged(
