@@ -10,8 +10,7 @@ from typing import Literal, TypeVar, cast
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.curve_table import read_curve
-from sevenbar.design.pose_table import read_poses
+from sevenbar.design.curve_table import read_curve, read_poses
 from sevenbar.design.task import task as kinds
 from sevenbar.design.task.file import schema
 from sevenbar.design.task.file.values import Given
