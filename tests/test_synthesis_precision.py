@@ -9,7 +9,7 @@ import sevenbar as sb
 from sevenbar.design.closure import NAMES, outputs
 from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.function.generation import function_generation
-from sevenbar.design.synthesis.function.precision import coefficients, system, through
+from sevenbar.design.synthesis.function.precision import system, through
 from sevenbar.design.wish import chebyshev
 
 #: A design with L3 = 1, the zeros of its dials, readings of its input.
@@ -25,6 +25,13 @@ def known_pairs(count):
     linkage = sb.rssr(**dict(zip(NAMES, 350.0 * KNOWN, strict=True)))
     readings = READINGS[:count]
     return readings, linkage.output(ZEROS[0] + readings).position[0] - ZEROS[1]
+
+
+def coefficients(row):
+    """k0 .. k4 (5,) of the closure (1) of a design (6,)."""
+    m, n, l1, l2, l3, d = row
+    k0 = (m * m + n * n + l1 * l1 + l3 * l3 + d * d - l2 * l2) / (2 * l1 * l3)
+    return np.array([k0, m / l3, d / l3, d / l1, n / l1])
 
 
 def misses(row, zeros, pairs):

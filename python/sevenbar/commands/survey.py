@@ -155,20 +155,13 @@ def survey(
 def _readings(y: str | None, x: str, table: Path | None, input_range: str, output_range: str) -> Wish:
     """The wish for a function or the pairs of a table."""
     from sevenbar.design.wish import read_pairs, wish_of_function, wish_of_pairs
-    from sevenbar.text.expression import function_of
 
     if table is not None:
         return wish_of_pairs(*read_pairs(table), title=f"pairs of {table.name}")
     assert y is not None
     options.refuse_degrees_twice(y, x)
-    return wish_of_function(
-        function_of(y),
-        numbers("--x", x),
-        angles("--input-range", input_range),
-        angles("--output-range", output_range),
-        title=f"y = {y}",
-        formula=y,
-    )
+    ends = angles("--input-range", input_range), angles("--output-range", output_range)
+    return wish_of_function(y, numbers("--x", x), *ends)
 
 
 def _bounds(given: list[str]) -> dict[str, tuple[float, float]]:

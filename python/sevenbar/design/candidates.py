@@ -183,12 +183,10 @@ def checked(
     lost = np.flatnonzero(ways.circuit < 0)
     if lost.size:
         return Refusal("assembly", f"point {lost[0] + 1} of {len(ways.circuit)} is reached by no circuit")
-    fault = one_way(ways.circuit, ways.branch)
-    if fault is not None:
+    if fault := one_way(ways.circuit, ways.branch):
         return fault
     circuit = motion.circuits[ways.circuit[0]]
-    fault = _in_order(circuit, ways.position)
-    if fault is not None:
+    if fault := _in_order(circuit, ways.position):
         return fault
     if claim.whole_turn:
         lowest = None if circuit.transmission is None else circuit.transmission.lowest
@@ -335,8 +333,7 @@ def within_limits(found: Candidate, limits: Limits) -> Candidate | Refusal:
         return Refusal(
             "transmission", f"transmission angle down to {angle:.4g} deg, {wanted:g} deg are required"
         )
-    fault = size_fault(found.draft, limits)
-    if fault is not None:
+    if fault := size_fault(found.draft, limits):
         return fault
     if limits.motion_type is not None and found.motion_type != limits.motion_type:
         return Refusal("motion type", f"is a {found.motion_type}, required is a {limits.motion_type}")

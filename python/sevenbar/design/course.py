@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sized
+from contextlib import contextmanager
+
 from sevenbar.text.progress import Progress, silent
 
 #: The remark about a search that Ctrl+C ended.
@@ -15,9 +18,14 @@ class SearchCourse:
     (0, 2, '')
     >>> course.step("best 0.1 deg")
     (1, 2, 'best 0.1 deg')
+    >>> with course.until_stopped(["a design"]):
+    ...     raise KeyboardInterrupt
     >>> course.unfinished
     'stopped after 1 of 2 steps; these are the best so far'
     """
+
+    #: The remark about a search that was stopped; empty for one that ended by itself.
+    unfinished = ""
 
     def __init__(self, total: int, progress: Progress = silent) -> None:
         self.total, self._progress = total, progress
@@ -44,7 +52,13 @@ class SearchCourse:
         """Reports where the search is."""
         self._progress(self.done, self.total, self._best)
 
-    @property
-    def unfinished(self) -> str:
-        """The remark about a search that ended here."""
-        return UNFINISHED.format(done=self.done, total=self.total)
+    @contextmanager
+    def until_stopped(self, kept: Sized, fewest: int = 1) -> Iterator[None]:
+        """Searches to the end, or until Ctrl+C, which is raised while fewer than `fewest` are kept."""
+        try:
+            yield
+            self.end()
+        except KeyboardInterrupt:
+            if len(kept) < fewest:
+                raise
+            self.unfinished = UNFINISHED.format(done=self.done, total=self.total)

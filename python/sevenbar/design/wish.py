@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import RequestError
-from sevenbar.text.expression import greatest_angle
+from sevenbar.text.expression import function_of, greatest_angle
 from sevenbar.text.table import read_table
 
 #: Points that determine a design with both zeros given, and with neither.
@@ -112,20 +112,22 @@ def chebyshev(low: float, high: float, count: int) -> Floats:
 
 
 def wish_of_function(
-    function: Callable[[Floats], Floats],
+    wanted: str | Callable[[Floats], Floats],
     x_range: tuple[float, float],
     input_range: tuple[float, float],
     output_range: tuple[float, float],
     *,
     points: int | None = None,
-    title: str = "y(x)",
-    formula: str | None = None,
+    title: str | None = None,
 ) -> Wish:
     """The wish for y(x): x goes over the input's range, y from its least to its greatest over the output's.
 
-    Ranges in radians. `points` precision points by Chebyshev's spacing, to be met exactly; none for the
-    least error over the range. `formula` is the function as it is written, for hints. Raises `RequestError`.
+    Ranges in radians. y is a function, or a formula as `function_of` takes it. `points` precision points by
+    Chebyshev's spacing, to be met exactly; none for the least error over the range. Raises `RequestError`.
     """
+    formula = wanted if isinstance(wanted, str) else None
+    function = function_of(wanted) if isinstance(wanted, str) else wanted
+    title = title or ("y(x)" if formula is None else f"y = {formula}")
     low, high = x_range
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise RequestError(f"x: {low:g}:{high:g} is no range; give two numbers that rise, as in 0:1")

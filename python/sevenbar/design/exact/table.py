@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.curve_table import TURNS, read_turns, rotations
 from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.bennett import bennett_poses
 from sevenbar.design.exact.cylinders import cc_dyads, rccc_poses
 from sevenbar.design.exact.function import function_pairs
 from sevenbar.design.exact.planar import planar_poses
 from sevenbar.design.exact.spherical import spherical_orientations
-from sevenbar.design.pose_table import TURNS, read_turns, rotations
 from sevenbar.design.wish import read_pairs
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.loop.rigid import pose

@@ -1,8 +1,7 @@
 """Searches by number: linkages drawn, each judged, the best polished; or what comes nearest."""
 
 from sevenbar.design.survey.loops import LoopSurvey
-from sevenbar.design.survey.result import SurveyResult
-from sevenbar.design.survey.run import survey
+from sevenbar.design.survey.run import SurveyResult, survey
 from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.survey.task import SurveyTask, SwingWish, Travel
 

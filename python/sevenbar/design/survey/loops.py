@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections import Counter
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import reduce
+from operator import add
 from typing import Any, get_args
 
 import numpy as np
@@ -19,7 +19,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.candidates import Fault, size_fault
 from sevenbar.design.survey.drawn import FORMAT, Drawn
-from sevenbar.design.survey.tally import BEST, Kept, SurveyTally
+from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.task.problem import TaskModel, TaskProblem
 from sevenbar.design.task.search import DesignsFound, designed
 from sevenbar.design.task.starts import seeds_at
@@ -75,39 +75,36 @@ class LoopSurvey(Drawn):
 
     def tally(self, part: int) -> SurveyTally:
         """The tally of a part."""
-        linkages = self.linkages(part)
-        model = TaskModel(self.task)
-        verdicts, types, limits = dict.fromkeys(VERDICTS, 0), Counter[str](), Counter[str]()
-        spreads: dict[str, list[float]] = {name: [] for name in STEPS}
-        best: dict[int, Kept] = {}
+        linkages, model = self.linkages(part), TaskModel(self.task)
+        rows = zip(linkages, self.values(linkages.start, linkages.stop), strict=True)
+        return reduce(add, (self._of_one(model, index, values) for index, values in rows))
+
+    def _of_one(self, model: TaskModel, index: int, values: Floats) -> SurveyTally:
+        """The tally of one linkage."""
+        motion = model.loop.motion(values)
+        verdict, kept = _judged(model, index, values)
+        best: tuple[Kept, ...] = ()
         nearest: dict[int, Kept] = {}
-        for index, values in zip(linkages, self.values(linkages.start, linkages.stop), strict=True):
-            motion = model.loop.motion(values)
-            verdict, kept = _judged(model, index, values)
-            verdicts[verdict] += 1
-            types["cannot-assemble" if motion is None else motion.motion_type] += 1
-            limits["0" if motion is None else str(len(motion.limits))] += 1
-            if motion is None or kept is None:
-                continue
+        measured: dict[str, float | None] = {}
+        if motion is not None and kept is not None:
             circuit = motion.circuits[kept.branch]
-            swing = circuit.swing if motion.linkage.turns(model.loop.linkage.drive.output) else None
-            measured = (kept.error, swing, circuit.time_ratio, kept.transmission)
-            for own, value in zip(spreads.values(), measured, strict=True):
-                if value is not None and math.isfinite(value):
-                    own.append(value)
-            place = self._cell(values)
-            if place not in best or kept.order < best[place].order:
-                best[place] = replace(kept, place=place)
-            number = VERDICTS.index(verdict)
-            if number and (number not in nearest or kept.order < nearest[number].order):
-                nearest[number] = replace(kept, place=number)
+            turns = motion.linkage.turns(model.loop.linkage.drive.output)
+            measured = {
+                "error": kept.error,
+                "swing": circuit.swing if turns else None,
+                "time_ratio": circuit.time_ratio,
+                "transmission": kept.transmission,
+            }
+            best = (replace(kept, place=self._cell(values)),)
+            if number := VERDICTS.index(verdict):
+                nearest = {number: replace(kept, place=number)}
         return SurveyTally(
-            verdicts,
-            dict(sorted(types.items())),
-            dict(sorted(limits.items())),
-            {name: (STEPS[name], _spread(own, STEPS[name])) for name, own in spreads.items()},
-            tuple(sorted(best.values(), key=lambda kept: kept.order)[:BEST]),
-            dict(sorted(nearest.items())),
+            {one: int(one == verdict) for one in VERDICTS},
+            {"cannot-assemble" if motion is None else motion.motion_type: 1},
+            {"0" if motion is None else str(len(motion.limits)): 1},
+            {name: (step, _spread(measured.get(name), step)) for name, step in STEPS.items()},
+            best,
+            nearest,
         )
 
     def _cell(self, values: Floats) -> int:
@@ -155,10 +152,10 @@ class LoopSurvey(Drawn):
             return DesignsFound(self.task, (), (), 0, "stopped before the first design")
 
 
-def _spread(values: Sequence[float], step: float) -> tuple[int, ...]:
-    """How many values lie in each cell."""
-    cells = np.minimum(np.array(values) / step, SPREAD - 1).astype(int)
-    return tuple(np.bincount(cells, minlength=SPREAD).tolist())
+def _spread(value: float | None, step: float) -> tuple[int, ...]:
+    """A one in the cell in which a value lies; none where there is no value."""
+    cell = int(min(value / step, SPREAD - 1)) if value is not None and math.isfinite(value) else None
+    return tuple(int(k == cell) for k in range(SPREAD))
 
 
 def _judged(model: TaskModel, index: int, values: Floats) -> tuple[str, Kept | None]:

@@ -10,6 +10,7 @@ whose new form fails the check, stays as it was drawn.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 
@@ -20,7 +21,17 @@ from sevenbar.curves.least_cone import half_angle
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Candidate, Claim, Refusal, checked, distinct, renamed
 from sevenbar.design.limits import Limits
-from sevenbar.design.survey.skew_closure import ANGLE, COUNT, START, Poses, least_square, poses
+from sevenbar.design.survey.skew_closure import (
+    ANGLE,
+    COUNT,
+    L1,
+    L2,
+    L3,
+    START,
+    Poses,
+    Values,
+    poses,
+)
 from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.survey.task import SurveyTask, SwingWish, Travel, drawn_numbers, scale_of
 from sevenbar.design.task.programs import MinimaxValues, lowered
@@ -54,6 +65,12 @@ POLISHED_EACH = 4
 #: The seats of both balls, three numbers each.
 SEATS = 6
 
+#: Each link with each other length, of which it must be so much of a part.
+LINKS, OTHERS = np.array([(link, other) for link in (L1, L2, L3) for other in range(6) if other != link]).T
+
+#: A step whose square is nothing: slopes by it are right to rounding.
+TINY = 1e-30
+
 
 class Polish:
     """A linkage of a survey as unknowns z: free numbers and start, the output's zero, both seats."""
@@ -74,7 +91,7 @@ class Polish:
         if isinstance(task.want, SwingWish):
             turn = np.arange(TURN) * math.tau / TURN
             stroke = self._stroke(turn)
-            self.inputs, self.wanted = np.sort(np.append(turn, stroke)), np.array([0.0, task.want.angle])
+            self.inputs = np.sort(np.append(turn, stroke))
             self.end = int(np.searchsorted(self.inputs, stroke))
 
     def _stroke(self, turn: Floats) -> float:
@@ -102,69 +119,72 @@ class Polish:
             parts += [seat / max(float(np.linalg.norm(seat)), 1e-9) for seat in seats]
         return np.concatenate(parts)
 
-    def unpacked(self, z: Floats) -> Floats:
-        """The numbers (8,) of unknowns."""
-        numbers = self.numbers.copy()
-        numbers[self.free] = z[: len(self.free)]
+    def unpacked(self, z: Values) -> Values:
+        """The numbers (.., 8) of unknowns (.., z)."""
+        numbers = np.broadcast_to(self.numbers, (*z.shape[:-1], COUNT)).astype(z.dtype)
+        numbers[..., self.free] = z[..., : len(self.free)]
         return numbers
 
-    def met(self, now: Poses, z: Floats) -> tuple[Floats, Floats]:
+    def met(self, z: Floats) -> tuple[Floats, ...] | None:
         """What is to be zero (m,) and its slopes (m, z): the travel, or the ends of a swing."""
-        low, high = 0, self.end
+        return _sloped(self._met, z)
+
+    def _met(self, z: Values) -> tuple[Values] | None:
+        now = poses(self.unpacked(z), self.inputs[: self.end + 1], self.branch)
+        return None if now is None else (self._off(now),)
+
+    def _off(self, now: Poses) -> Values:
+        """What is to be zero (.., m) at poses."""
+        output = now.output[..., self.end] - now.output[..., 0]
         if isinstance(self.task.want, Travel):
-            off = self.sense * (now.output[high] - now.output[low]) - self.wanted[-1]
-            slopes = self.sense * (now.output_slopes[high] - now.output_slopes[low])
-            return np.array([off]), self._wide(slopes[None], z)
+            return np.asarray(self.sense * output - self.wanted[-1])[..., None]
         if isinstance(self.task.want, SwingWish):
-            off = np.append(now.still[[low, high]], now.output[high] - now.output[low] - self.wanted[1])
-            slopes = np.vstack(
-                [now.still_slopes[[low, high]], now.output_slopes[high] - now.output_slopes[low]]
-            )
-            return off, self._wide(slopes, z)
-        return np.zeros(0), np.zeros((0, len(z)))
+            ends = now.still[..., 0], now.still[..., self.end], output - self.task.want.angle
+            return np.stack(ends, axis=-1)
+        return now.output[..., :0]
 
     def values(self, z: Floats) -> MinimaxValues | None:
         """What is to be made low and what must not be negative; `None` out of reach."""
-        numbers = self.unpacked(z)
-        if not (numbers[2:5] > 0).all():
-            return None
-        now = poses(numbers, self.inputs, self.branch)
+        found = _sloped(self._values, z)
+        return None if found is None else MinimaxValues(*found)
+
+    def _values(self, z: Values) -> tuple[Values, Values] | None:
+        """Heights (.., h) and rooms (.., r) of unknowns (.., z)."""
+        numbers, task = self.unpacked(z), self.task
+        now = poses(numbers, self.inputs, self.branch) if (numbers[..., LINKS].real > 0).all() else None
         if now is None:
             return None
-        task = self.task
-        floor = math.sin(task.transmission_lowest) ** 2
-        rooms, slopes = [now.square - max(floor, MARGIN) - MARGIN], [self._wide(now.square_slopes, z)]
-        heights = 1.0 - now.square, -self._wide(now.square_slopes, z)
+        heights = {"transmission": 1.0 - now.square}
+        rooms = [now.square - max(math.sin(task.transmission_lowest) ** 2, MARGIN) - MARGIN]
         if self.balls:
-            cosines, by = self._cosines(now, z)
-            limit = math.cos(task.ball_angle) if task.ball_angle < math.pi else -1.0
+            cosines = self._cosines(now, z)
+            heights["ball angle"] = 1.0 - cosines
+            limit = math.cos(task.ball_angle)
             rooms.append(cosines - limit - (MARGIN if limit > -1 else 0.0))
-            slopes.append(by)
-            if task.rank == "ball angle":
-                heights = 1.0 - cosines, -by
         if not self.exactly:
-            off = self.sense * now.output - self.wanted - z[len(self.free)]
-            by = self._wide(self.sense * now.output_slopes, z)
-            by[:, len(self.free)] = -1.0
-            both = np.concatenate([off, -off]), np.concatenate([by, -by])
-            if task.rank == "error":
-                heights = both
-            else:
-                rooms.append(task.tolerance * (1 - MARGIN) - both[0])
-                slopes.append(-both[1])
+            off = self.sense * now.output - self.wanted - z[..., len(self.free), None]
+            heights["error"] = np.concatenate([off, -off], axis=-1)
+            if task.rank != "error":
+                rooms.append(task.tolerance * (1 - MARGIN) - heights["error"])
         if isinstance(task.want, Travel):
             way = self.sense * math.copysign(1.0, task.want.output)
             least = STEADY * abs(task.want.output) / len(self.inputs)
             rooms.append(way * np.diff(now.output) - least)
-            slopes.append(self._wide(way * np.diff(now.output_slopes, axis=0), z))
-        off, by = self.met(now, z)
-        own = z[: len(self.free)]
-        low, high = np.isfinite(self.low), np.isfinite(self.high)
-        eye = np.eye(len(self.free), len(z))
-        size, size_slopes = self._size(numbers, z)
-        rooms += [off, -off, (own - self.low)[low], (self.high - own)[high], size]
-        slopes += [by, -by, eye[low], -eye[high], size_slopes]
-        return MinimaxValues(*heights, np.concatenate(rooms), np.concatenate(slopes))
+        off = self._off(now)
+        own, low, high = z[..., : len(self.free)], np.isfinite(self.low), np.isfinite(self.high)
+        rooms += [off, -off, (own - self.low)[..., low], (self.high - own)[..., high]]
+        # the ratio of lengths
+        others = numbers[..., OTHERS]
+        rooms.append(numbers[..., LINKS] - others * np.copysign(1.0, others.real) / task.ratio)
+        return heights.get(task.rank, heights["transmission"]), np.concatenate(rooms, axis=-1)
+
+    def _cosines(self, now: Poses, z: Values) -> Values:
+        """The cosines (.., 2k) of both balls' angles from their seats."""
+        found = []
+        for direction, seat in ((now.crank, z[..., -SEATS:-3]), (now.rocker, z[..., -3:])):
+            size = np.sqrt((seat**2).sum(axis=-1, keepdims=True))
+            found.append((direction * (seat / size)[..., None, :]).sum(axis=-1))
+        return np.concatenate(found, axis=-1)
 
     def exact(self, z: Floats) -> Floats:
         """The unknowns near by that meet the travel or the swing to rounding, by Newton's shortest steps.
@@ -174,10 +194,10 @@ class Polish:
         own, near = slice(0, len(self.free)), z.copy()
         for _ in range(MOST_NEWTON if self.exactly else 0):
             near[own] = np.clip(near[own], self.low, self.high)
-            now = poses(self.unpacked(near), self.inputs[: self.end + 1], self.branch)
-            if now is None:
+            met = self.met(near)
+            if met is None:
                 break
-            off, slopes = self.met(now, near)
+            off, slopes = met
             if np.abs(off).max() < MET:
                 return near
             # what is at a bound stays there
@@ -194,57 +214,27 @@ class Polish:
         mended = self.exact if isinstance(self.task.want, SwingWish) else np.copy
         return self.unpacked(self.exact(lowered(self.values, z, worth=self.worth, mended=mended)))
 
-    def _wide(self, slopes: Floats, z: Floats) -> Floats:
-        """Slopes by the unknowns (.., z), of those by the numbers (.., 8)."""
-        wide = np.zeros((*slopes.shape[:-1], len(z)))
-        wide[..., : len(self.free)] = slopes[..., self.free]
-        return wide
 
-    def _cosines(self, now: Poses, z: Floats) -> tuple[Floats, Floats]:
-        """The cosines of both balls' angles from their seats (2k,), and their slopes (2k, z)."""
-        values, slopes = [], []
-        first = len(z) - SEATS
-        for ball, (direction, by) in enumerate(
-            ((now.crank, now.crank_slopes), (now.rocker, now.rocker_slopes))
-        ):
-            place = slice(first + 3 * ball, first + 3 * ball + 3)
-            size = float(np.linalg.norm(z[place]))
-            seat = z[place] / size
-            cosine = direction @ seat
-            wide = self._wide(np.einsum("kjp,j->kp", by, seat), z)
-            wide[:, place] = (direction - cosine[:, None] * seat) / size
-            values.append(cosine)
-            slopes.append(wide)
-        return np.concatenate(values), np.concatenate(slopes)
-
-    def _size(self, numbers: Floats, z: Floats) -> tuple[Floats, Floats]:
-        """The room of the ratio of lengths: ratio times each link less each length, and slopes."""
-        values, slopes = [], []
-        for link in (2, 3, 4):
-            for other in range(6):
-                if other == link:
-                    continue
-                slope = np.zeros(COUNT)
-                slope[link], slope[other] = 1.0, -math.copysign(1.0, numbers[other]) / self.task.ratio
-                values.append(numbers[link] - abs(numbers[other]) / self.task.ratio)
-                slopes.append(slope)
-        return np.array(values), self._wide(np.array(slopes), z)
+def _sloped(function: Callable[[Values], tuple[Values, ...] | None], z: Floats) -> tuple[Floats, ...] | None:
+    """Each of the values (r,) of a function of unknowns, and its slopes (r, z), by a tiny complex step."""
+    found = function(z + 1j * TINY * np.eye(len(z)))
+    if found is None:
+        return None
+    return tuple(own for values in found for own in (values[0].real, values.imag.T / TINY))
 
 
 def draft_of(numbers: Floats, branch: int, sense: float, name: str) -> Draft:
     """A description of a linkage in the pose where its readings start: both joints are at zero there."""
     first = poses(numbers, np.zeros(1), branch)
     assert first is not None
-    lengths = numbers[:6] * scale_of(numbers)
-    m, n, l1, _, l3, d = lengths.tolist()
-    s, c = math.sin(numbers[ANGLE]), math.cos(numbers[ANGLE])
-    a, b = float(numbers[START]), float(first.output[0])
-    up, along = l3 * math.sin(b), l3 * math.cos(b)
+    m, n, l1, _, l3, d = (numbers[:6] * scale_of(numbers)).tolist()
+    crank, rocker, axis = first.crank_frame[0][0], first.rocker_frame[0][0], first.rocker_frame[2][0]
+    ground, hinge = np.array([0.0, 0.0, n]), m * axis + [0.0, d, 0.0]
     joints = [
-        {"name": "crank", "kind": "R", "at": [0.0, 0.0, n], "axis": [0.0, 0.0, 1.0]},
-        {"name": "A", "kind": "S", "at": [l1 * math.cos(a), l1 * math.sin(a), n]},
-        {"name": "B", "kind": "S", "at": [m * s - c * up, d + along, m * c + s * up]},
-        {"name": "rocker", "kind": "R", "at": [m * s, d, m * c], "axis": [sense * s, 0.0, sense * c]},
+        {"name": "crank", "kind": "R", "at": ground.tolist(), "axis": [0.0, 0.0, 1.0]},
+        {"name": "A", "kind": "S", "at": (ground + l1 * crank).tolist()},
+        {"name": "B", "kind": "S", "at": (hinge + l3 * rocker).tolist()},
+        {"name": "rocker", "kind": "R", "at": hinge.tolist(), "axis": (sense * axis + 0.0).tolist()},
     ]
     return Draft.made(name, "mm", drive={"joint": "crank", "output": "rocker"}, joint=joints)
 
@@ -264,7 +254,7 @@ def judged(task: SurveyTask, numbers: Floats, kept: Kept) -> Candidate | Refusal
     errors, reached = _errors(task, dense, angles)
     if flaw := _too_far(task, float(np.abs(errors).max())):
         return flaw
-    lowest = math.asin(math.sqrt(min(max(least_square(numbers, dense), 0.0), 1.0)))
+    lowest = math.asin(math.sqrt(min(float(found.square.min()), 1.0)))
     if lowest < task.transmission_lowest - ROUNDING:
         wish = math.degrees(task.transmission_lowest)
         return Refusal(

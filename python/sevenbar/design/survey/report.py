@@ -11,7 +11,7 @@ from rich.console import RenderableType
 
 from sevenbar.design.candidates import tally
 from sevenbar.design.files import design_files
-from sevenbar.design.survey.result import SurveyResult
+from sevenbar.design.survey.run import SurveyResult
 from sevenbar.design.survey.task import SurveyTask
 from sevenbar.design.tables import columns_table, plain_designs
 from sevenbar.design.task.report import TaskDesigns
@@ -46,16 +46,9 @@ def text(count: int, found: SurveyResult) -> RenderableType:
     facts = Facts()
     facts.add("wanted", retold(found.task.want.title), "bold")
     facts.add("must hold", retold_parts(found.task.text(), "; "))
-    bounds = found.task.request()["bounds"]
-    facts.add(
-        "drawn",
-        ", ".join(
-            f"{name} {low:g}" if low == high else f"{name} {low:g}..{high:g}"
-            for name, (low, high) in bounds.items()
-            if name != "angle"
-        ),
-    )
-    facts.add("axes", retold(_axes(found.task)))
+    ends = {name: _ends(*pair) for name, pair in found.task.table.items()}
+    facts.add("drawn", ", ".join(f"{name} {both}" for name, both in ends.items() if name != "angle"))
+    facts.add("axes", retold(f"at {_ends(*map(math.degrees, found.task.table['angle']))} deg"))
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
     for label, words in tally_facts(found):
@@ -117,9 +110,8 @@ def _spoken(words: str) -> str:
     return f"{say(before)}{say(': ')}{retold_parts(after, ': ')}" if colon else retold(words)
 
 
-def _axes(task: SurveyTask) -> str:
-    low, high = map(math.degrees, task.table["angle"])
-    return f"at {low:g} deg" if low == high else f"at {low:g}..{high:g} deg"
+def _ends(low: float, high: float) -> str:
+    return f"{low:g}" if low == high else f"{low:g}..{high:g}"
 
 
 def _head(command: str, found: SurveyResult) -> list[str]:

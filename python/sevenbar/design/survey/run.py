@@ -1,4 +1,7 @@
-"""Runs a survey: parts on the threads of this machine or on a cluster; then the best are polished."""
+"""Runs a survey: parts on the threads of this machine or on a cluster; then the best are polished.
+
+The answer has the designs, why others were refused, and what came nearest where there is none.
+"""
 
 from __future__ import annotations
 
@@ -7,22 +10,25 @@ import math
 import os
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
+from dataclasses import dataclass
 from functools import partial, reduce
 from operator import add
 from pathlib import Path
 
+from sevenbar.design.candidates import Candidate, Refusal
 from sevenbar.design.extra import need_scipy
 from sevenbar.design.survey.drawn import Drawn
 from sevenbar.design.survey.journal import Journal
 from sevenbar.design.survey.loops import LoopSurvey
 from sevenbar.design.survey.polish import designs
-from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.tally import BEST, SurveyTally
 from sevenbar.design.survey.task import SurveyTask
+from sevenbar.design.task.search import DesignsFound
 from sevenbar.errors import RequestError
 from sevenbar.sweep.held_folder import refuse_unlike
 from sevenbar.sweep.plan import maker
 from sevenbar.sweep.run import Made, made_by_processes, made_on_threads, thread_count
+from sevenbar.text.printing import Printed, lines, text_of
 from sevenbar.text.progress import Progress, silent
 
 #: The remark about a survey that Ctrl+C ended.
@@ -30,6 +36,50 @@ UNFINISHED = "stopped after {done} of {total} linkages; these are the best so fa
 
 #: Makes parts and gives each when it is finished.
 Making = Callable[[Iterable[int]], Generator[Made, None, None]]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SurveyResult(Printed):
+    """The answer of a survey: designs polished and checked, best first, and the tally of all linkages.
+
+    `refusals` say why others of the best were no designs after all; `polished` were made better.
+    """
+
+    task: SurveyTask | LoopSurvey
+    tally: SurveyTally
+    candidates: tuple[Candidate, ...]
+    refusals: tuple[Refusal, ...]
+    polished: int
+    #: The remark about a survey that was stopped; empty for one that ended by itself.
+    unfinished: str = ""
+    #: Of a design task: what the search that began with the best hundred found.
+    found: DesignsFound | None = None
+
+    @property
+    def nearest(self) -> dict[str, str]:
+        """By verdict, what came nearest to pass it: its figures and its numbers."""
+        verdicts = self.task.verdicts
+        return {verdicts[k]: self.task.words_of(verdicts[k], kept) for k, kept in self.tally.nearest.items()}
+
+    @property
+    def answer(self) -> str:
+        """The answer in one sentence."""
+        count = f"{self.tally.count:,}".replace(",", " ")
+        if self.tally.found:
+            return f"{self.tally.found} of {count} do it"
+        return f"none of {count} does it"
+
+
+@text_of.register(SurveyResult)
+def _(found: SurveyResult) -> str:
+    return lines(
+        found.task.heading,
+        [
+            ("answer", found.answer),
+            ("designs", str(len(found.candidates))),
+            ("unfinished", found.unfinished),
+        ],
+    )
 
 
 def part_line(task: Drawn, part: int) -> bytes:
@@ -133,6 +183,5 @@ def _best(task: SurveyTask | LoopSurvey, tally: SurveyTally | None) -> str:
     if isinstance(task, LoopSurvey):
         return f"{tally.found} fit, nearest: {tally.best[0].figure:.3g}"
     figure = math.degrees(abs(tally.best[0].figure))
-    name = "error" if task.rank == "error" else "transmission angle"
-    name = "ball angle" if task.rank == "ball angle" else name
+    name = task.rank.replace("transmission", "transmission angle")
     return f"{tally.found} fit, best: {name} {figure:.3g} deg"

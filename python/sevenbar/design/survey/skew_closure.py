@@ -6,6 +6,7 @@ With A and B the balls and v = B - A, both at an input a and the output b, the c
 
 and every other quantity q(p, b) follows the numbers p by q_p + q_b b_p. The sine of the transmission angle is
 |G_b| / (L2 L3). Numbers are M, N, L1, L2, L3, D, the angle between the axes and the start of the input (8,).
+Slopes are imaginary parts: of numbers that differ by a tiny imaginary step, so does every quantity.
 
 Source: docs/theory_many.md, (21) and (23).
 """
@@ -13,6 +14,7 @@ Source: docs/theory_many.md, (21) and (23).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -24,26 +26,42 @@ COUNT = 8
 #: Places of the numbers.
 M, N, L1, L2, L3, D, ANGLE, START = range(COUNT)
 
+#: Numbers or what follows from them: real, or complex by a tiny step.
+Values = np.ndarray[Any, Any]
+
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """The poses of a linkage at inputs (k,) from its start on, each quantity with its slopes (.., 8).
+    """The poses of a linkage at inputs (k,) from its start on.
 
-    `output` (k,) [rad] on a branch, continued; `square` (k,): squared sine of the transmission angle;
-    `crank`, `rocker` (k, 3): the coupler's direction from either ball in that of its side link, outwards,
-    the way the ball moves, along the axis; `still` (k,): G_a / (L1 L2), zero where the output turns back.
+    `output` (.., k) [rad] on a branch, continued; `coupler` (.., k, 3): its direction from A to B. The frames
+    of the side links: their direction outwards, the way their ball moves, their axis (.., k, 3).
     """
 
-    output: Floats
-    output_slopes: Floats
-    square: Floats
-    square_slopes: Floats
-    crank: Floats
-    crank_slopes: Floats
-    rocker: Floats
-    rocker_slopes: Floats
-    still: Floats
-    still_slopes: Floats
+    output: Values
+    coupler: Values
+    crank_frame: tuple[Values, Values, Values]
+    rocker_frame: tuple[Values, Values, Values]
+
+    @property
+    def square(self) -> Values:
+        """The squared sine of the transmission angle (.., k)."""
+        return _dot(self.coupler, self.rocker_frame[1]) ** 2
+
+    @property
+    def still(self) -> Values:
+        """G_a / (L1 L2) (.., k), zero where the output turns back."""
+        return -_dot(self.coupler, self.crank_frame[1])
+
+    @property
+    def crank(self) -> Values:
+        """The coupler's direction from A in the crank's frame (.., k, 3)."""
+        return np.stack([_dot(self.coupler, way) for way in self.crank_frame], axis=-1)
+
+    @property
+    def rocker(self) -> Values:
+        """The coupler's direction from B in the rocker's frame (.., k, 3)."""
+        return -np.stack([_dot(self.coupler, way) for way in self.rocker_frame], axis=-1)
 
 
 def reach(numbers: Floats, inputs: Floats) -> tuple[Floats, Floats, Floats, Floats]:
@@ -58,79 +76,42 @@ def reach(numbers: Floats, inputs: Floats) -> tuple[Floats, Floats, Floats, Floa
     return e, f, k, numbers[L3] ** 2 * (e * e + f * f) - k * k
 
 
-def poses(numbers: Floats, inputs: Floats, branch: int) -> Poses | None:
-    """The poses at inputs (k,) [rad] from the start on; `None` where one is out of reach."""
-    e, f, k, w = reach(numbers, inputs)
+def poses(numbers: Values, inputs: Floats, branch: int) -> Poses | None:
+    """The poses at inputs (k,) [rad] from the start on; `None` where one is out of reach.
+
+    Of numbers (8,), or of rows of them (.., 8) that are complex by tiny steps from one linkage.
+    """
+    e, f, k, w = reach(numbers.reshape(-1, COUNT)[0].real, inputs)
     if not (w > 0).all():
         return None
     spread = np.arctan2(np.sqrt(w), k)
-    b = np.unwrap(np.arctan2(f, e) + (spread if branch else -spread))
-    count = len(inputs)
-    s, c = np.sin(numbers[ANGLE]), np.cos(numbers[ANGLE])
-    sa, ca = np.sin(numbers[START] + inputs), np.cos(numbers[START] + inputs)
-    sb, cb = np.sin(b), np.cos(b)
-    zero = np.zeros(count)
-    axis = np.array([s, 0.0, c])
+    b: Values = np.unwrap(np.arctan2(f, e) + (spread if branch else -spread))
+    m, n, l1, l2, l3, d, angle, start = np.moveaxis(numbers, -1, 0)[..., None]
     # up and y span the rocker's plane; with the angle between the axes up turns into the axis, that into -up
-    up, y = np.array([-c, 0.0, s]), np.array([0.0, 1.0, 0.0])
-    out = np.column_stack([ca, sa, zero])
-    ahead = np.column_stack([-sa, ca, zero])
-    out_b = cb[:, None] * y + sb[:, None] * up
-    ahead_b = -sb[:, None] * y + cb[:, None] * up
-    l1, l2, l3 = numbers[[L1, L2, L3]]
-    tip = numbers[M] * axis + numbers[D] * y + l3 * out_b
-    v = tip - l1 * out - numbers[N] * np.array([0.0, 0.0, 1.0])
+    axis, up = _vectors(np.sin(angle), 0, np.cos(angle)), _vectors(-np.cos(angle), 0, np.sin(angle))
+    y, z = np.eye(3)[1:]
+    cosine, sine = np.cos(start + inputs), np.sin(start + inputs)
+    out, ahead = _vectors(cosine, sine, 0), _vectors(-sine, cosine, 0)
+    ground = m[..., None] * axis + d[..., None] * y - n[..., None] * z - l1[..., None] * out
 
-    by = np.zeros((count, COUNT, 3))
-    by[:, M], by[:, D] = axis, y
-    by[:, N] = [0.0, 0.0, -1.0]
-    by[:, L1], by[:, L3] = -out, out_b
-    by[:, ANGLE] = -numbers[M] * up + l3 * sb[:, None] * axis
-    by[:, START] = -l1 * ahead
-    by_b = l3 * ahead_b
-    g = np.einsum("kpi,ki->kp", by, v)
-    g[:, L2] -= l2
-    g_b = np.einsum("ki,ki->k", v, by_b)
-    slopes = -g / g_b[:, None]
-    v_p = by + by_b[:, None] * slopes[..., None]
+    def rocker(b: Values) -> tuple[Values, Values, Values]:
+        """The rocker's direction, the way B moves, and v (.., k, 3)."""
+        cosine, sine = np.cos(b)[..., None], np.sin(b)[..., None]
+        out_b = cosine * y + sine * up
+        return out_b, cosine * up - sine * y, ground + l3[..., None] * out_b
 
-    # how the rocker's frame turns with the numbers: by the output, and by the angle between the axes
-    out_p = ahead_b[:, None] * slopes[..., None]
-    ahead_p = -out_b[:, None] * slopes[..., None]
-    out_p[:, ANGLE] += sb[:, None] * axis
-    ahead_p[:, ANGLE] += cb[:, None] * axis
-    axis_p = np.zeros((COUNT, 3))
-    axis_p[ANGLE] = -up
-
-    size = l2 * l3
-    sine = g_b / size
-    sine_p = (np.einsum("kpi,ki->kp", v_p, by_b) + l3 * np.einsum("ki,kpi->kp", v, ahead_p)) / size
-    sine_p[:, L2] -= sine / l2
-
-    frame = np.stack([out, ahead, np.tile([0.0, 0.0, 1.0], (count, 1))], axis=1)
-    crank = np.einsum("kji,ki->kj", frame, v) / l2
-    crank_p = np.einsum("kji,kpi->kjp", frame, v_p) / l2
-    # the crank's frame turns with the start
-    crank_p[:, 0, START] += crank[:, 1]
-    crank_p[:, 1, START] -= crank[:, 0]
-    crank_p[..., L2] -= crank / l2
-
-    frame_b = np.stack([out_b, ahead_b, np.tile(axis, (count, 1))], axis=1)
-    frame_p = np.stack([out_p, ahead_p, np.broadcast_to(axis_p, (count, COUNT, 3))], axis=1)
-    rocker = -np.einsum("kji,ki->kj", frame_b, v) / l2
-    rocker_p = -(np.einsum("kji,kpi->kjp", frame_b, v_p) + np.einsum("kjpi,ki->kjp", frame_p, v)) / l2
-    rocker_p[..., L2] -= rocker / l2
-
-    still = -np.einsum("ki,ki->k", v, ahead) / l2
-    still_p = -np.einsum("kpi,ki->kp", v_p, ahead) / l2
-    still_p[:, START] += np.einsum("ki,ki->k", v, out) / l2
-    still_p[:, L2] -= still / l2
-    return Poses(
-        b, slopes, sine**2, 2 * sine[:, None] * sine_p, crank, crank_p, rocker, rocker_p, still, still_p
-    )
+    if np.iscomplexobj(numbers):
+        _, ahead_b, v = rocker(b)
+        b = b - 1j * ((_dot(v, v) - l2**2) / 2 / (l3 * _dot(v, ahead_b)).real).imag
+    out_b, ahead_b, v = rocker(b)
+    return Poses(b, v / l2[..., None], (out, ahead, z), (out_b, ahead_b, axis))
 
 
-def least_square(numbers: Floats, inputs: Floats) -> float:
-    """The least squared sine of the transmission angle at inputs (k,); negative out of reach."""
-    w = reach(numbers, inputs)[3]
-    return float(w.min() / (numbers[L2] * numbers[L3]) ** 2)
+def _vectors(x: Values, y: Values | int, z: Values | int) -> Values:
+    found = np.zeros((*x.shape, 3), x.dtype)
+    found[..., 0], found[..., 1], found[..., 2] = x, y, z
+    return found
+
+
+def _dot(a: Values, b: Values) -> Values:
+    return np.asarray(np.einsum("...i,...i->...", a, b))

@@ -81,37 +81,27 @@ class SurveyTally:
     @staticmethod
     def of(raw: RawTally) -> SurveyTally:
         """The tally of one part, as the core has it."""
-        spreads = {name: (step, tuple(counts)) for name, (step, counts) in sorted(raw.spreads.items())}
-        nearest = {kept.place: kept for kept in _kept(raw.nearest)}
         return SurveyTally(
             dict(zip(VERDICTS, raw.verdicts, strict=True)),
             dict(zip(TYPES, raw.types, strict=True)),
             dict(zip(("0", "2", "4"), raw.limits, strict=True)),
-            spreads,
-            tuple(_kept(raw.best)),
-            nearest,
+            {name: (step, tuple(counts)) for name, (step, counts) in sorted(raw.spreads.items())},
+            _kept(raw.best),
+            {kept.place: kept for kept in _kept(raw.nearest)},
         )
 
     def __add__(self, other: SurveyTally) -> SurveyTally:
         """Both put together."""
-        best: dict[int, Kept] = {}
-        for kept in (*self.best, *other.best):
-            known = best.get(kept.place)
-            if known is None or kept.order < known.order:
-                best[kept.place] = kept
-        nearest = dict(self.nearest)
-        for verdict, kept in other.nearest.items():
-            if verdict not in nearest or kept.order < nearest[verdict].order:
-                nearest[verdict] = kept
-        spreads = {
-            name: (step, _summed(counts, other.spreads[name][1]))
-            for name, (step, counts) in self.spreads.items()
-        }
+        best = _first_of_each(*self.best, *other.best)
+        nearest = _first_of_each(*self.nearest.values(), *other.nearest.values())
         return SurveyTally(
             _together(self.verdicts, other.verdicts),
             _together(self.types, other.types),
             _together(self.limits, other.limits),
-            spreads,
+            {
+                name: (step, tuple(np.add(counts, other.spreads[name][1]).tolist()))
+                for name, (step, counts) in self.spreads.items()
+            },
             tuple(sorted(best.values(), key=lambda kept: kept.order)[:BEST]),
             dict(sorted(nearest.items())),
         )
@@ -146,12 +136,14 @@ class SurveyTally:
         )
 
 
-def _kept(entries: tuple[Any, Any, Any]) -> list[Kept]:
-    indices, places, rows = (array.tolist() for array in entries)
-    return [
-        Kept(index, place, row[0], row[1], row[2], (row[3], row[4]), row[5], int(row[6]), row[7])
-        for index, place, row in zip(indices, places, rows, strict=True)
-    ]
+def _kept(entries: tuple[Any, Any, Any]) -> tuple[Kept, ...]:
+    rows = zip(*(array.tolist() for array in entries), strict=True)
+    return tuple(_of_row([index, place, *row]) for index, place, row in rows)
+
+
+def _first_of_each(*every: Kept) -> dict[int, Kept]:
+    """The first linkage, by its order, of each place."""
+    return {kept.place: kept for kept in sorted(every, key=lambda kept: kept.order, reverse=True)}
 
 
 def _row(kept: Kept) -> list[Any]:
@@ -161,14 +153,11 @@ def _row(kept: Kept) -> list[Any]:
 
 
 def _of_row(row: Sequence[Any]) -> Kept:
-    error, transmission, *balls = (math.nan if x is None else float(x) for x in row[3:7])
-    return Kept(row[0], row[1], row[2], error, transmission, (balls[0], balls[1]), row[7], row[8], row[9])
+    index, place, figure, *measured, start, branch, sense = row
+    error, transmission, crank, rocker = (math.nan if x is None else float(x) for x in measured)
+    return Kept(index, place, figure, error, transmission, (crank, rocker), start, int(branch), sense)
 
 
 def _together(a: Mapping[str, int], b: Mapping[str, int]) -> dict[str, int]:
     words = a if a.keys() == b.keys() else sorted(a.keys() | b.keys())
     return {word: a.get(word, 0) + b.get(word, 0) for word in words}
-
-
-def _summed(a: Sequence[int], b: Sequence[int]) -> tuple[int, ...]:
-    return tuple(np.add(a, b).tolist())

@@ -44,10 +44,21 @@ RANKS = ("error", "transmission", "ball angle")
 
 @dataclass(frozen=True, eq=False)
 class Travel:
-    """The output moves one way through `output` while the input turns through `input` [rad]."""
+    """The output moves one way through `output` while the input turns through `input` [rad].
+
+    Raises `RequestError`.
+    """
 
     input: float
     output: float
+
+    def __post_init__(self) -> None:
+        for name, value in (("input", self.input), ("output", abs(self.output))):
+            if not 0 < value < math.tau:
+                raise RequestError(
+                    f"{name} range: {math.degrees(value):g} deg is no part of a turn; "
+                    "give two angles less than 360 deg apart, as in 0:90deg"
+                )
 
     @property
     def title(self) -> str:
@@ -153,7 +164,10 @@ class SurveyTask(Drawn):
         if not self.ratio > 1:
             raise RequestError(f"ratio: {self.ratio:g} is no ratio of lengths; give a number > 1")
         check_word("rank", self.rank, RANKS)
-        _check_want(self.want, self.motion_type)
+        if isinstance(self.want, Wish) and self.want.zeros is not None:
+            raise RequestError("zeros: are chosen by a survey; leave them out")
+        if isinstance(self.want, SwingWish):
+            refuse_without_swing(self.motion_type)
 
     @property
     def table(self) -> dict[str, tuple[float, float]]:
@@ -203,20 +217,12 @@ class SurveyTask(Drawn):
 
     def request(self) -> dict[str, Any]:
         """What the survey is, as plain values: two surveys with one request have the same answer."""
-        inputs, outputs = self.readings
         return {
             "format": FORMAT,
             "wanted": self.want.title,
-            "readings": [inputs.tolist(), outputs.tolist()],
+            "readings": [own.tolist() for own in self.readings],
+            **{name: value for name, value in vars(self).items() if name != "want"},
             "bounds": {name: list(ends) for name, ends in self.table.items()},
-            "count": self.count,
-            "seed": self.seed,
-            "tolerance": self.tolerance,
-            "transmission_lowest": self.transmission_lowest,
-            "ball_angle": self.ball_angle,
-            "motion_type": self.motion_type,
-            "ratio": self.ratio,
-            "rank": self.rank,
             "part_size": self.part_size,
         }
 
@@ -254,22 +260,6 @@ class SurveyTask(Drawn):
 
 def _readings_over(span: float) -> int:
     return min(max(round(span / READING_STEP) + 1, FEWEST_READINGS), MOST_READINGS)
-
-
-def _check_want(want: Wish | Travel | SwingWish, motion_type: str | None) -> None:
-    """Raises `RequestError` for a want that is none."""
-    if isinstance(want, Wish):
-        if want.zeros is not None:
-            raise RequestError("zeros: are chosen by a survey; leave them out")
-    elif isinstance(want, Travel):
-        for name, value in (("input", want.input), ("output", abs(want.output))):
-            if not 0 < value < math.tau:
-                raise RequestError(
-                    f"{name} range: {math.degrees(value):g} deg is no part of a turn; "
-                    "give two angles less than 360 deg apart, as in 0:90deg"
-                )
-    else:
-        refuse_without_swing(motion_type)
 
 
 def refuse_without_swing(motion_type: str | None) -> None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import Locator, MaxNLocator
 
 from sevenbar.arrays import Floats
 from sevenbar.design.task.along import DesignAlong
@@ -24,6 +26,42 @@ MANY = 40
 
 #: Colours of musts, one after the other.
 COLOURS = (COMPUTED, OTHER, "#2a7f3f", "#8a4fa8", "#b8860b", "#404040")
+
+#: A curve: its places, its values, and how it is drawn.
+Curve = tuple[Floats, Floats, Mapping[str, Any]]
+
+GENERATED: Mapping[str, Any] = {"color": COMPUTED, "lw": 1.8, "zorder": 2}
+WANTED: Mapping[str, Any] = {"color": OTHER, "lw": 1.3, "ls": (0, (4, 2.5)), "zorder": 3}
+POINTS: Mapping[str, Any] = {"color": OTHER, "ls": "", "marker": "o", "mfc": "white", "zorder": 4}
+
+
+def readings_figure(
+    title: str, curves: Sequence[Curve], errors: Sequence[Curve], labels: Sequence[str], ticks: Locator
+) -> Figure:
+    """Curves over the input's readings, and below them errors, the first of which decides the scale.
+
+    `labels` are those of both panels and of the input.
+    """
+    with styled():
+        figure = page_figure(6.4, 6.0, pads=(0.05, 0.06))
+        panels = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
+        top, below = panels
+        below.axhline(0.0, color="#505050", lw=0.8, zorder=1)
+        for axes, lines, label in zip(panels, (curves, errors), labels[:2], strict=True):
+            for x, y, look in lines:
+                axes.plot(x, y, **look)
+            axes.set_ylabel(label)
+            axes.grid(lw=0.6)
+        if np.abs(errors[0][1]).max() < 1e-9:
+            below.set_ylim(-1.0, 1.0)
+        below.set_xlabel(labels[2])
+        below.xaxis.set_major_locator(ticks)
+        below.yaxis.set_major_locator(MaxNLocator(5))
+        figure.align_ylabels()
+        headline(figure, title)
+        handles, names = top.get_legend_handles_labels()
+        figure.legend(handles, names, loc="outside lower center", ncols=len(handles), frameon=False)
+    return figure
 
 
 def want_figure(along: DesignAlong, number: int) -> Figure:
@@ -47,36 +85,27 @@ def _readings(along: DesignAlong, number: int) -> Figure:
     errors = np.interp(at, x[order], y[order]) - wanted
     (x_unit, across), (y_unit, up) = (shown_in(linkage, column) for column in (drive.joint, drive.output))
     points = len(at) <= MANY
-    mark = (
-        {"ls": "", "marker": "o", "mfc": "white", "ms": 5.0} if points else {"ls": (0, (4, 2.5)), "lw": 1.3}
-    )
+    mark = {**POINTS, "ms": 5.0, "zorder": 3} if points else WANTED
     line = {"ls": "", "marker": "o", "ms": 4.0} if points else {"lw": 1.6}
     met = along.design.met[number]
-    with styled():
-        figure = page_figure(6.4, 6.0, pads=(0.05, 0.06))
-        top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
-        top.plot(across * x, up * y, color=COMPUTED, lw=1.8, zorder=2, label=say("generated"))
-        top.plot(across * at, up * wanted, color=OTHER, zorder=3, label=say("wanted"), **mark)
-        below.axhline(0.0, color="#505050", lw=0.8, zorder=1)
-        below.plot(across * at, up * errors, color=COMPUTED, **line)
-        if np.abs(up * errors).max() < 1e-9:
-            below.set_ylim(-1.0, 1.0)
-        top.set_ylabel(say("output reading [{unit}]", unit=y_unit))
-        below.set_ylabel(say("generated less\nwanted [{unit}]", unit=y_unit))
-        below.set_xlabel(say("input reading [{unit}]", unit=x_unit))
-        for axes in (top, below):
-            axes.grid(lw=0.6)
-            axes.xaxis.set_major_locator(MaxNLocator(9))
-        below.yaxis.set_major_locator(MaxNLocator(5))
-        figure.align_ylabels()
-        reached = say(
-            "error at most {greatest:.3g} {unit}, RMS {rms:.3g} {unit}",
-            greatest=up * met.greatest, rms=up * met.rms, unit=y_unit,
-        )  # fmt: skip
-        headline(figure, f"{_title(along)}\n{say('want {number}', number=place + 1)}: {reached}")
-        handles, labels = top.get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
-    return figure
+    reached = say(
+        "error at most {greatest:.3g} {unit}, RMS {rms:.3g} {unit}",
+        greatest=up * met.greatest, rms=up * met.rms, unit=y_unit,
+    )  # fmt: skip
+    return readings_figure(
+        f"{_title(along)}\n{say('want {number}', number=place + 1)}: {reached}",
+        [
+            (across * x, up * y, {**GENERATED, "label": say("generated")}),
+            (across * at, up * wanted, {**mark, "label": say("wanted")}),
+        ],
+        [(across * at, up * errors, {"color": COMPUTED, **line})],
+        [
+            say("output reading [{unit}]", unit=y_unit),
+            say("generated less\nwanted [{unit}]", unit=y_unit),
+            say("input reading [{unit}]", unit=x_unit),
+        ],
+        MaxNLocator(9),
+    )
 
 
 def _places(along: DesignAlong, number: int) -> Figure:

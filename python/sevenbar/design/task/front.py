@@ -102,7 +102,6 @@ def pareto(
     course = SearchCourse(points, progress)
     kept: list[ParetoPoint] = []
     solved = missing = 0
-    unfinished = ""
 
     def search(improved: int, musts: Sequence[Must], given: Sequence[ParetoPoint], tries: int) -> int:
         """Designs in which one of the wants is improved."""
@@ -118,7 +117,7 @@ def pareto(
         course.step(f"{len(kept)} points")
         return len(found.designs)
 
-    try:
+    with course.until_stopped(kept, 2):
         for improved in (one, other):
             if not search(improved, (), kept, starts):
                 raise RequestError(
@@ -132,11 +131,8 @@ def pareto(
             near = sorted(kept, key=lambda point: abs(point.values[1] - bound))
             solved += 1
             missing += not search(one, [_must(task, other, bound)], near[:3], 0)
-    except KeyboardInterrupt:
-        if len(kept) < 2:
-            raise
-        unfinished = course.unfinished
-    return ParetoFront(task, (one, other), _front(task, (one, other), kept), solved + 2, missing, unfinished)
+    front = _front(task, (one, other), kept)
+    return ParetoFront(task, (one, other), front, solved + 2, missing, course.unfinished)
 
 
 def _place(task: DesignTask, key: str, given: int | str) -> int:

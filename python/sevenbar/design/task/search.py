@@ -135,18 +135,12 @@ def designed(
     course = SearchCourse(starts + 1 + len(given) + (TRIED + TAKEN) * count, progress)
     kept: list[TaskDesign] = []
     refusals: list[Refusal] = []
-    unfinished, found = "", 0
-    try:
+    begun: list[TaskSeed] = []
+    with course.until_stopped(kept):
         begun = seeds(model, starts, seed, course.step, [np.asarray(v, dtype=float) for v in given])
-        found = len(begun)
         _search(model, begun, count, course, kept, refusals)
-        course.end()
-    except KeyboardInterrupt:
-        if not kept:
-            raise
-        unfinished = course.unfinished
     best = distinct(kept, scale_free=False, count=count)
-    return DesignsFound(task, named(task, best), tuple(refusals), found, unfinished)
+    return DesignsFound(task, named(task, best), tuple(refusals), len(begun), course.unfinished)
 
 
 def _search(

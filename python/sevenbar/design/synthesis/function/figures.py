@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from sevenbar.design.candidates import Candidate
 from sevenbar.design.closure import outputs, row_of, transmissions
+from sevenbar.design.task.figures import GENERATED, POINTS, WANTED, Curve, readings_figure
 from sevenbar.design.wish import Wish
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
-from sevenbar.drawing.style import COMPUTED, OTHER, styled
+from sevenbar.drawing.style import styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.text.words import say
-
-GENERATED: dict[str, Any] = {"color": COMPUTED, "lw": 1.8, "zorder": 2}
-WANTED: dict[str, Any] = {"color": OTHER, "lw": 1.3, "ls": (0, (4, 2.5)), "zorder": 3}
-POINTS: dict[str, Any] = {"color": OTHER, "ls": "", "marker": "o", "mfc": "white", "zorder": 4}
 
 #: Pairs of angles beyond which they are small dots.
 MANY = 40
@@ -40,36 +35,21 @@ def function_figure(candidate: Candidate, wish: Wish) -> Figure:
     # both sides on the same turn
     near = np.interp(at, inputs, readings) - errors
     turn = 360.0 * np.round((near[0] - math.degrees(wish.output[0])) / 360.0)
-    with styled():
-        figure = page_figure(6.4, 6.0, pads=(0.05, 0.06))
-        top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
-        top.plot(inputs, readings - turn, label=say("generated"), **GENERATED)
-        below.axhline(0.0, color="#505050", lw=0.8, zorder=1)
-        size = 5.0 if len(wish.input) <= MANY or wish.function is not None else 2.2
-        if wish.function is not None:
-            top.plot(inputs, near - turn, label=say("wanted"), **WANTED)
-            below.plot(inputs, errors, **GENERATED)
-        else:
-            top.plot(at, near - turn, ms=size, label=say("wanted"), **POINTS)
-            below.plot(at, errors, ms=size, **POINTS)
-        if wish.function is not None and wish.exact:
-            points = np.degrees(wish.point_input)
-            top.plot(points, np.degrees(wish.point_output), ms=size, label=say("precision point"), **POINTS)
-            below.plot(points, np.interp(points, inputs, errors), ms=size, **POINTS)
-        top.set_ylabel(say("output reading [deg]"))
-        below.set_ylabel(say("generated less\nwanted [deg]"))
-        below.set_xlabel(say("input reading [deg]"))
-        for axes in (top, below):
-            axes.grid(lw=0.6)
-            axes.xaxis.set_major_locator(DegreeLocator(9))
-        if np.abs(errors).max() < 1e-9:
-            below.set_ylim(-1.0, 1.0)
-        below.yaxis.set_major_locator(MaxNLocator(5))
-        figure.align_ylabels()
-        headline(figure, _title(candidate, wish))
-        handles, labels = top.get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=len(handles), frameon=False)
-    return figure
+    size = 5.0 if len(wish.input) <= MANY or wish.function is not None else 2.2
+    curves: list[Curve] = [(inputs, readings - turn, {**GENERATED, "label": say("generated")})]
+    points = {**POINTS, "ms": size}
+    if wish.function is not None:
+        curves.append((inputs, near - turn, {**WANTED, "label": say("wanted")}))
+        below: list[Curve] = [(inputs, errors, GENERATED)]
+    else:
+        curves.append((at, near - turn, {**points, "label": say("wanted")}))
+        below = [(at, errors, points)]
+    if wish.function is not None and wish.exact:
+        met = np.degrees(wish.point_input)
+        curves.append((met, np.degrees(wish.point_output), {**points, "label": say("precision point")}))
+        below.append((met, np.interp(met, inputs, errors), points))
+    labels = say("output reading [deg]"), say("generated less\nwanted [deg]"), say("input reading [deg]")
+    return readings_figure(_title(candidate, wish), curves, below, labels, DegreeLocator(9))
 
 
 def _title(candidate: Candidate, wish: Wish) -> str:

@@ -38,7 +38,6 @@ from sevenbar.design.task.solve import solved
 from sevenbar.design.task.task import DesignTask, FreeNumber, FunctionWant, Most
 from sevenbar.design.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.errors import RequestError
-from sevenbar.text.expression import function_of
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
 
@@ -154,18 +153,8 @@ def function_generation(
     else:
         if zeros is not None:
             raise RequestError("zeros: are chosen for a function; leave them out, or give pairs of angles")
-        title = name or (f"y = {function}" if isinstance(function, str) else "y(x)")
-        called = function_of(function) if isinstance(function, str) else function
-        assert called is not None
-        wish = wish_of_function(
-            called,
-            x_range,
-            input_range,
-            output_range,
-            points=precision,
-            title=title,
-            formula=function if isinstance(function, str) else None,
-        )
+        assert function is not None
+        wish = wish_of_function(function, x_range, input_range, output_range, points=precision, title=name)
     return _found(wish, limits, tolerance, count, seed, progress)
 
 
@@ -186,9 +175,7 @@ def _found(
     refused: list[tuple[float, Refusal]] = []
     by_transmission = wish.exact and wish.function is None
     key = (lambda c: -(c.transmission_lowest or 0.0)) if by_transmission else None
-    best: list[Candidate] = []
-    unfinished = ""
-    try:
+    with course.until_stopped(kept):
         # first the best of all; where starts end in one design, each with its own zero of the input
         for hold in (False, True):
             ends: list[Floats] = []
@@ -207,17 +194,11 @@ def _found(
                     else:
                         refused.append((error, result))
                 course.step(transmits_best(kept) if by_transmission else least_error(kept))
-            best = distinct(ranked(kept, key), scale_free=True, count=count)
-            if len(best) == count:
+            if len(distinct(ranked(kept, key), scale_free=True, count=count)) == count:
                 break
             if not hold:
                 course.longer(len(begun))
-        course.end()
-    except KeyboardInterrupt:
-        if not kept:
-            raise
-        best = distinct(ranked(kept, key), scale_free=True, count=count)
-        unfinished = course.unfinished
+    best = distinct(ranked(kept, key), scale_free=True, count=count)
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
     return Synthesis(
         wish.title,
@@ -228,7 +209,7 @@ def _found(
         len(begun),
         seed,
         wish,
-        unfinished,
+        course.unfinished,
     )
 
 

@@ -41,13 +41,6 @@ RANK = 1e-10
 FARTHEST = 20.0
 
 
-def coefficients(row: Floats) -> Floats:
-    """k0 .. k4 (5,) of (1) of a design (6,)."""
-    m, n, l1, l2, l3, d = row
-    k0 = (m * m + n * n + l1 * l1 + l3 * l3 + d * d - l2 * l2) / (2 * l1 * l3)
-    return np.array([k0, m / l3, d / l3, d / l1, n / l1])
-
-
 def system(inputs: Floats, outputs: Floats) -> tuple[Floats, Floats]:
     """The rows (.., n, 5) of (1) and its right sides (.., n) at angles of the linkage (.., n) [rad]."""
     ca, sa, cb, sb = np.cos(inputs), np.sin(inputs), np.cos(outputs), np.sin(outputs)

@@ -44,7 +44,8 @@ def text(found: Synthesis) -> RenderableType:
     if found.wish is not None:
         facts.add("", say("crank = input zero + reading, rocker = output zero + reading"))
     facts.add("limits", retold_parts(found.limits.text(), "; "))
-    facts.add("searched", _searched(found))
+    counts = {"searched": found.searched, "refined": found.fitted, "seed": found.seed}
+    facts.add("searched", say("{searched} designs, {refined} refined, seed {seed}", **counts))
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
     if found.refusals:
@@ -54,13 +55,6 @@ def text(found: Synthesis) -> RenderableType:
     dimensions = {f"{name}_{unit}": f"{name} [{unit}]" for name in NAMES}
     tables = (columns_table(found.candidates, heads) for heads in (wanted, dimensions))
     return page(say("Synthesis of an RSSR"), facts, *tables)
-
-
-def _searched(found: Synthesis) -> str:
-    return say(
-        "{searched} designs, {refined} refined, seed {seed}",
-        searched=found.searched, refined=found.fitted, seed=found.seed,
-    )  # fmt: skip
 
 
 def as_dict(found: Synthesis) -> dict[str, Any]:

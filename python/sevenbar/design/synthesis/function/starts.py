@@ -75,40 +75,33 @@ def starts(wish: Wish, seed: int) -> tuple[Floats, Floats]:
 
 def chosen(wish: Wish, limits: Limits, rows: Floats, zeros: Floats, most: int) -> list[Start]:
     """The most promising starts that differ: little error, limits nearly kept, all points on one branch."""
-    scored: list[tuple[float, Start]] = []
     used = wish.input
     if wish.function is None:
         used = np.linspace(wish.input[0], wish.input[-1], BETWEEN)
-    square = transmissions(rows, zeros[:, :1] + used)
+    square = transmissions(rows, zeros[:, :1] + used).min(axis=1)
+    late = math.sin(limits.transmission_lowest) - np.sqrt(np.maximum(square, 0.0))
     ratio = np.abs(rows).max(axis=1) / rows[:, 2:5].min(axis=1)
-    missed = np.maximum(
-        math.sin(limits.transmission_lowest) - np.sqrt(np.maximum(square.min(axis=1), 0.0)), 0.0
-    )
-    missed = missed + 0.1 * np.maximum(np.log(ratio / limits.ratio), 0.0)
+    missed = np.maximum(late, 0.0) + 0.1 * np.maximum(np.log(ratio / limits.ratio), 0.0)
     if limits.motion_type in INPUT_TURNS:
         turn = np.linspace(0.0, math.tau, 36, endpoint=False)
         missed = missed + np.maximum(-transmissions(rows, turn).min(axis=1), 0.0)
+    inputs = np.concatenate([wish.input, wish.point_input])
+    wanted = np.concatenate([wish.output, wish.point_output])
+    scores: list[Floats] = []
+    found: list[Start] = []
     for branch in (0, 1):
-        inputs, wanted = (
-            np.concatenate(pair)
-            for pair in ((wish.input, wish.point_input), (wish.output, wish.point_output))
-        )
         off = short_way(outputs(rows, zeros[:, :1] + inputs, branch) - zeros[:, 1:] - wanted)
         count = wish.input.size
         at_points = np.abs(off[:, count:]).max(axis=1, initial=0.0)
-        rms = np.sqrt((off[:, :count] ** 2).mean(axis=1)) + missed
+        score = np.sqrt((off[:, :count] ** 2).mean(axis=1)) + missed
         if wish.exact and wish.function is None:
-            rms = rms + 1.0 - square.min(axis=1)
-        good = np.isfinite(off).all(axis=1) & (square.min(axis=1) > 0) & (at_points < ON_BRANCH)
-        scored += [(float(rms[i]), Start(rows[i], zeros[i], branch)) for i in np.flatnonzero(good)]
-    scored.sort(key=lambda pair: pair[0])
-    found: list[Start] = []
-    seen = np.empty((0, 8))
-    for _, point in scored:
-        own = np.concatenate([np.arctan(point.row), np.cos(point.zeros)])
-        if not len(seen) or np.abs(seen - own).max(axis=1).min() > START_APART:
-            found.append(point)
-            seen = np.concatenate([seen, own[None]])
-        if len(found) == most:
-            break
-    return found
+            score = score + 1.0 - square
+        good = np.isfinite(off).all(axis=1) & (square > 0) & (at_points < ON_BRANCH)
+        scores.append(score[good])
+        found += [Start(row, own, branch) for row, own in zip(rows[good], zeros[good], strict=True)]
+    places = np.array([[*np.arctan(one.row), *np.cos(one.zeros)] for one in found])
+    kept: list[int] = []
+    for i in np.argsort(np.concatenate(scores), kind="stable"):
+        if len(kept) < most and (np.abs(places[kept] - places[i]).max(axis=1) > START_APART).all():
+            kept.append(int(i))
+    return [found[i] for i in kept]

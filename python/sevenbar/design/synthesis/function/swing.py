@@ -1,6 +1,6 @@
 """Swing and time ratio: RSSR crank-rockers whose output rocks through an angle, slower one way than back.
 
-Of crank-rockers drawn in closed form those nearest to the wish are polished as the best of a survey are. With
+The crank-rockers of a survey that are nearest to the wish are polished as the best of every survey are. With
 G of `closure`, (1), the input u at the low end, the stroke s of the crank and the swing w
 
     G_alpha(u) = 0,      G_alpha(u + s) = 0,      beta(u + s) - beta(u) = w                               (1)
@@ -31,25 +31,26 @@ from sevenbar.design.candidates import (
     transmits_best,
     within_limits,
 )
-from sevenbar.design.closure import draft_of, outputs, scaled, transmissions
+from sevenbar.design.closure import draft_of, outputs, scaled
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import MARGIN, Limits
 from sevenbar.design.survey.polish import Polish, swung
 from sevenbar.design.survey.skew_closure import START, N
-from sevenbar.design.survey.task import SurveyTask, SwingWish, refuse_without_swing
+from sevenbar.design.survey.tally import SurveyTally
+from sevenbar.design.survey.task import SurveyTask, SwingWish, drawn_numbers, refuse_without_swing
 from sevenbar.design.synthesis.function.generation import USUAL, Synthesis, check_count
 from sevenbar.design.synthesis.function.precision import reflected
 from sevenbar.text.progress import Progress, silent
 
-#: Designs of the global search, and inputs of a turn at which they are checked.
-SEARCHED, LOOKED_AT = 16384, 72
+#: Designs of the survey, and inputs of a turn at which one is checked.
+SEARCHED, LOOKED_AT = 131072, 72
+
+#: The angle between axes, as bounds [rad].
+SQUARE = math.pi / 2, math.pi / 2
 
 #: How many of them are refined for each design requested, and at least.
 FITTED_EACH, FITTED_LEAST = 4, 24
-
-#: Two starts are one where the arctangent of no ratio differs by more.
-START_APART = 0.12
 
 #: Of starts that end in one design so many are enough; those that follow keep their own N, so that designs
 #: differ.
@@ -86,14 +87,13 @@ def swing_generation(
     refuse_without_swing(limits.motion_type)
     check_count(count)
     course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
-    chosen, searched = _chosen(want, limits, course.total - 1, seed)
+    begun = _begun(want, limits, course.total - 1, seed)
     course.step()
     kept: list[Candidate] = []
     refused: list[tuple[float, Refusal]] = []
-    unfinished = ""
     ends: list[Floats] = []
-    try:
-        for numbers, branch in chosen:
+    with course.until_stopped(kept):
+        for numbers, branch in begun:
             held = numbers[N] if _most_alike(ends) >= ENOUGH else None
             polished = Polish(_task(want, limits, held), numbers, branch, worth=WORTH).polished()
             ends.append(np.abs(polished[:6]) / np.abs(polished[:6]).max())
@@ -105,11 +105,6 @@ def swing_generation(
             else:
                 refused.append((far, result))
             course.step(transmits_best(kept))
-        course.end()
-    except KeyboardInterrupt:
-        if not kept:
-            raise
-        unfinished = course.unfinished
     order = ranked(kept, lambda c: -(c.transmission_lowest or 0.0))
     best = distinct(order, scale_free=True, mirrored=True, count=count)
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
@@ -118,10 +113,10 @@ def swing_generation(
         limits,
         tuple(renamed(best, want.title)),
         refusals,
-        searched,
-        len(chosen),
+        SEARCHED,
+        len(begun),
         seed,
-        unfinished=unfinished,
+        unfinished=course.unfinished,
     )
 
 
@@ -133,8 +128,8 @@ def _most_alike(ends: list[Floats]) -> int:
 
 def _task(want: SwingWish, limits: Limits, held: float | None) -> SurveyTask:
     """The wish as polishing has it: axes at right angles, L3 = 1, the limits of the size; N may be `held`."""
-    ratio, square = limits.ratio, math.pi / 2
-    bounds = dict.fromkeys(("M", "N", "D"), (-ratio, ratio)) | {"angle": (square, square)}
+    ratio = limits.ratio
+    bounds = dict.fromkeys(("M", "N", "D"), (-ratio, ratio)) | {"angle": SQUARE}
     bounds |= dict.fromkeys(("L1", "L2"), (1 / ratio, ratio)) | {"L3": (1.0, 1.0)}
     if held is not None:
         bounds["N"] = held, held
@@ -142,45 +137,23 @@ def _task(want: SwingWish, limits: Limits, held: float | None) -> SurveyTask:
     return SurveyTask(want, bounds, transmission_lowest=0.0, ratio=ratio ** (1 - MARGIN), rank="transmission")
 
 
-def _chosen(want: SwingWish, limits: Limits, most: int, seed: int) -> tuple[list[tuple[Floats, int]], int]:
-    """Crank-rockers of a Sobol sequence that are nearest to the wish and differ; how many were looked at.
+def _begun(want: SwingWish, limits: Limits, most: int, seed: int) -> list[tuple[Floats, int]]:
+    """The crank-rockers of a survey that are nearest to the wish, each of another part of the space.
 
     Each as the numbers (8,) of `skew_closure`, the input's start at its low end, and the branch.
     """
-    from scipy.stats import qmc
-
-    draws = qmc.Sobol(5, seed=seed).random(SEARCHED)
-    rows = np.ones((SEARCHED, 6))
-    # a point reflection makes M positive
-    rows[:, 0] = 4.0 * draws[:, 0]
-    rows[:, [1, 5]] = 8.0 * draws[:, 1:3] - 4.0
-    rows[:, [2, 3]] = 8.0 ** (2 * draws[:, 3:] - 1)
-    inputs = np.linspace(0.0, math.tau, LOOKED_AT + 1)
-    square = transmissions(rows, inputs).min(axis=1)
-    rows, square = rows[square > MARGIN], square[square > MARGIN]
-    ratio = np.abs(rows).max(axis=1) / rows[:, 2:5].min(axis=1)
-    late = math.sin(limits.transmission_lowest) - np.sqrt(square)
-    missed = np.maximum(late, 0.0) + 0.1 * np.maximum(np.log(ratio / limits.ratio), 0.0)
-    scored: list[tuple[float, int, int, float]] = []
-    for branch in (0, 1):
-        angles = np.unwrap(outputs(rows, inputs, branch), axis=1)
-        low, high = angles.argmin(axis=1), angles.argmax(axis=1)
-        stroke = (inputs[high] - inputs[low]) % math.tau
-        off = np.abs(np.maximum(stroke, math.tau - stroke) - want.slow) / 2
-        far = np.abs(np.ptp(angles, axis=1) - want.angle) + off + missed
-        rocks = np.abs(angles[:, -1] - angles[:, 0]) < 1.0
-        scored += [(float(far[i]), int(i), branch, float(inputs[low[i]])) for i in np.flatnonzero(rocks)]
-    chosen: list[tuple[Floats, int]] = []
-    seen: list[Floats] = []
-    for _, i, branch, start in sorted(scored):
-        own = np.abs(np.arctan(rows[i]))
-        if any(np.abs(own - other).max() < START_APART for other in seen):
-            continue
-        seen.append(own)
-        chosen.append((np.array([*rows[i], math.pi / 2, start]), branch))
-        if len(chosen) == most:
-            break
-    return chosen, SEARCHED
+    task = SurveyTask(
+        want,
+        {"angle": SQUARE},
+        SEARCHED,
+        seed,
+        tolerance=math.pi,
+        transmission_lowest=0.0,
+        ratio=limits.ratio,
+    )
+    best = SurveyTally.of(task.core().tally(0, SEARCHED)).best[:most]
+    rows = drawn_numbers(task, [kept.index for kept in best])
+    return [(np.append(row, kept.start), kept.branch) for row, kept in zip(rows, best, strict=True)]
 
 
 def _judged(

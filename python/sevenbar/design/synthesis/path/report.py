@@ -14,7 +14,7 @@ from sevenbar.design.candidates import Candidate
 from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.path.figures import path_figure
 from sevenbar.design.synthesis.path.task import PathTask
-from sevenbar.design.tables import cell, design_table, plain_designs, sheets
+from sevenbar.design.tables import cell, columns_table, plain_designs, sheets
 from sevenbar.design.task.search import DesignsFound
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, page
@@ -109,21 +109,20 @@ def text(found: PathDesigns) -> RenderableType:
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
     transmits = any(c.transmission_lowest is not None for c in candidates)
-    heads = [say("greatest\nerror\n[{unit}]", unit=unit), say("RMS\nerror\n[{unit}]", unit=unit)]
-    heads += [say("least\ntransm.\n[deg]")] if transmits else []
-    heads += [say("size\n[{unit}]", unit=unit), "motion type", "circuit"]
-    rows = []
-    for candidate in candidates:
-        own = candidate.columns
-        names = [f"error_greatest_{unit}", f"error_rms_{unit}"]
-        names += ["transmission_lowest_deg"] if transmits else []
-        rows.append([cell(own[name]) for name in (*names, f"size_{unit}", "motion_type", "circuit")])
+    heads = {
+        f"error_greatest_{unit}": say("greatest\nerror\n[{unit}]", unit=unit),
+        f"error_rms_{unit}": say("RMS\nerror\n[{unit}]", unit=unit),
+        **({"transmission_lowest_deg": say("least\ntransm.\n[deg]")} if transmits else {}),
+        f"size_{unit}": say("size\n[{unit}]", unit=unit),
+        "motion_type": "motion type",
+        "circuit": "circuit",
+    }
     columns = []
     for d in task.dimensions:
         values = (c.draft.dimension(d.name).value for c in candidates)
         cells = [cell(value, TINY * task.extent) for value in values]
         columns.append((f"{d.name}\n[{d.unit}]" if d.unit else d.name, cells))
-    tables = [design_table(heads, rows, words=["motion type"]), *sheets(columns, ACROSS)]
+    tables = [columns_table(candidates, heads), *sheets(columns, ACROSS)]
     return page(say("Path generation: {linkage}", linkage=linkage.heading), facts, *tables)
 
 

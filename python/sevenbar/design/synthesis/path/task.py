@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, whole_number
+from sevenbar.arrays import finite_array, whole_number
 from sevenbar.description.draft import Draft, HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.limits import Limits
@@ -23,7 +23,6 @@ from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Point
 from sevenbar.kinematics.numbers.dimensions import Dimension
-from sevenbar.kinematics.numbers.sensitivity import Numbers
 
 #: Bounds where none are given, relative to the greater of the linkage's longest dimension and the path's
 #: extent: of lengths that must be positive, and how far others may go from zero.
@@ -115,14 +114,13 @@ def path_task(
         raise RequestError(f"transmission: {flaw}")
     refuse_idle_link(draft.linkage, own.link, "a path on it")
     varied = _varied(draft, own, vary)
-    low, high = _bounds(draft, varied, limits, float(np.ptp(wanted, axis=0).max()), bounds or {})
-    every = Numbers(draft.linkage).dimensions
+    every = _dimensions(draft)
     lengths = {d.name for d in every if d.kind in ("length", "pitch")}
     scale_free = lengths - _of_other_points(draft, own) <= {d.name for d in varied}
     anywhere: Placement = "free with scale" if scale_free else "free"
     design = DesignTask(
         draft,
-        tuple(FreeNumber(d.name, *ends) for d, *ends in zip(varied, low, high, strict=True)),
+        tuple(_bounded(draft, varied, limits, float(np.ptp(wanted, axis=0).max()), bounds or {})),
         (PathWant(own.name, wanted, closed, inputs, phase),),
         placement=anywhere if place else "fixed",
         limits=limits,
@@ -150,20 +148,18 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
     """The draft with the point among its named ones, and the point."""
     linkage = draft.linkage
     if isinstance(point, str):
-        for known in linkage.points:
-            if known.name == point and known.link == len(linkage.joints):
-                raise RequestError(
-                    f"point: '{point}' is on link {known.link}, the ground, which stands still; give a point "
-                    f"of link 1 to {known.link - 1}"
-                )
-            if known.name == point:
-                return draft, known
-        names = [known.name for known in linkage.points]
-        listed = ", ".join(names) or "none"
-        raise RequestError(
-            f"point: no point {shown(point)}; {suggestion(point, names)}this linkage has {listed}; "
-            "give one, or a link and a place on it"
-        )
+        named = {known.name: known for known in linkage.points}
+        if point not in named:
+            raise RequestError(
+                f"point: no point {shown(point)}; {suggestion(point, named)}this linkage has "
+                f"{', '.join(named) or 'none'}; give one, or a link and a place on it"
+            )
+        if (link := named[point].link) == len(linkage.joints):
+            raise RequestError(
+                f"point: '{point}' is on link {link}, the ground, which stands still; give a point "
+                f"of link 1 to {link - 1}"
+            )
+        return draft, named[point]
     try:
         link, at = point
         place = finite_array("at", at)
@@ -181,92 +177,91 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
     return made, next(p for p in made.linkage.points if p.name == name)
 
 
+def _named(pattern: str, dimensions: Sequence[Dimension]) -> list[Dimension]:
+    """The dimensions with a name or a key, or with names of a pattern."""
+    return [d for d in dimensions if pattern in (d.name, d.key) or fnmatchcase(d.name, pattern)]
+
+
 def _varied(draft: Draft, point: Point, vary: Sequence[str] | None) -> list[Dimension]:
     """The dimensions that may change."""
-    every = _dimensions(draft)
-    names = [dimension.name for dimension in every]
-    aside = _of_other_points(draft, point)
-    others = {i for i, name in enumerate(names) if name in aside}
-    follow = {i for i, d in enumerate(every) if d.follows}
+    every, others = _dimensions(draft), _of_other_points(draft, point)
+    names = [d.name for d in every]
     if vary is None:
-        chosen = [i for i in range(len(every)) if i not in others | follow]
+        chosen = {d.name for d in every if not d.follows} - others
     else:
-        chosen = []
+        chosen = set()
         for pattern in vary:
-            found = [i for i, d in enumerate(every) if pattern == d.key or fnmatchcase(d.name, pattern)]
+            found = _named(pattern, every)
             if not found:
                 raise RequestError(
                     f"vary: {shown(pattern)} is not a dimension here; {suggestion(pattern, names)}"
                     f"give some of {', '.join(names)}, or a pattern as 'L*'"
                 )
-            if named := [names[i] for i in found if i in follow and pattern in (names[i], every[i].key)]:
-                raise RequestError(f"vary: {named[0]} is to follow from the others; leave one of the two out")
-            chosen += [i for i in found if i not in chosen and i not in follow]
-        if wrong := [names[i] for i in chosen if i in others]:
-            raise RequestError(
-                f"vary: {wrong[0]} is of another point than '{point.name}', whose path it does not "
-                "change; leave it out"
-            )
+            if follow := [d.name for d in found if d.follows and pattern in (d.name, d.key)]:
+                raise RequestError(
+                    f"vary: {follow[0]} is to follow from the others; leave one of the two out"
+                )
+            chosen |= {d.name for d in found if not d.follows}
+            if wrong := [d.name for d in found if d.name in others]:
+                raise RequestError(
+                    f"vary: {wrong[0]} is of another point than '{point.name}', whose path it does not "
+                    "change; leave it out"
+                )
     if not chosen:
         raise RequestError(f"vary: no dimension may change; give some of {', '.join(names)}")
-    chosen.sort()
+    varied = [d for d in every if d.name in chosen]
     motion = draft.linkage.motion(OPENINGS)
-    loop = TaskLoop(draft, [names[i] for i in chosen])
+    loop = TaskLoop(draft, [d.name for d in varied])
     q = closed_poses(loop, motion.circuits)
     if q is None:
         raise RequestError(
             f"linkage: {motion.motion_type}, the loop moves nowhere as it is described, so it cannot be a "
             "start; give dimensions with which it moves"
         )
-    opening = [chosen[k] for k in loop.openings(loop.start, q)]
-    if vary is None:
-        # the point's own coordinates open nothing
-        chosen = [i for i in chosen if i not in opening]
-    elif opening:
-        listed = ", ".join(names[i] for i in opening[:4]) + (" .." if len(opening) > 4 else "")
+    opening = [varied[k].name for k in loop.openings(loop.start, q)]
+    if opening and vary is not None:
+        listed = ", ".join(opening[:4]) + (" .." if len(opening) > 4 else "")
         raise RequestError(
             f"vary: {listed} cannot change alone without opening the loop; leave "
             f"{'it' if len(opening) == 1 else 'them'} out"
         )
-    return [every[i] for i in chosen]
+    # the point's own coordinates open nothing
+    return [d for d in varied if d.name not in opening]
 
 
-def _bounds(
+def _bounded(
     draft: Draft,
     dimensions: Sequence[Dimension],
     limits: Limits,
     extent: float,
     given: Mapping[str, tuple[float | str, float | str]],
-) -> tuple[Floats, Floats]:
-    """Bounds of what varies (k,) each, those of the size held too."""
+) -> Iterator[FreeNumber]:
+    """What varies with its bounds, those of the size held too."""
     size = max([extent, *(abs(d.value) for d in _dimensions(draft) if d.kind == "length")])
-    low, high = np.empty(len(dimensions)), np.empty(len(dimensions))
-    for i, d in enumerate(dimensions):
-        low[i], high[i] = _usual(d, size, drawn=d.place[0] == "joint")
+    bounds = {}
+    for d in dimensions:
+        low, high = _usual(d, size, drawn=d.place[0] == "joint")
         if limits.size is not None and d.kind == "length":
             least, most = limits.size
-            low[i], high[i] = max(low[i], least if d.positive else -most), min(high[i], most)
-            if not low[i] <= d.value <= high[i]:
+            low, high = max(low, least if d.positive else -most), min(high, most)
+            if not low <= d.value <= high:
                 raise RequestError(
-                    f"size: {d.name} begins at {d.value:g}, outside {low[i]:g}:{high[i]:g}; "
+                    f"size: {d.name} begins at {d.value:g}, outside {low:g}:{high:g}; "
                     "give other limits, or another start"
                 )
+        bounds[d.name] = low, high
     for pattern, pair in given.items():
-        found = [
-            i for i, d in enumerate(dimensions) if pattern in (d.name, d.key) or fnmatchcase(d.name, pattern)
-        ]
+        found = _named(pattern, dimensions)
         if not found:
-            names = [d.name for d in dimensions]
             raise RequestError(
-                f"bounds: {shown(pattern)} is not a dimension that varies; {suggestion(pattern, names)}"
-                f"these vary: {', '.join(names)}"
+                f"bounds: {shown(pattern)} is not a dimension that varies; {suggestion(pattern, bounds)}"
+                f"these vary: {', '.join(bounds)}"
             )
         # a pattern of lengths and angles takes numbers alone
-        alike = len({dimensions[i].unit for i in found}) == 1
+        alike = len({d.unit for d in found}) == 1
         try:
             least, most = (
-                dimensions[found[0]].read(value) if alike and isinstance(value, str) else float(value)
-                for value in pair
+                found[0].read(value) if alike and isinstance(value, str) else float(value) for value in pair
             )
         except (TypeError, ValueError):
             least = most = math.nan
@@ -277,8 +272,7 @@ def _bounds(
                 f"bounds: {shown(listed)} of {pattern} are no bounds; give the least and the greatest value, "
                 "as in 100:400"
             )
-        for i in found:
-            d = dimensions[i]
+        for d in found:
             if d.positive and not least > 0:
                 raise RequestError(f"bounds: {least:g} of {d.name}: a link needs a length; give bounds > 0")
             if not least <= d.value <= most:
@@ -286,8 +280,8 @@ def _bounds(
                     f"bounds: {d.name} begins at {d.value:g} {d.unit}".rstrip()
                     + f", outside {least:g}:{most:g}; give bounds that hold it, or another start"
                 )
-            low[i], high[i] = least, most
-    return low, high
+            bounds[d.name] = least, most
+    return (FreeNumber(name, *ends) for name, ends in bounds.items())
 
 
 def _usual(d: Dimension, size: float, *, drawn: bool) -> tuple[float, float]:
@@ -320,9 +314,7 @@ def _refuse_unreachable(task: PathTask) -> None:
                 f"linkage reaches {reach:.4g} {unit} at most within the bounds; widen them, or place it "
                 "freely"
             )
-        return
-    across = float(np.linalg.norm(wanted[:, None] - wanted[None], axis=2).max())
-    if across > 2 * reach:
+    elif (across := float(np.linalg.norm(wanted[:, None] - wanted, axis=2).max())) > 2 * reach:
         raise RequestError(
             f"points: the path is {across:.4g} {unit} across, and the linkage reaches {2 * reach:.4g} {unit} "
             "at most within the bounds; widen them"

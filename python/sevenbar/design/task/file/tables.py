@@ -10,8 +10,7 @@ from typing import Literal, TypeVar, cast
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.curve_table import read_curve
-from sevenbar.design.pose_table import read_poses
+from sevenbar.design.curve_table import read_curve, read_poses
 from sevenbar.design.task import task as kinds
 from sevenbar.design.task.file import schema
 from sevenbar.design.task.file.values import Given
@@ -95,7 +94,7 @@ def _of_formula(form: schema.FunctionForm, linkage: Linkage) -> tuple[Floats, Fl
     low, high = form.x
     if not low < high:
         raise RequestError(f"x: {low:g}:{high:g} does not rise; give the lower end first")
-    wish = wish_of_function(function_of(y), form.x, (0.0, 1.0), (0.0, 1.0), title=y, formula=y)
+    wish = wish_of_function(y, form.x, (0.0, 1.0), (0.0, 1.0), title=y)
     share = wish.input if form.points is None else chebyshev(0.0, 1.0, form.points)
     if form.input is None and form.output is None:
         x = low + (high - low) * share
