@@ -193,7 +193,7 @@ class Draft:
 def _opened(raw: Mapping[str, Any], source: str) -> Mapping[str, Any]:
     """The tables of a file, with the rows of a load's table: they may be written to another folder."""
     # most programs that import drafts open none
-    from sevenbar.description.schema import context_of
+    from sevenbar.description.formulas import context_of
 
     return with_rows(raw, context_of(raw, source))
 

@@ -25,7 +25,8 @@ from sevenbar.text.listed import listed
 from sevenbar.text.units import LENGTHS, as_written, measured_unit
 
 if TYPE_CHECKING:
-    from sevenbar.description.schema import JointForm, LinkageForm, LinkForm, RssrForm
+    from sevenbar.description.loop_schema import JointForm, LinkForm, LoopForm, RssrForm
+    from sevenbar.description.schema import LinkageForm
     from sevenbar.forces.bodies import Body
 
 #: One number for each joint: a list, an array, a column of a data frame; a text has a unit of its own.
@@ -269,11 +270,19 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     It keeps the description, with the number of each formula in its place. Raises `DescriptionError` with
     all that is wrong; `source` is the file it came from.
     """
-    from sevenbar.description import formulas, schema
+    # `import sevenbar` needs no pydantic
+    from sevenbar.description.formulas import context_of, with_numbers
+    from sevenbar.description.loop_schema import loop_alone
 
-    context = schema.context_of(raw, source)
-    raw = formulas.with_numbers(raw, context)
-    form = schema.check(raw, context, source=source)
+    context = context_of(raw, source)
+    raw = with_numbers(raw, context)
+    form, more = loop_alone(raw, context), dict[str, Any]()
+    if form is None:
+        # few files have more, or are wrong
+        from sevenbar.description.schema import check
+
+        form = whole = check(raw, context, source=source)
+        more = {"loading": _loading(whole), "stops": _stops(whole)}
     if problems := disproportions(form):
         raise DescriptionError(problems, source)
     if form.rssr is not None:
@@ -286,8 +295,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
         linkage,
         points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
         description=raw,
-        loading=_loading(form),
-        stops=_stops(form),
+        **more,
     )
 
 
@@ -316,7 +324,7 @@ def _stops(form: LinkageForm) -> Stops:
     )
 
 
-def _values(form: LinkageForm) -> dict[Place, float]:
+def _values(form: LoopForm) -> dict[Place, float]:
     """The numbers of a form by their places, as its word asks for them."""
     found: dict[Place, float] = {}
     if form.rssr is not None:
@@ -332,7 +340,7 @@ def _values(form: LinkageForm) -> dict[Place, float]:
     return found
 
 
-def _linkage(form: LinkageForm, written: Form, joints: tuple[Joint, ...], **parts: Any) -> Linkage:
+def _linkage(form: LoopForm, written: Form, joints: tuple[Joint, ...], **parts: Any) -> Linkage:
     """The linkage of a form's word at its numbers."""
     # `import sevenbar` needs no words
     from sevenbar.kinematics.numbers.word import Slots, outer_of
@@ -354,7 +362,7 @@ def _linkage(form: LinkageForm, written: Form, joints: tuple[Joint, ...], **part
     )
 
 
-def _from_dimensions(form: LinkageForm, rssr: RssrForm) -> Linkage:
+def _from_dimensions(form: LoopForm, rssr: RssrForm) -> Linkage:
     return _linkage(
         form,
         "rssr",
@@ -368,7 +376,7 @@ def _from_dimensions(form: LinkageForm, rssr: RssrForm) -> Linkage:
     )
 
 
-def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...], source: str) -> Linkage:
+def _from_rows(form: LoopForm, rows: tuple[LinkForm, ...], source: str) -> Linkage:
     """Denavit-Hartenberg rows: the ground's frame is that of the last link, or that of planar textbooks."""
     dimensions: dict[str, float] = {}
     for i, row in enumerate(rows, 1):
@@ -391,7 +399,7 @@ def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...], source: str) -> Li
     return _linkage(form, "planar", joints, dimensions=dimensions)
 
 
-def _from_drawing(form: LinkageForm, drawn: tuple[JointForm, ...], source: str) -> Linkage:
+def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> Linkage:
     """Joints as drawn, all at zero."""
     names, kinds = zip(*form.joints, strict=True)
     rssr = "".join(kinds) == "RSSR"

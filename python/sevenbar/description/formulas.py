@@ -4,13 +4,46 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sevenbar.description.load_schema import load_kinds, spring_kinds
-from sevenbar.description.load_tables import with_rows
-from sevenbar.description.stop_schema import stop_kinds
-from sevenbar.description.values import NumberKind, value_in_file
+from sevenbar.description.load_tables import folder_of, with_rows
+from sevenbar.description.values import value_in_file
+from sevenbar.description.written import drive_of, driven, joints_of
 from sevenbar.errors import RequestError
+from sevenbar.text.units import ANGLES, LENGTHS, MASSES
+
+if TYPE_CHECKING:
+    from sevenbar.description.values import NumberKind
+
+
+def spring_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:
+    """What the numbers of a spring are: between two points, in a joint that slides, or in one that turns."""
+    turns = "joint" in table and context.get("freedoms", {}).get(_word(table["joint"])) != "slide"
+    return {
+        "at": "length",
+        "length": "length",
+        "free": "angle" if turns else "length",
+        "stiffness": "turning stiffness" if turns else "stiffness",
+        "damping": "turning damping" if turns else "damping",
+    }
+
+
+def load_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:  # noqa: ARG001
+    """What the numbers of a load are: those of the input by how it moves."""
+    moves: NumberKind = "length" if context.get("slides") else "angle"
+    return {"at": "length", "force": "force", "torque": "torque", "between": moves}
+
+
+def stop_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:
+    """What the numbers of a stop are: those of a range by how its joint moves."""
+    freedom = context.get("freedoms", {}).get(_word(table.get("joint")))
+    moves: NumberKind = "length" if freedom == "slide" else "angle"
+    return {"range": moves, "cone": "angle", "seat": "number", "stud": "number"}
+
+
+def _word(value: object) -> str:
+    return value.strip() if isinstance(value, str) else ""
+
 
 #: What the numbers of each table are; a test compares this with the schema.
 KINDS_OF_NUMBERS: Mapping[str, Mapping[str, NumberKind]] = {
@@ -30,13 +63,36 @@ KINDS_OF_NUMBERS: Mapping[str, Mapping[str, NumberKind]] = {
 _KINDS_IN = {"load": load_kinds, "spring": spring_kinds, "stop": stop_kinds}
 
 
+def context_of(raw: Mapping[str, Any], source: str = "") -> dict[str, Any]:
+    """What a number of the file needs to know of the rest: units, how joints move, the folder of `source`."""
+    angle_unit, length_unit = raw.get("angle_unit"), raw.get("length_unit")
+    forces = raw.get("forces")
+    mass_unit = forces.get("mass_unit") if isinstance(forces, Mapping) else None
+    joints = joints_of(raw)
+    column, _, _ = driven(joints, drive_of(raw))
+    slides = any(joint.columns.get(column) == "slide" for joint in joints)
+    unit = length_unit if isinstance(length_unit, str) and length_unit in LENGTHS else "mm"
+    return {
+        "length_unit": unit,
+        "angle_unit": angle_unit if isinstance(angle_unit, str) and angle_unit in ANGLES else "deg",
+        "mass_unit": mass_unit if isinstance(mass_unit, str) and mass_unit in MASSES else "kg",
+        "slides": unit if slides else None,
+        "freedoms": {
+            name: freedom
+            for joint in joints
+            for column, freedom in reversed(joint.columns.items())
+            for name in (joint.name, column)
+        },
+        "folder": folder_of(source),
+    }
+
+
 def with_numbers(raw: Mapping[str, Any], context: Mapping[str, Any]) -> Mapping[str, Any]:
     """A description with the number of each formula in its place, in the units of the file.
 
     `context` is that of the description. Tables of loads are in it with their rows.
     A text that is no formula stays, for the schema to refuse it.
 
-        >>> from sevenbar.description.schema import context_of
         >>> raw = {"angle_unit": "deg", "link": [{"twist": "pi/3", "length": "2 cm"}]}
         >>> with_numbers(raw, context_of(raw))["link"]
         [{'twist': 60.0, 'length': 20.0}]

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
+from sevenbar.description.formulas import load_kinds, spring_kinds
 from sevenbar.description.values import (
     FORMULA,
     POSITIVE,
     Component,
     Number,
-    NumberKind,
     TableForm,
     Text,
     Vector,
@@ -31,28 +30,6 @@ from sevenbar.text.units import MASSES
 
 #: Along which axes a load may be given.
 LOAD_AXES = ("ground", "link")
-
-
-def spring_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:
-    """What the numbers of a spring are: between two points, in a joint that slides, or in one that turns."""
-    turns = "joint" in table and context.get("freedoms", {}).get(_word(table["joint"])) != "slide"
-    return {
-        "at": "length",
-        "length": "length",
-        "free": "angle" if turns else "length",
-        "stiffness": "turning stiffness" if turns else "stiffness",
-        "damping": "turning damping" if turns else "damping",
-    }
-
-
-def load_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:  # noqa: ARG001
-    """What the numbers of a load are: those of the input by how it moves."""
-    moves: NumberKind = "length" if context.get("slides") else "angle"
-    return {"at": "length", "force": "force", "torque": "torque", "between": moves}
-
-
-def _word(value: object) -> str:
-    return value.strip() if isinstance(value, str) else ""
 
 
 def _mass(value: object, info: ValidationInfo) -> float:

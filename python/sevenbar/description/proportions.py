@@ -10,7 +10,7 @@ import numpy as np
 from sevenbar.errors import Problem, shown
 
 if TYPE_CHECKING:
-    from sevenbar.description.schema import JointForm, LinkageForm, LinkForm
+    from sevenbar.description.loop_schema import JointForm, LinkForm, LoopForm
 
 #: A length below this part of the greatest may be lost: poses count as closed when they miss by less.
 LEAST_SHARE = 1e-11
@@ -19,7 +19,7 @@ LEAST_SHARE = 1e-11
 MEANT = 1e-9
 
 
-def disproportions(form: LinkageForm) -> list[Problem]:
+def disproportions(form: LoopForm) -> list[Problem]:
     """What is wrong where most lengths are lost next to the greatest: the number that is too great.
 
     A loop is closed to a part of its size, so next to 1e15 a length of 1 is nothing, and circuits that differ

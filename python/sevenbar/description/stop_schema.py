@@ -7,13 +7,13 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo
 
+from sevenbar.description.formulas import stop_kinds
 from sevenbar.description.load_schema import Link
 from sevenbar.description.values import (
     Angle,
     Component,
     Direction,
     Length,
-    NumberKind,
     TableForm,
     Text,
     carried,
@@ -26,14 +26,6 @@ from sevenbar.description.values import (
 from sevenbar.description.written import Written, named_column, unknown_link
 from sevenbar.errors import Problem, RequestError, shown
 from sevenbar.kinematics.loop.stops import Cone, check_range
-
-
-def stop_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:
-    """What the numbers of a stop are: those of a range by how its joint moves."""
-    name = table.get("joint")
-    freedom = context.get("freedoms", {}).get(name.strip() if isinstance(name, str) else "")
-    moves: NumberKind = "length" if freedom == "slide" else "angle"
-    return {"range": moves, "cone": "angle", "seat": "number", "stud": "number"}
 
 
 def _range(value: object, info: ValidationInfo) -> tuple[float, float]:

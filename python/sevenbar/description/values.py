@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Annotated, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, cast
 
 from pydantic import (
     BaseModel,
@@ -20,9 +20,15 @@ from pydantic_core import PydanticCustomError
 
 from sevenbar.description.written import entries, meant_kind
 from sevenbar.errors import Problem, RequestError, shown, suggestion
-from sevenbar.text.amounts import Kind, plain_speed, value_of
-from sevenbar.text.quantities import QUANTITY_KINDS, QuantityKind, quantity_of
-from sevenbar.text.units import ANGLES, sliding_speed, turning_speed, unknown_unit
+from sevenbar.kinematics.loop.joint_text import drive_speed
+from sevenbar.text.units import ANGLES, unknown_unit
+
+if TYPE_CHECKING:
+    from sevenbar.text.amounts import Kind
+    from sevenbar.text.quantities import QuantityKind
+
+    #: What a number of a file may be.
+    NumberKind = Kind | QuantityKind
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
 LARGEST_DIMENSION = 1e100
@@ -31,10 +37,6 @@ EXAMPLE_OF_AXES = "as in [[1, 0, 0], [0, 1, 0]]"
 
 #: Sine of the angle below which the two axes of a joint U are one axis to the digits of a drawing.
 PARALLEL = 1e-9
-
-
-#: What a number of a file may be.
-NumberKind = Kind | QuantityKind
 
 
 class TableForm(BaseModel):
@@ -82,11 +84,15 @@ def refuse(message: str) -> PydanticCustomError:
 
 def value_in_file(text: str, kind: NumberKind, context: Mapping[str, Any]) -> float:
     """The number of a formula in the units of its file, which the context has by their keys."""
+    # a file without formulas needs no reader of them
+    from sevenbar.text.amounts import value_of
+    from sevenbar.text.quantities import QUANTITY_KINDS, quantity_of
+
     own = ("length_unit", "mass_unit" if kind in QUANTITY_KINDS else "angle_unit")
     units = {key: str(context[key]) for key in own if key in context}
     if kind in QUANTITY_KINDS:
-        return quantity_of(text, cast(QuantityKind, kind), **units)
-    return value_of(text, cast(Kind, kind), **units)
+        return quantity_of(text, cast("QuantityKind", kind), **units)
+    return value_of(text, cast("Kind", kind), **units)
 
 
 def number_for(value: object, info: ValidationInfo, kind: NumberKind = "number") -> float:
@@ -193,10 +199,8 @@ def one_word(end: str) -> Callable[[object], object]:
 
 
 def _speed(value: object, info: ValidationInfo) -> float:
-    slides = (info.context or {}).get("slides")
     try:
-        plain = plain_speed(value)
-        return sliding_speed(plain, slides) if slides else turning_speed(plain)
+        return drive_speed(value, (info.context or {}).get("slides"))
     except RequestError as error:
         raise refuse(str(error)) from None
 

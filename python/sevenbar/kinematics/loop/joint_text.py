@@ -65,7 +65,9 @@ def check_own_unit(key: str, angle: str) -> None:
 
 def joint_number(key: str, value: npt.ArrayLike, linkage: Loop, column: int) -> float:
     """The value of a joint [rad, or length] that a caller gives: a number, or a text as in "30 deg"."""
-    return finite_number(key, given_number(key, value, linkage.unit_of(column)))  # type: ignore[arg-type]
+    if isinstance(value, str):
+        return finite_number(key, given_number(key, value, linkage.unit_of(column)))  # type: ignore[arg-type]
+    return finite_number(key, value)
 
 
 def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -> Floats:
@@ -73,18 +75,32 @@ def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -
     return real_array(key, _read(key, values, [linkage.unit_of(column)]))
 
 
+def drive_speed(value: object, length_unit: str | None = None) -> float:
+    """The speed of a drive that turns [rad/s], or that slides [length_unit/s]; its number may be a formula.
+
+    Raises `RequestError` as `turning_speed` and `sliding_speed` do.
+
+        >>> drive_speed("2*3 rad/s"), drive_speed("2*3 cm/s", "mm")
+        (6.0, 60.0)
+    """
+
+    def read(given: object) -> float:
+        return turning_speed(given) if length_unit is None else sliding_speed(given, length_unit)
+
+    try:
+        return read(value)
+    except RequestError:
+        # most speeds, as `import sevenbar`, need no reader of formulas
+        from sevenbar.text.amounts import plain_speed
+
+        return read(plain_speed(value))
+
+
 def joint_speed(speed: object, linkage: Loop, column: int) -> float:
     """The speed of a joint [rad/s, or length/s] that a caller gives: a number, or a text as in "60 rpm"."""
     try:
         plain = float(speed) if isinstance(speed, np.number) else speed
-        if isinstance(plain, str):
-            # a number needs no reader of formulas
-            from sevenbar.text.amounts import plain_speed
-
-            plain = plain_speed(plain)
-        if not linkage.turns(column):
-            return sliding_speed(plain, linkage.length_unit)
-        return turning_speed(plain)
+        return drive_speed(plain, None if linkage.turns(column) else linkage.length_unit)
     except RequestError as error:
         raise RequestError(f"speed: {error}") from None
 
