@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sized
 from decimal import Decimal
 from numbers import Real
@@ -59,6 +60,8 @@ def triple(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
 
 def finite_number(name: str, value: npt.ArrayLike) -> float:
     """One finite number, or `RequestError`."""
+    if isinstance(value, float) and math.isfinite(value):
+        return float(value)
     array = real_array(name, value)
     if array.size != 1:
         raise RequestError(f"{name}: {array.size} values where one belongs; give one number")
@@ -120,8 +123,7 @@ def counted(words: Words) -> dict[str, int]:
     >>> counted(np.array(["ok", "dead-centre", "ok"]))
     {'dead-centre': 1, 'ok': 2}
     """
-    found, counts = np.unique(words, return_counts=True)
-    return {str(word): int(count) for word, count in zip(found, counts, strict=True)}
+    return dict(sorted(Counter(words.tolist()).items()))
 
 
 def within_turn(angles: npt.ArrayLike) -> Floats:

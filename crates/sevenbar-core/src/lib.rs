@@ -7,6 +7,7 @@ pub mod driven;
 pub mod error;
 pub mod loops;
 mod number;
+mod one_pose;
 pub mod outcome;
 pub mod parallel;
 pub mod piecewise;

@@ -204,13 +204,11 @@ class Linkage(Solvable):
         """
         column = self.input_column(input)
         value = joint_number("theta", theta, self, column)
-        general = self.agreeing(agree)._general
+        agreeing = self.agreeing(agree)
         if self._has_closed_form(method):
-            found = self._closed_form.modes(column, value)
-        else:
-            self._refuse_unheld()
-            found = general.modes(column, value)
-        return found.each_once(self, general.size)
+            return self._closed_form.modes(column, value)
+        self._refuse_unheld()
+        return agreeing._general.modes(column, value)
 
     def mobility(self, *, agree: float | None = None) -> Mobility:
         """How freely the loop moves: the count of freedoms, idle ones and redundant constraints by name.

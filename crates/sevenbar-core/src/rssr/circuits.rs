@@ -5,6 +5,7 @@ use super::frames::JOINT_COLUMNS;
 use super::linkage::{Input, Rssr};
 use super::motion::{Circuit, Motion, MotionType, branch_at};
 use super::pair::Pair;
+use crate::one_pose::each_once;
 use crate::outcome::{DeadCentreKind, RowStatus};
 use crate::taylor::Taylor;
 use std::f64::consts::TAU;
@@ -92,7 +93,7 @@ impl Rssr {
             return Vec::new();
         };
         let count = if slope == 0.0 { 1 } else { 2 };
-        (0..count)
+        let modes = (0..count)
             .map(|branch| {
                 let follower = pair.angle(&reach, slope, branch);
                 let (crank, rocker) = Self::in_loop_order(input, driver, follower);
@@ -100,7 +101,8 @@ impl Rssr {
                 let wrapped = joints.map(|q| -turn_between(q.value(), 0.0));
                 (wrapped, self.residual(crank, rocker))
             })
-            .collect()
+            .collect();
+        each_once(modes, |_| None)
     }
 
     /// Joint values at a change point, an input of those of a motion, angles in (-pi, pi]; and the circuits that meet there, by their

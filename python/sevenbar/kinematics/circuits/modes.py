@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats, Words, short_way
-from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.arrays import Floats, Words
 from sevenbar.text.printing import Printed
-
-#: Modes nearer to each other in every joint [rad, or relative to the size] are one pose.
-ONE_POSE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -67,21 +62,3 @@ class Modes(Printed):
 
     def __len__(self) -> int:
         return len(self.q)
-
-    def each_once(self, loop: Loop, size: float) -> Modes:
-        """The same without poses that rounding alone keeps apart; slides count relative to the `size`.
-
-        At a dead centre two modes are one, which a solver finds twice, apart by the root of its rounding.
-        """
-        # no two poses are near whose sums are not: most often that is all there is to compute
-        sums = sorted(np.cos(self.q).sum(axis=1).tolist())
-        least = ONE_POSE * len(self.columns) * max(size, 1.0)
-        if all(after - before > least for before, after in pairwise(sums)):
-            return self
-        turns = np.array([loop.turns(name) for name in self.columns])
-        apart = self.q[:, None] - self.q
-        apart = np.abs(np.where(turns, short_way(apart), apart / size))
-        # turns without a direction are those of one pose, too
-        near = (np.isnan(apart) | (apart < ONE_POSE)).all(axis=2)
-        first = ~np.tril(near, -1).any(axis=1)
-        return replace(self, q=self.q[first], residual=self.residual[first])

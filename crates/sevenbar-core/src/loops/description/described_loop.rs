@@ -143,7 +143,7 @@ impl Loop {
     }
 
     /// Whether a column is a length.
-    pub(super) fn is_slide(&self, column: usize) -> bool {
+    pub(crate) fn is_slide(&self, column: usize) -> bool {
         self.reduced.parts[self.joint_of(column)].kind == Kind::Slide
     }
 

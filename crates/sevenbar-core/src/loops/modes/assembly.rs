@@ -4,6 +4,7 @@ use super::curves_at_input::pose_on_curve;
 use super::finder::{Completeness, ModeFinder};
 use crate::loops::description::described_loop::Loop;
 use crate::loops::description::joint_values::joint_values;
+use crate::one_pose::each_once;
 
 /// All assembly modes at one input.
 #[derive(Clone, Debug)]
@@ -34,7 +35,9 @@ pub fn modes(linkage: &Loop, column: usize, value: f64) -> Option<Modes> {
     let on_curve = fewer.then(|| pose_on_curve(chain, input, value)).flatten();
     let closed = |at| (joint_values(linkage, at), chain.residual(&chain.place(at)));
     Some(Modes {
-        modes: found.modes.iter().map(closed).collect(),
+        modes: each_once(found.modes.iter().map(closed).collect(), |column| {
+            linkage.is_slide(column).then(|| linkage.size())
+        }),
         completeness,
         open_by: found.open_by,
         on_curve: on_curve.map(|at| joint_values(linkage, &at)),
