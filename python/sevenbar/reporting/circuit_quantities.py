@@ -261,22 +261,29 @@ def way_round(circuit: Circuit) -> str:
     return turns_text(circuit.turns) if circuit.turns else say("to and fro")
 
 
-def cells_of(motion: Motion, form: Literal["list", "table"], *, in_brief: bool = False) -> list[Reported]:
+def cells_of(
+    motion: Motion,
+    form: Literal["list", "table"],
+    *,
+    in_brief: bool = False,
+    circuits: Sequence[Circuit] | None = None,
+) -> list[Reported]:
     """Each quantity with its cells, without those that say nothing, or that the facts hold already.
 
-    `in_brief` those that have a role, since others take time.
+    `in_brief` those that have a role, since others take time; cells of all circuits, or of some for the same
+    reason.
     """
+
+    def is_held(quantity: CircuitQuantity) -> bool:
+        return quantity.role == "input range" and {*map(quantity.cells, motion)} == {(say("full turns"),)}
+
+    shown = motion.circuits if circuits is None else circuits
     found = [
-        (quantity, [quantity.cells(circuit) for circuit in motion])
+        (quantity, [quantity.cells(circuit) for circuit in shown])
         for quantity in quantities_of(motion)
-        if quantity.only in ("", form) and (quantity.role or not in_brief)
+        if quantity.only in ("", form) and (quantity.role or not in_brief) and not is_held(quantity)
     ]
-    return [
-        (quantity, cells)
-        for quantity, cells in found
-        if any(cell[0] not in nothing() for cell in cells)
-        and not (quantity.role == "input range" and set(cells) == {(say("full turns"),)})
-    ]
+    return [(quantity, cells) for quantity, cells in found if any(cell[0] not in nothing() for cell in cells)]
 
 
 def nothing() -> Texts:

@@ -136,9 +136,8 @@ def circuit_facts(motion: Motion, circuit: Circuit, *, brief: bool = False) -> l
 
     In `brief` its motion type and its ranges.
     """
-    every = cells_of(motion, "list", in_brief=brief)
-    reported = [(quantity, [cells[circuit.index]]) for quantity, cells in every]
-    return [(label, cells[0]) for label, cells in _lines(reported) if cells[0] not in nothing()]
+    lines = _lines(cells_of(motion, "list", in_brief=brief, circuits=(circuit,)))
+    return [(label, cells[0]) for label, cells in lines if cells[0] not in nothing()]
 
 
 def _lines(reported: Sequence[Reported]) -> list[tuple[str, Texts]]:

@@ -17,7 +17,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.circuits.poses import frames_along
 from sevenbar.kinematics.loop.joints import JointKind, kind_row
-from sevenbar.kinematics.loop.rigid import about, inverse, pose
+from sevenbar.kinematics.loop.rigid import about, inverse
 from sevenbar.simulation.acting import PlacedLoading, acting
 
 #: The number of the ground among the bodies.
@@ -185,7 +185,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
             carrier = STILL if before == GROUND else bodies[before]
             start = carrier.frame @ frame_before
             velocity = carrier.velocity + np.cross(carrier.spin, start[:3, 3] - carrier.frame[:3, 3])
-            cross, spin = start @ pose(about(step.axis, q[0])), carrier.spin + paces[0] * start[:3, step.axis]
+            cross, spin = start @ about(step.axis, q[0], 4), carrier.spin + paces[0] * start[:3, step.axis]
             bodies.append(MovingBody(f"{joint.name}_cross", 0, cross, velocity, spin))
             after = len(bodies) - 1
             name, kind = joint.columns[0], step.letter

@@ -79,7 +79,7 @@ class Joint:
 
     def before(self, step: Step) -> Floats:
         """The fixed transform (4, 4) before a step."""
-        return pose(about(X, self.angle)) if step.tilted else np.eye(4)
+        return about(X, self.angle, 4) if step.tilted else np.eye(4)
 
     def motion(self, q: Floats) -> Floats:
         """The motion Z (n, 4, 4) of the link after the joint for the values of its columns (n, columns)."""
@@ -98,7 +98,7 @@ class Joint:
 def moved_by(step: Step, values: Floats) -> Floats:
     """The motions (n, 4, 4) of a step by its values (n,)."""
     if step.freedom == "turn":
-        return pose(about(step.axis, values))
+        return about(step.axis, values, 4)
     return pose(np.eye(3), values[:, None] * np.eye(3)[step.axis])
 
 

@@ -52,17 +52,18 @@ def placed(frame: Floats, place: npt.ArrayLike) -> Floats:
     return np.asarray(frame[:3, :3] @ np.asarray(place, dtype=np.float64) + frame[:3, 3])
 
 
-def about(axis: int, angle: npt.ArrayLike) -> Floats:
+def about(axis: int, angle: npt.ArrayLike, size: int = 3) -> Floats:
     """The rotations (..., 3, 3) about x, y or z (`axis` 0, 1, 2) by angles (...) [rad].
 
-    Quarter turns are exact: a cosine or sine of which only rounding is left is 0.
+    Quarter turns are exact: a cosine or sine of which only rounding is left is 0. With `size` 4 they are
+    motions (..., 4, 4).
     """
     angles = np.asarray(angle, dtype=np.float64)
     rounding = np.minimum(np.finfo(float).eps * np.abs(angles), MOST_ROUNDING)
     cosine, sine = (np.where(np.abs(v) < rounding, 0.0, v) for v in (np.cos(angles), np.sin(angles)))
-    matrix = np.zeros((*angles.shape, 3, 3))
+    matrix = np.zeros((*angles.shape, size, size))
     first, second = (axis + 1) % 3, (axis + 2) % 3
-    matrix[..., axis, axis] = 1.0
+    matrix[..., axis, axis] = matrix[..., 3:, 3:] = 1.0
     matrix[..., first, first] = matrix[..., second, second] = cosine
     matrix[..., second, first], matrix[..., first, second] = sine, -sine
     return matrix
