@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sevenbar.curves.curve import TimedRows, greatest, mean, shares_of
+from sevenbar.curves.curve import greatest, mean
 from sevenbar.curves.cycle_series import ENOUGH, CycleSeries, cycle_series
 from sevenbar.curves.pieces import Pieces, pieces
 from sevenbar.curves.stationary import highest_between, zeros_between
+from sevenbar.curves.timed_rows import TimedRows, shares_of
 
 
 def grid(count, first=0.0, period=math.tau):

@@ -166,7 +166,7 @@ def _everything(precise: PreciseRssr, place: np.ndarray) -> Callable[[mp.mpf, mp
 def worst(errors: list[Error], below: float) -> np.ndarray:
     """The greatest errors of the three derivatives where the condition is below a bound."""
     chosen = [e.relative for e in errors if e.condition < below]
-    assert len(chosen) > 20
+    assert len(chosen) > 10
     return np.max(chosen, axis=0)
 
 

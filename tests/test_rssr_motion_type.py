@@ -90,7 +90,7 @@ def test_motion_types_are_those_that_sampling_finds(cases: list[Case]) -> None:
         assert {circuit.motion_type for circuit in case.motion} <= types
         seen.update(types)
     assert set(seen) == set(MIRRORED) - {"change-point"}
-    assert min(seen.values()) >= (100 if len(cases) > 1000 else 10)
+    assert min(seen.values()) >= (100 if len(cases) > 1000 else 4)
 
 
 def test_there_are_as_many_circuits_as_sampling_finds(cases: list[Case]) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.ranges.reach import reaches, stopped_by
-from sevenbar.studio.panels.downloads import _rows
+from sevenbar.studio.panels.playback import _rows
 from sevenbar.studio.state.session import Session
 
 RSSR = "format = 1\n[rssr]\nM = 700\nN = 700\nL1 = 250\nL3 = 550\nD = 0\n"

@@ -21,7 +21,7 @@ from sevenbar.reporting.files import Report
 from sevenbar.text.words import say
 
 if TYPE_CHECKING:
-    from sevenbar.description.draft import HeldDimensions
+    from sevenbar.description.held import HeldDimensions
     from sevenbar.sweep.result import Sweep
 
 #: Most linkages of a sweep that leaves no folder: what is made in minutes may be lost.

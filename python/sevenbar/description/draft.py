@@ -1,4 +1,4 @@
-"""A description that is being shaped: its dimensions, what changes, what stays, its way back to a file."""
+"""A description that is being shaped: its dimensions by name, what changes it, and its way back to a file."""
 
 from __future__ import annotations
 
@@ -17,10 +17,6 @@ from sevenbar.errors import RequestError, of_extra, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Loop, Place
 from sevenbar.kinematics.numbers.dimensions import Dimension, description_of, dimensions_of, masses_of
-from sevenbar.text.words import say
-
-#: Dimensions that stay and that a line names; the others are counted.
-MOST_NAMED = 8
 
 #: Characters of a line from which rows of a load's table are written one below the other.
 LONGEST_ROWS = 110
@@ -266,63 +262,3 @@ def _settle_list(rows: Any, wanted: Sequence[Any]) -> None:
             _settle_list(rows[i], value)
         elif rows[i] != value:
             rows[i] = value
-
-
-@dataclass(frozen=True)
-class HeldDimensions:
-    """The dimensions that stay, those of them that the file leaves out, and those that follow.
-
-    >>> import sevenbar as sb
-    >>> draft = Draft.of_linkage(sb.load("rssr"))
-    >>> held_of(draft.holding(), {"L1", "L3"}).text
-    'M, N, D, L2 (997.497 mm in the design)'
-    >>> held_of(draft.holding(["L2"]), {"L1", "L3"}).text
-    'M, N, D; L2 follows (997.497 mm in the design)'
-    """
-
-    stay: tuple[Dimension, ...]
-    left_out: tuple[str, ...]
-    follow: tuple[Dimension, ...]
-
-    @property
-    def text(self) -> str:
-        """The dimensions in a line; empty where all change."""
-        given = [d.name for d in self.stay if d.name not in self.left_out]
-        rest = len(given) - MOST_NAMED
-        given = [*given[:MOST_NAMED], *([say("{count} more", count=rest)] if rest > 0 else [])]
-        named = [*given, *(_with_value(d.name, d) for d in self.stay if d.name in self.left_out)]
-        follow = (say("{dimension} follows", dimension=d.name) for d in self.follow)
-        lines = [", ".join(named), *map(_with_value, follow, self.follow)]
-        return say("; ").join(line for line in lines if line)
-
-    @property
-    def left_to_the_program(self) -> bool:
-        """Whether the file leaves a dimension out that is held or follows here."""
-        return bool(self.left_out or self.follow)
-
-    @property
-    def as_dict(self) -> dict[str, Any]:
-        """The values (in the units of the file) of what stays, and the names of what the file leaves out."""
-        return {
-            "held": {d.name: d.value for d in self.stay},
-            "left_out": [*self.left_out, *(d.name for d in self.follow)],
-            "follow": [d.name for d in self.follow],
-        }
-
-
-def held_of(draft: Draft, moved: Collection[str]) -> HeldDimensions:
-    """What of a draft stays as it is while the dimensions `moved`, by name, change.
-
-    Points and the speed are not among it: they move no joint.
-    """
-    own = [d for d in draft.dimensions if d.kind != "speed" and d.place[0] != "point" and d.name not in moved]
-    return HeldDimensions(
-        tuple(d for d in own if not d.follows),
-        tuple(d.name for d in own if d.name in draft.held),
-        tuple(d for d in own if d.follows),
-    )
-
-
-def _with_value(what: str, dimension: Dimension) -> str:
-    value = f"{dimension.value:.6g} {dimension.unit}"
-    return say("{what} ({value} in the design)", what=what, value=value)

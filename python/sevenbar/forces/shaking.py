@@ -21,8 +21,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.curves.curve import Curve, Peak, TimedRows, mean
+from sevenbar.curves.curve import Curve, Peak, mean
 from sevenbar.curves.cycle_series import cycle_series
+from sevenbar.curves.timed_rows import TimedRows
 from sevenbar.text.printing import Printed
 
 if TYPE_CHECKING:

@@ -22,9 +22,10 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Booleans, Floats, finite_number
-from sevenbar.curves.curve import Curve, Peak, TimedRows, greatest, mean
+from sevenbar.curves.curve import Curve, Peak, greatest, mean
 from sevenbar.curves.cycle_series import CycleSeries, cycle_series, filled
 from sevenbar.curves.pieces import pieces
+from sevenbar.curves.timed_rows import TimedRows
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.printing import Printed
 

@@ -34,7 +34,8 @@ from typing import Literal
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.description.draft import Draft, HeldDimensions, held_of
+from sevenbar.description.draft import Draft
+from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import RequestError, check_word, of_extra, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.numbers.sensitivity import Numbers

@@ -8,7 +8,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.curves.curve import Peak, shares_of
+from sevenbar.curves.curve import Peak
+from sevenbar.curves.timed_rows import shares_of
 from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Loading

@@ -18,17 +18,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.rigid import inverse, quaternion
-from sevenbar.simulation.mjcf_acting import (
-    add,
-    add_springs,
-    gyration,
-    heaviest,
-    inertial,
-    joint_spring,
-    mark,
-    numbers,
-    placed,
-)
+from sevenbar.simulation.mjcf_acting import add_springs, gyration, heaviest, inertial, joint_spring
+from sevenbar.simulation.mjcf_elements import add, mark, numbers, placed
 from sevenbar.simulation.prototype import GROUND, STILL, Connection, Prototype, SpinRule
 from sevenbar.text.units import LENGTHS
 

@@ -1,4 +1,4 @@
-"""Elements of MJCF, and what acts on a prototype in it: masses, springs and dampers.
+"""What acts on a prototype, as MJCF: masses, springs and dampers.
 
 Loads are not written: MJCF has none. They are applied while the engine runs (`mujoco_engine`).
 """
@@ -6,17 +6,14 @@ Loads are not written: MJCF has none. They are applied while the engine runs (`m
 from __future__ import annotations
 
 from xml.etree import ElementTree
-from xml.etree.ElementTree import Element, SubElement
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.loop.rigid import pose, quaternion
+from sevenbar.kinematics.loop.rigid import pose
+from sevenbar.simulation.mjcf_elements import add, mark, numbers
 from sevenbar.simulation.prototype import GROUND, GYRATION, Prototype
 from sevenbar.text.units import LENGTHS
-
-#: Radius of the sites that springs end at, as a part of the linkage's size.
-SITE = 0.008
 
 #: Mass of every body where nothing acts [kg]: the motion that the drive prescribes does not depend on it.
 MASS = 1.0
@@ -27,27 +24,6 @@ LEAST_GYRATION = 0.01
 #: The mass of what has none, as a part of the heaviest body's: MuJoCo takes no moving body without mass, and
 #: its soft loop gives way where bodies are very unequal.
 MASSLESS = 1e-5
-
-
-def add(parent: Element, tag: str, **attributes: str) -> Element:
-    """A new element at the end of another."""
-    return SubElement(parent, tag, attributes)
-
-
-def numbers(values: object) -> str:
-    """Numbers with all their digits, a zero without its sign."""
-    return " ".join(f"{float(value) + 0.0:.17g}" for value in np.asarray(values, dtype=float).reshape(-1))
-
-
-def placed(frame: Floats, metre: float) -> dict[str, str]:
-    """Where a frame (4, 4) is in its parent, lengths times `metre`."""
-    return {"pos": numbers(frame[:3, 3] * metre), "quat": numbers(quaternion(frame[:3, :3]))}
-
-
-def mark(element: Element, name: str, frame: Floats, model: Prototype) -> None:
-    """A site at a frame of a body, or of the ground."""
-    metre = LENGTHS[model.length_unit]
-    add(element, "site", name=name, size=f"{SITE * model.size * metre:.6g}", **placed(frame, metre))
 
 
 def gyration(model: Prototype) -> float:

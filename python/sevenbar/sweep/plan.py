@@ -14,7 +14,8 @@ import numpy as np
 
 from sevenbar import __version__
 from sevenbar.arrays import Floats, whole_number
-from sevenbar.description.draft import Draft, HeldDimensions, held_of
+from sevenbar.description.draft import Draft
+from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage

@@ -10,7 +10,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers, whole_number
-from sevenbar.description.draft import Draft, HeldDimensions, held_of
+from sevenbar.description.draft import Draft
+from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.maps.mesh import Scheme, meshed
 from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Booleans, Floats, finite_array, whole_number
-from sevenbar.curves.curve import shares_of
 from sevenbar.curves.stationary import highest_between
+from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.driven import driven as driven_circuit

@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, Integers, Words, counted
-from sevenbar.description.draft import HeldDimensions, held_of
+from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances
 from sevenbar.errors import RequestError

@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from sevenbar.arrays import Floats, triple
-from sevenbar.curves.curve import shares_of
+from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError
 from sevenbar.forces.counterweights import Balance, counterweights
 from sevenbar.forces.mounts import Mount

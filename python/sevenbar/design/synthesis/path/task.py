@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import finite_array, whole_number
-from sevenbar.description.draft import Draft, HeldDimensions, held_of
+from sevenbar.description.draft import Draft
+from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import OPENINGS, closed_poses

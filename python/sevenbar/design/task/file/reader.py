@@ -18,7 +18,8 @@ from sevenbar.description.values import TableForm
 from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
 from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form
-from sevenbar.design.task.file.tables import amount, must_of, want_of
+from sevenbar.design.task.file.tables import must_of, want_of
+from sevenbar.design.task.file.units import amount
 from sevenbar.design.task.task import DesignTask, FreeNumber, Most, Must, Want
 from sevenbar.errors import (
     DescriptionError,

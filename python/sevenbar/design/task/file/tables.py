@@ -1,4 +1,4 @@
-"""The tables of a task file as values of a task: wants, musts, and values whose unit the linkage decides."""
+"""The tables of a task file as values of a task: what is wanted, and what must hold."""
 
 from __future__ import annotations
 
@@ -13,18 +13,15 @@ from sevenbar.arrays import Floats
 from sevenbar.design.curve_table import read_curve, read_poses
 from sevenbar.design.task import task as kinds
 from sevenbar.design.task.file import schema
+from sevenbar.design.task.file.units import amount, figure_value, reading, reading_span
 from sevenbar.design.task.file.values import Given
 from sevenbar.design.task.task import Must, Want, linkage_size, residual_unit
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.design.wish import chebyshev, read_pairs, wish_of_function
-from sevenbar.errors import RequestError, TableError, shown
+from sevenbar.errors import RequestError, TableError
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.kinematics.loop.rigid import inverse, pose, turns_about, unit
-from sevenbar.kinematics.measures import measures_named
-from sevenbar.text.amounts import amount_in
 from sevenbar.text.expression import function_of
-from sevenbar.text.units import examples_of
 
 T = TypeVar("T")
 
@@ -210,9 +207,6 @@ def _read(key: str, reader: Callable[[Path], T], path: Path) -> T:
         raise RequestError(f"{key}: {error}") from None
 
 
-# ---- what must hold
-
-
 def must_of(form: schema.MustForm, linkage: Linkage, wants: Sequence[Want]) -> Must:
     """The must of a table; raises `RequestError` with the key at fault."""
     match form:
@@ -253,38 +247,3 @@ def _most(form: schema.MostMust, linkage: Linkage, wants: Sequence[Want]) -> flo
             return 1.0
         case _:
             return amount("most", form.most, linkage.length_unit) / unit
-
-
-# ---- values whose unit the linkage decides
-
-
-def reading(key: str, value: Given, linkage: Linkage, column: str) -> float:
-    """A value of a joint [rad, or length]; a plain number is in degrees where it turns."""
-    text = value if isinstance(value, str) else repr(value)
-    return joint_value(text, key, linkage, linkage.columns.index(column))
-
-
-def reading_span(key: str, ends: tuple[Given, Given], linkage: Linkage, column: str) -> tuple[float, float]:
-    """The two ends of a joint's range [rad, or length]."""
-    return reading(key, ends[0], linkage, column), reading(key, ends[1], linkage, column)
-
-
-def figure_value(key: str, value: Given, linkage: Linkage, name: str) -> float:
-    """A value of a measure in the unit that it is read in; a number stays as it is."""
-    if not isinstance(value, str):
-        return value
-    try:
-        (measure,) = measures_named([name])
-    except RequestError:
-        # the name is checked with the task
-        return 0.0
-    unit = measure.unit(linkage, linkage.drive.output)
-    return amount(key, value, unit if unit in ("deg", linkage.length_unit) else "")
-
-
-def amount(key: str, value: Given, unit: str) -> float:
-    """A value in a unit; a number stays as it is."""
-    found = amount_in(value, unit) if isinstance(value, str) else value
-    if found is None:
-        raise RequestError(f"{key}: {shown(value)} does not fit; give {examples_of(unit)}")
-    return found
