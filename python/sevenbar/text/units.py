@@ -131,6 +131,11 @@ def _quotient(size: float, other: float) -> float:
     return round(size * 1e6) / round(other * 1e6)
 
 
+def in_range(speed: float) -> bool:
+    """Whether a speed [rad/s, or length/s] is one that moves something and that rates can be computed of."""
+    return SLOWEST <= abs(speed) <= FASTEST
+
+
 def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str) -> float:
     hint = f"give a number and a unit, as in {example}"
     if isinstance(value, str):
@@ -142,7 +147,7 @@ def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str)
             speed = math.inf
     else:
         raise RequestError(f"{shown(value)} is not a speed; {hint}")
-    if SLOWEST <= abs(speed) <= FASTEST:
+    if in_range(speed):
         return speed
     first = example.split(" or ")[0]
     if speed == 0:

@@ -14,7 +14,7 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.once import once_for
-from sevenbar.kinematics.loop.rigid import inverse, pose
+from sevenbar.kinematics.loop.rigid import inverse, pose, product
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +104,7 @@ def frames_of(linkage: Loop, q: Floats) -> Floats:
     found = []
     for joint, own, link in zip(linkage.joints[:-1], linkage.places[:-1], linkage.links, strict=True):
         found.append(now @ joint.motion(q[:, own]))
-        now = found[-1] @ link
+        now = product(found[-1], link)
     return np.stack(found, axis=1)
 
 
@@ -113,9 +113,13 @@ def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
 
     `frames` (n, moving links, 4, 4) are those of the links, as `frames_of` gives them.
     """
-    still = (len(frames), 1, 4, 4)
-    before = np.concatenate([np.broadcast_to(linkage.base, still), frames @ linkage.links], axis=1)
-    return before, np.concatenate([frames, np.broadcast_to(linkage.ground, still)], axis=1)
+    rows, links = frames.shape[:2]
+    before, after = np.empty((2, rows, links + 1, 4, 4))
+    before[:, 0], after[:, -1] = linkage.base, linkage.ground
+    after[:, :-1] = frames
+    for i, link in enumerate(linkage.links):
+        before[:, i + 1] = product(frames[:, i], link)
+    return before, after
 
 
 def frames_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:

@@ -16,7 +16,7 @@ from sevenbar.arrays import Booleans, Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.loading import UNLOADED, Loading
 from sevenbar.kinematics.loop.joints import Freedom, JointKind, Step, X, Z, kind_row
-from sevenbar.kinematics.loop.rigid import about, inverse, pose
+from sevenbar.kinematics.loop.rigid import about, inverse, pose, product
 from sevenbar.kinematics.loop.stops import NO_STOPS, Stops
 from sevenbar.text.printing import Drawable
 
@@ -87,7 +87,7 @@ class Joint:
         for step, values in self.steps(q):
             parts += [self.before(step)] if step.tilted else []
             parts.append(moved_by(step, values))
-        return reduce(np.matmul, parts)
+        return reduce(product, parts)
 
     def slid(self, q: Floats) -> Floats:
         """How far it has slid along its axis (n,) [length] for the values of its columns (n, columns)."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.text.units import examples_of, sliding_speed, turning_speed
+from sevenbar.text.units import examples_of, in_range, sliding_speed, turning_speed
 
 
 def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
@@ -72,7 +74,7 @@ def joint_number(key: str, value: npt.ArrayLike, linkage: Loop, column: int) -> 
 
 def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -> Floats:
     """Values of a joint (n,) [rad, or length] that a caller gives: numbers, or texts; finite or not."""
-    return real_array(key, _read(key, values, [linkage.unit_of(column)]))
+    return real_array(key, _read(key, values, lambda _: linkage.unit_of(column)))
 
 
 def drive_speed(value: object, length_unit: str | None = None) -> float:
@@ -98,6 +100,9 @@ def drive_speed(value: object, length_unit: str | None = None) -> float:
 
 def joint_speed(speed: object, linkage: Loop, column: int) -> float:
     """The speed of a joint [rad/s, or length/s] that a caller gives: a number, or a text as in "60 rpm"."""
+    # what most calls give; the reader costs as much as a few poses
+    if isinstance(speed, float) and in_range(speed):
+        return float(speed)
     try:
         plain = float(speed) if isinstance(speed, np.number) else speed
         return drive_speed(plain, None if linkage.turns(column) else linkage.length_unit)
@@ -107,16 +112,14 @@ def joint_speed(speed: object, linkage: Loop, column: int) -> float:
 
 def pose_numbers(key: str, values: npt.ArrayLike, linkage: Loop) -> Floats:
     """The values of all columns (columns,) [rad, or length] that a caller gives: finite numbers, or texts."""
-    units = [linkage.unit_of(column) for column in range(len(linkage.columns))]
-    return finite_array(key, _read(key, values, units))
+    last = len(linkage.columns) - 1
+    return finite_array(key, _read(key, values, lambda i: linkage.unit_of(min(i, last))))
 
 
-def _read(key: str, values: npt.ArrayLike, units: list[str]) -> npt.ArrayLike:
-    """Values with texts read, each in its unit; the last one is that of all others."""
+def _read(key: str, values: npt.ArrayLike, unit_of: Callable[[int], str]) -> npt.ArrayLike:
+    """Values with texts read, each in the unit of its place."""
     if isinstance(values, str):
-        return given_number(key, values, units[0])  # type: ignore[return-value]
+        return given_number(key, values, unit_of(0))  # type: ignore[return-value]
     if not isinstance(values, (list, tuple)) or not any(isinstance(value, str) for value in values):
         return values
-    return [
-        given_number(f"{key}[{i}]", value, units[min(i, len(units) - 1)]) for i, value in enumerate(values)
-    ]  # type: ignore[return-value]
+    return [given_number(f"{key}[{i}]", value, unit_of(i)) for i, value in enumerate(values)]  # type: ignore[return-value]

@@ -18,8 +18,8 @@ from sevenbar.arrays import Floats
 #: How far the product of a rotation and its transpose may be from 1: figures written with four decimals pass.
 ROUNDED = 1e-3
 
-#: What is rounding of a cosine or sine at most, however large the angle.
-MOST_ROUNDING = 1e-9
+#: What is rounding of a cosine or sine: this share of the angle, and so much at most.
+EPSILON, MOST_ROUNDING = float(np.finfo(float).eps), 1e-9
 
 
 def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
@@ -47,6 +47,14 @@ def inverse(motion: Floats) -> Floats:
     return pose(back, -(back @ motion[..., :3, 3:])[..., 0])
 
 
+def product(first: Floats, second: Floats) -> Floats:
+    """The product of two motions (4, 4) or stacks of motions (n, 4, 4)."""
+    if first.ndim > second.ndim:
+        # one product of all rows is several times as quick as one for each
+        return np.asarray((first.reshape(-1, 4) @ second).reshape(first.shape))
+    return np.asarray(first @ second)
+
+
 def placed(frame: Floats, place: npt.ArrayLike) -> Floats:
     """A place (3,) written in a frame (4, 4), in the coordinates in which that frame is given."""
     return np.asarray(frame[:3, :3] @ np.asarray(place, dtype=np.float64) + frame[:3, 3])
@@ -59,7 +67,7 @@ def about(axis: int, angle: npt.ArrayLike, size: int = 3) -> Floats:
     motions (..., 4, 4).
     """
     angles = np.asarray(angle, dtype=np.float64)
-    rounding = np.minimum(np.finfo(float).eps * np.abs(angles), MOST_ROUNDING)
+    rounding = np.minimum(EPSILON * np.abs(angles), MOST_ROUNDING)
     cosine, sine = (np.where(np.abs(v) < rounding, 0.0, v) for v in (np.cos(angles), np.sin(angles)))
     matrix = np.zeros((*angles.shape, size, size))
     first, second = (axis + 1) % 3, (axis + 2) % 3

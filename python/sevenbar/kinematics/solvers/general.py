@@ -21,6 +21,7 @@ from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
+from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rigid import axis_to_z, inverse
 
 if TYPE_CHECKING:
@@ -320,6 +321,7 @@ class Expanded(NamedTuple):
     columns: list[int]
 
 
+@once_for(0)
 def expanded(linkage: Loop) -> Expanded:
     """The joints of a loop as the core takes them: screws and balls whole, any other step by step."""
     letters, advances, fixed = "", [], []

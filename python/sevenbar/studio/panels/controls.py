@@ -20,10 +20,11 @@ def put(control: Any, value: object) -> None:
     control.value = value
 
 
-def offer(control: Any, choices: tuple[str, ...]) -> None:
-    """Sets what can be chosen; what is offered already is not sent to the page again."""
-    if control.options != choices:
-        control.options = choices
+def settle(control: Any, **properties: object) -> None:
+    """Sets properties that are not so already: viser takes long to find that nothing is new."""
+    for name, value in properties.items():
+        if getattr(control, name) != value:
+            setattr(control, name, value)
 
 
 def by_person(event: viser.GuiEvent[Any]) -> bool:

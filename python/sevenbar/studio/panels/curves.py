@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import viser
 
-from sevenbar.studio.panels.controls import offer, put
+from sevenbar.studio.panels.controls import put, settle
 from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
@@ -83,5 +83,5 @@ class CurvesPanel:
         names = tuple(self._offered)
         for choice, first in zip(self._choices, names, strict=False):
             was = choice.value
-            offer(choice, names)
+            settle(choice, options=names)
             put(choice, was if was in names else first)

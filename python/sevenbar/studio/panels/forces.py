@@ -15,7 +15,7 @@ from sevenbar.drawing.style import REACTION
 from sevenbar.kinematics.circuits.poses import at_row
 from sevenbar.reporting.force_words import NOTHING_ACTS, drive_facts, open_facts
 from sevenbar.reporting.shown import number
-from sevenbar.studio.panels.controls import offer, on_change, put
+from sevenbar.studio.panels.controls import on_change, put, settle
 from sevenbar.studio.panels.scenery import arrow_unit
 from sevenbar.studio.pictures.stage import Arrow, Stage
 from sevenbar.studio.state.acting import Switch, SwitchedLoading, drive_sizing, known_force
@@ -73,7 +73,7 @@ class ForceArrows:
         """What can be chosen; a joint that there is no more goes back to none."""
         self._names, was = names, self._choice.value
         choices = (NO_ARROWS, EVERY_JOINT, *names) if names else (NO_ARROWS,)
-        offer(self._choice, choices)
+        settle(self._choice, options=choices)
         put(self._choice, was if was in choices else NO_ARROWS)
 
     def _wanted(self, chosen: str) -> list[int]:
@@ -141,7 +141,7 @@ class ForcesPanel:
         if shown == self._shown:
             return
         self._shown = shown
-        self._hint.content = _nothing() if acting.is_empty else ""
+        settle(self._hint, content=_nothing() if acting.is_empty else "")
         if acting.is_empty or self._session.view is None:
             self._text = ""
             self._worker.ask("peaks", lambda: None)
@@ -164,9 +164,8 @@ class ForcesPanel:
         self._tell(stale=bool(self._session.problem))
 
     def _tell(self, *, stale: bool) -> None:
-        self._facts.content = (
-            f'<div style="opacity:0.45">{self._text}</div>' if stale and self._text else self._text
-        )
+        faint = f'<div style="opacity:0.45">{self._text}</div>'
+        settle(self._facts, content=faint if stale and self._text else self._text)
 
     def _build(self, switches: tuple[Switch, ...]) -> None:
         """Makes the check boxes of other switches than before."""

@@ -8,6 +8,7 @@ import viser
 
 from sevenbar.drawing.scene import link_colours
 from sevenbar.drawing.style import ACCELERATION, COUPLER, GROUND, INPUT, OUTPUT, VELOCITY
+from sevenbar.studio.panels.controls import settle
 from sevenbar.studio.pictures.stage import MARK_COLOUR
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
@@ -26,7 +27,7 @@ class Legend:
         view = self._session.view
         if view is not self._view:
             self._view = view
-            self._html.content = "" if view is None else legend(view)
+            settle(self._html, content="" if view is None else legend(view))
 
 
 def legend(view: View) -> str:

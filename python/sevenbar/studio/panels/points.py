@@ -9,7 +9,7 @@ from itertools import count
 import viser
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.studio.panels.controls import Alert, offer, put
+from sevenbar.studio.panels.controls import Alert, put, settle
 from sevenbar.studio.panels.shaping import DimensionList
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
@@ -57,18 +57,19 @@ class PointsPanel:
         view, draft = self._session.view, self._session.draft
         if view is not self._view:
             self._view = view
-            self._speeds.content = "" if view is None else "".join(_speeds(view, i) for i in own_points(view))
+            speeds = [] if view is None else [_speeds(view, i) for i in own_points(view)]
+            settle(self._speeds, content="".join(speeds))
         if self._shown is draft:
             return
         self._shown = draft
         linkage = draft.linkage
         last = len(linkage.joints)
-        offer(self._link, (*(f"{number}" for number in range(1, last)), f"{last} the ground"))
+        settle(self._link, options=(*(f"{number}" for number in range(1, last)), f"{last} the ground"))
         letters = "u, v, w" if draft.linkage.in_rows else "x, y, z"
-        self._at.label = f"at {letters} [{linkage.length_unit}]"
+        settle(self._at, label=f"at {letters} [{linkage.length_unit}]")
         names = tuple(str(point["name"]) for point in draft.raw.get("point", ()))
-        offer(self._removed, names or (NONE,))
-        self._remove.disabled = not names
+        settle(self._removed, options=names or (NONE,))
+        settle(self._remove, disabled=not names)
         self._list.show()
         taken = {point.name for point in linkage.points}
         if self._name.value in taken:

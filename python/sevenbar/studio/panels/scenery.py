@@ -12,7 +12,7 @@ from sevenbar.drawing.skeleton import places_of, skeleton_of
 from sevenbar.drawing.style import ACCELERATION, VELOCITY, circuit_colour
 from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.kinematics.ranges.reach import within
-from sevenbar.studio.panels.controls import offer
+from sevenbar.studio.panels.controls import settle
 from sevenbar.studio.pictures.stage import FIELD, Stage
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
@@ -198,7 +198,7 @@ class Scenery:
     def _draw_axodes(self, view: View, row: float) -> None:
         """The screw axes of the link that is chosen, in the ground and in the link."""
         links = (NO_AXODES, *(f"link {number}" for number in range(1, len(view.linkage.joints))))
-        offer(self._axodes, links)
+        settle(self._axodes, options=links)
         chosen = links.index(self._axodes.value) if self._axodes.value in links else 0
         if not chosen:
             self.stage.axodes(np.empty((0, 2, 3)), np.empty((0, 2, 3)))

@@ -10,7 +10,7 @@ import viser
 
 from sevenbar.errors import SevenbarError
 from sevenbar.kinematics.numbers.dimensions import Dimension
-from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, offer, on_change, put
+from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, on_change, put, settle
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.worker import Worker
 from sevenbar.text.units import ANGLES
@@ -76,6 +76,8 @@ class DimensionRow:
 
     def _written(self, value: float) -> None:
         """Has the box say a value; what a person wrote stays as it is written."""
+        if self._box.value == number_text(value):
+            return
         try:
             written = self.dimension.read(self._box.value)
         except SevenbarError:
@@ -224,6 +226,6 @@ class ShapePanel:
         linkage = self._session.draft.linkage
         choices = tuple(linkage.drivable())
         for control, value in ((self._input, linkage.drive.joint), (self._output, linkage.drive.output)):
-            offer(control, choices)
+            settle(control, options=choices)
             put(control, value)
         self._list.show()

@@ -13,7 +13,7 @@ from sevenbar.kinematics.circuits.poses import at_row
 from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.kinematics.ranges.reach import Reach, stopped_by
 from sevenbar.reporting.shown import value_text
-from sevenbar.studio.panels.controls import PAUSE, Alert, offer, on_change, put
+from sevenbar.studio.panels.controls import PAUSE, Alert, on_change, put, settle
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import heading
 from sevenbar.studio.state.view import View
@@ -112,7 +112,7 @@ class Transport:
         shown = (view, session.draft, session.problem, reach)
         if any(a is not b for a, b in zip(shown, self._shown, strict=False)) or not self._shown:
             self._shown = shown
-            self._heading.content = heading(session)
+            settle(self._heading, content=heading(session))
             self._offer(view, reach)
         if view is None:
             self._reading.content = ""
@@ -126,26 +126,25 @@ class Transport:
     def _offer(self, view: View | None, reach: Reach | None) -> None:
         """What can be chosen of the motion on view, up to its stops."""
         for control in (self._play, self._travel, self._goto, self._circuit, self._next):
-            control.disabled = view is None
+            settle(control, disabled=view is None)
         if view is None:
             self.pause()
             return
         options = tuple(f"{c.index}: {c.motion_type}" for c in view.motion)
-        offer(self._circuit, options)
+        settle(self._circuit, options=options)
         put(self._circuit, options[view.circuit.index])
-        self._held.visible = bool(view.linkage.stops.stops)
+        settle(self._held, visible=bool(view.linkage.stops.stops))
         first, last = (0.0, view.period) if reach is None else reach.times
         low, high = (time * abs(_shown_speed(view)) for time in (first, last))
         high = high if high > low else low + 1.0
         if reach is not None:
             # the ends are written below the slider, and stops seldom are at round values
             low, high = (round(end, 3 - math.floor(math.log10(high - low))) for end in (low, high))
-        self._travel.min, self._travel.max = low, high
-        self._travel.step = (high - low) / 720
         unit = view.linkage.length_unit if _slides(view) else "deg"
         there = "" if view.circuit.goes_round else ", there and back"
         between = "" if reach is None else ", between stops"
-        self._travel.label = f"input{there}{between} [{unit}]"
+        label = f"input{there}{between} [{unit}]"
+        settle(self._travel, min=low, max=high, step=(high - low) / 720, label=label)
 
 
 def _slides(view: View) -> bool:

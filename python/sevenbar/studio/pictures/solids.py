@@ -307,8 +307,8 @@ def _add_foot(solids: _Solids, place: Floats, outward: Floats, wide: float, unit
     pair = solids.anchor(place), solids.anchor(back)
     solids.add("box", pair, wide * unit, GROUND, moves=False)
     # in the plate's own axes, as `poses` turns it
-    across = rotation_of(turns(outward, np.zeros(3)))[:, 0]
-    sideways = solids.anchor(np.zeros(3)), solids.anchor(np.cross(outward, across))
+    across, aside, _ = rotation_of(turns(outward, np.zeros(3))).T
+    sideways = solids.anchor(np.zeros(3)), solids.anchor(aside)
     for share in np.linspace(-0.5, 0.5 - LEAN, STROKES):
         start = back + share * wide * unit * across
         pair = solids.anchor(start), solids.anchor(start + LEAN * wide * unit * (across + outward))

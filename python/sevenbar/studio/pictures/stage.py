@@ -344,7 +344,9 @@ class Stage:
         if not known.all():
             steps = np.where(known[:, None, None], steps, steps[known][0, 0])
         if handle is not None and len(handle.points) == len(steps):
-            handle.points, handle.colors = steps.astype(np.float32), colours
+            handle.points = steps.astype(np.float32)
+            if not np.array_equal(handle.colors, colours):
+                handle.colors = colours
             return
         on = self._axes_on if name == "axes" else self._paths_on
         self._lines[name] = self._scene.add_line_segments(

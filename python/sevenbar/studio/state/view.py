@@ -172,17 +172,19 @@ def nearest(views: Sequence[View], view: View, row: float) -> tuple[View, float]
 
     value = float(q[measure.input])
     here = [(unlike(other, at), i, at) for i, other in enumerate(views) for at in other.rows_at(value)]
-    gaps = [measure.apart(other.circuit.q, q) for other in views]
-    tops = [int(np.nanargmin(gap)) for gap in gaps]
-    top = min(range(len(views)), key=lambda i: float(gaps[i][tops[i]]))
-    alike, gap = tops[top], float(gaps[top][tops[top]])
-    if not here or min(here)[0] > gap + FARTHER:
-        # the pose may only have gone on far, beside a dead centre
-        here = [one for one in here if one[1] == top and measure.adjoins(views[top], alike, one[2], gap)]
-    if here:
-        _, index, at = min(here)
-        return views[index], at
-    return views[top], float(alike)
+    # no other pose can be more alike by more than that
+    if not here or min(here)[0] > FARTHER:
+        gaps = [measure.apart(other.circuit.q, q) for other in views]
+        tops = [int(np.nanargmin(gap)) for gap in gaps]
+        top = min(range(len(views)), key=lambda i: float(gaps[i][tops[i]]))
+        alike, gap = tops[top], float(gaps[top][tops[top]])
+        if not here or min(here)[0] > gap + FARTHER:
+            # the pose may only have gone on far, beside a dead centre
+            here = [one for one in here if one[1] == top and measure.adjoins(views[top], alike, one[2], gap)]
+        if not here:
+            return views[top], float(alike)
+    _, index, at = min(here)
+    return views[index], at
 
 
 def distance_from_zero(view: View, row: float) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from html import escape
 from typing import Final
 
@@ -29,6 +30,8 @@ WIDE: Final = frozenset("mwMW@%&—…")
 #: Coordinates [tenths of px] are kept within these bounds, far outside any frame.
 FAR = 100_000
 
+#: How the numbers and names of axes look.
+_NUMBER: Final = f'fill="{QUIET}"'
 HALO: Final = f'stroke="{GROUND}" stroke-width="3" stroke-linejoin="round" paint-order="stroke"'
 
 
@@ -66,6 +69,8 @@ class Frame:
         )
 
 
+# a change draws the same words again, but for a few numbers
+@lru_cache(4096)
 def breadth(text: str, *, bold: bool = False) -> float:
     """How wide a text is at most."""
     return (BOLD if bold else 1.0) * FONT * sum(map(_share, text))
@@ -107,22 +112,33 @@ def labelled(name: str, unit: str, room: float, *, bold: bool = False) -> str:
 
 def grid(frame: Frame, below: Scale, beside: Scale, name: str, unit: str) -> str:
     """Thin lines at the ticks of both axes, their numbers, and the name of the axis below."""
-    left, top, right, bottom = frame.box
-    across = frame.x(below, np.array(below.ticks)).tolist()
+    left, _, right, _ = frame.box
     up = frame.y(beside, np.array(beside.ticks)).tolist()
-    lines = [f"M{x:.2f} {top}V{bottom}" for x in across] + [f"M{left} {y:.2f}H{right}" for y in up]
-    parts = [f'<path d="{"".join(lines)}" stroke="{GRID}"/>']
+    across, numbers = _axis_below(frame, below, name, unit)
+    lines = "".join(f"M{left} {y:.2f}H{right}" for y in up)
+    parts = [f'<path d="{across}{lines}" stroke="{GRID}"/>']
     if beside.low < 0 < beside.high:
         zero = float(frame.y(beside, np.zeros(1))[0])
         parts.append(f'<path d="M{left} {zero:.1f}H{right}" stroke="{ZERO}"/>')
-    quiet = f'fill="{QUIET}"'
-    for x, value in zip(across, below.ticks, strict=True):
-        parts.append(words(frame, x, bottom + 14, below.word(value), anchor="middle", look=quiet))
+    parts.append(numbers)
     for y, value in zip(up, beside.ticks, strict=True):
-        parts.append(words(frame, left - 6, y + 4, beside.word(value), anchor="end", look=quiet))
-    label = labelled(name, below.unit(unit), frame.width - 4)
-    parts.append(words(frame, (left + right) / 2, bottom + 29, label, anchor="middle", look=quiet))
+        parts.append(words(frame, left - 6, y + 4, beside.word(value), anchor="end", look=_NUMBER))
     return "".join(parts)
+
+
+# all curves share it, and a change seldom gives another
+@lru_cache(16)
+def _axis_below(frame: Frame, below: Scale, name: str, unit: str) -> tuple[str, str]:
+    """The `d` of the lines at the ticks of the axis below; its numbers and its name."""
+    left, top, right, bottom = frame.box
+    across = frame.x(below, np.array(below.ticks)).tolist()
+    parts = [
+        words(frame, x, bottom + 14, below.word(value), anchor="middle", look=_NUMBER)
+        for x, value in zip(across, below.ticks, strict=True)
+    ]
+    label = labelled(name, below.unit(unit), frame.width - 4)
+    parts.append(words(frame, (left + right) / 2, bottom + 29, label, anchor="middle", look=_NUMBER))
+    return "".join(f"M{x:.2f} {top}V{bottom}" for x in across), "".join(parts)
 
 
 def head(frame: Frame, name: str, unit: str, keys: Sequence[tuple[str, str]], colour: str) -> str:
