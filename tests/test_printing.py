@@ -251,3 +251,10 @@ def test_results_of_all_packages_print_themselves():
     assert "circuit 0, branch 0" in repr(bench)
     assert "crank-rocker" in repr(drawn)
     assert "  dimensions  L1_mm" in repr(swept)
+
+
+def test_a_motion_without_a_row_that_has_rates_has_no_closure_error():
+    # every pose of it is a change point
+    motion = sb.rssr(M=1e-50, N=-1e-100, L1=2.0, L2=1.000000000000001, L3=1e12, D=1e12).motion()
+    assert "closure error  no row has one" in repr(motion)
+    assert "nan" not in repr(motion) + repr(motion.circuits[0])

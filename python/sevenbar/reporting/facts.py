@@ -56,6 +56,13 @@ def closure_error(circuits: Iterable[Circuit]) -> float:
     return max((worst for worst in residuals if not math.isnan(worst)), default=math.nan)
 
 
+def closure_text(circuits: Iterable[Circuit], unit: str = "") -> str:
+    """The greatest closure error in words, with its unit where that is known."""
+    error = closure_error(circuits)
+    known = not math.isnan(error)
+    return say("at most {error:.1e} {unit}", error=error, unit=unit) if known else say("no row has one")
+
+
 def facts_of(motion: Motion) -> list[tuple[str, str]]:
     """What the report says of the motion as a whole: names, in English, and words."""
     linkage = motion.linkage
@@ -112,8 +119,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits and linkage.stops.stops:
         facts.append(("within the stops", usable_text(motion.circuits)))
     if motion.circuits:
-        error, unit = closure_error(motion), linkage.length_unit
-        facts.append(("closure error", say("at most {error:.1e} {unit}", error=error, unit=unit)))
+        facts.append(("closure error", closure_text(motion, linkage.length_unit)))
     return facts
 
 

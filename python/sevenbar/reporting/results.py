@@ -19,7 +19,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.screw_axes import ScrewAxes
 from sevenbar.reporting.circuit_quantities import way_round
 from sevenbar.reporting.facts import (
-    closure_error,
+    closure_text,
     completeness_text,
     dimensions_text,
     facts_of,
@@ -145,7 +145,7 @@ def _(circuit: Circuit) -> str:
             ("transmission angle", range_of(_known_transmission(circuit), Shown("rad"))),
             ("velocity", range_of(circuit.velocity)),
             ("acceleration", range_of(circuit.acceleration)),
-            ("closure error", f"at most {closure_error([circuit]):.1e}"),
+            ("closure error", closure_text([circuit]).rstrip()),
         ],
     )
 
