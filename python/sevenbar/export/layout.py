@@ -15,6 +15,7 @@ from sevenbar.arrays import Floats
 from sevenbar.export.parts import Assembly, Ball, Bar, Seat, Solid, assemble, hub_height
 from sevenbar.export.pose import Pose
 from sevenbar.kinematics.loop.joints import Shape
+from sevenbar.kinematics.loop.rods import rod_distance
 
 #: Sweeps over all joints; most layouts no longer change after two.
 SWEEPS = 4
@@ -76,7 +77,7 @@ def _overlap(assembly: Assembly) -> float:
         turn, shift = frames[body, :3, :3], frames[body, :3, 3]
         a = np.einsum("kij,kj->ki", turn, starts) + shift
         b = np.einsum("kij,kj->ki", turn, ends) + shift
-        depth = np.maximum(reach - _distances(a[one], b[one], a[two], b[two]) / unit, 0.0)
+        depth = np.maximum(reach - rod_distance(a[one], b[one], a[two], b[two]) / unit, 0.0)
         total += float((depth**2).sum())
     return total / (1 + len(pose.others))
 
@@ -86,17 +87,3 @@ def _segment(solid: Solid) -> tuple[Floats, Floats, float]:
     if isinstance(solid, Ball):
         return solid.centre, solid.centre, solid.radius
     return solid.start, solid.end, 0.6 * solid.width if isinstance(solid, Bar) else solid.radius
-
-
-def _distances(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:
-    """The distances (n,) of segments ab and cd, each end (n, 3): the closest of the lines, clamped."""
-    along, across, between = b - a, d - c, a - c
-    aa, bb = (along**2).sum(axis=1), (across**2).sum(axis=1)
-    ab, a0, b0 = (along * across).sum(axis=1), (along * between).sum(axis=1), (across * between).sum(axis=1)
-    tiny = 1e-300
-    determinant = aa * bb - ab * ab
-    s = np.clip((ab * b0 - bb * a0) / np.where(determinant > 1e-12 * aa * bb, determinant, np.inf), 0, 1)
-    t = np.clip((ab * s + b0) / np.maximum(bb, tiny), 0, 1)
-    s = np.clip((ab * t - a0) / np.maximum(aa, tiny), 0, 1)
-    gap: Floats = np.linalg.norm(between + s[:, None] * along - t[:, None] * across, axis=1)
-    return gap
