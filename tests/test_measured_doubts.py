@@ -17,10 +17,10 @@ from evidence.fuzz.random_linkages import Dimensions
 from sevenbar.description.gallery import text
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.loop.geometry import following_coupler
+from sevenbar.least_squares import nearest_least
 from sevenbar.measuring.calibrate import calibrate
 from sevenbar.measuring.compare import compare, ends_of
 from sevenbar.measuring.figures import calibration_figure
-from sevenbar.measuring.least_squares import least_squares
 from sevenbar.measuring.measured import Measured
 from sevenbar.measuring.passes import stretches_of, ways_through
 from sevenbar.measuring.report import calibration_dict, calibration_text
@@ -462,15 +462,14 @@ def test_least_squares_ends_at_the_minimum_from_afar_and_says_where_it_could_not
     def jacobian(x):
         return np.column_stack([x[1] ** powers - 1, x[0] * powers * x[1] ** (powers - 1)])
 
-    found = least_squares(residual, jacobian, np.array([1.0, 0.1]), most=200)
+    start, ways = np.array([1.0, 0.1]), {"evaluations": 200, "first": 1e-3}
+    found = nearest_least(residual, jacobian, start, **ways)
     assert found.end == "settled"
-    np.testing.assert_allclose(found.x, [3.0, 0.5], rtol=1e-12)
-    fenced = least_squares(
-        lambda x: residual(x) if x[0] < 2.0 else None, jacobian, np.array([1.0, 0.1]), most=200
-    )
+    np.testing.assert_allclose(found.z, [3.0, 0.5], rtol=1e-12)
+    fenced = nearest_least(lambda x: residual(x) if x[0] < 2.0 else None, jacobian, start, **ways)
     assert fenced.end == "closed"
-    assert fenced.x[0] < 2.0
-    assert least_squares(residual, jacobian, np.array([1.0, 0.1]), most=3).end == "unsettled"
+    assert fenced.z[0] < 2.0
+    assert nearest_least(residual, jacobian, start, evaluations=3, first=1e-3).end == "unsettled"
 
 
 # long work

@@ -20,8 +20,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
+from sevenbar.least_squares import nearest_least, settled
 from sevenbar.measuring.doubtful import EXACT, first_of
-from sevenbar.measuring.least_squares import least_squares
 from sevenbar.measuring.model import CurveModel
 
 #: Standard error [share of the linkage's size, or rad] beyond which a direction counts as not identifiable:
@@ -42,6 +42,14 @@ WEIGHED = 1e-10
 
 #: Share of the sum of squares that may still be gained where it is only to be known how large the noise is.
 ENOUGH = 1e-2
+
+#: A fall of the sum, relative to it, below which rounding hides it; a share of the sum that is rounding below
+#: which there is nothing to gain: the residual to a ten-thousandth.
+FLAT, NOTHING = 1e-10, 1e-8
+
+#: How much the first steps are held back, and a step that is so short, where longer ones do not lead on, that
+#: the way is closed.
+FIRST, CLOSED = 1e-6, 1e-8
 
 #: Evaluations of one search.
 MOST_EVALUATIONS = 400
@@ -218,23 +226,31 @@ class CurveFit:
             z[free] = part * scales[free]
             return self.model.filled(z)
 
+        def residual(part: Floats) -> Floats | None:
+            return self.residual(spread(part))
+
+        def slopes(part: Floats) -> Floats:
+            return self._slopes(spread(part), free)
+
         extents = self.model.extents
         exact = sum(len(v) * (EXACT * extents[q] / self.noise[q]) ** 2 for q, v in self.model.values.items())
         while True:
-            minimum = least_squares(
-                lambda part: self.residual(spread(part)),
-                lambda part: self._slopes(spread(part), free),
-                self.z[free] / scales[free],
-                most=MOST_EVALUATIONS, enough=enough, exact=exact)  # fmt: skip
-            self.evaluations += minimum.evaluations
-            self.z = spread(minimum.x)
-            lost = self.model.lost
-            total = len(self.model.before.line)
-            if minimum.end != "closed":
-                return minimum.end
+            nearest = nearest_least(
+                residual, slopes, self.z[free] / scales[free], evaluations=MOST_EVALUATIONS, first=FIRST,
+                enough=enough or FLAT, shortest=CLOSED, nothing=NOTHING * exact)  # fmt: skip
+            assert nearest is not None
+            self.evaluations += nearest.evaluations
+            self.z = spread(nearest.z)
+            lost, total = self.model.lost, len(self.model.before.line)
+            if nearest.end == "settled" or nearest.cost <= exact or enough:
+                if not enough:
+                    self.z = spread(settled(residual, slopes, nearest.z))
+                return "settled"
+            if nearest.end != "closed":
+                return "unsettled"
             self.unfinished = self._closed_way()
             if not lost.size or len(self.left_out) + lost.size > MAY_BE_LOST * total:
-                return minimum.end
+                return "closed"
             # a few rows at a limit of the input, which has moved
             self.left_out += self.model.before.line[self.model.rows[lost]].tolist()
             self.model.leave_out(lost)

@@ -97,7 +97,7 @@ class CurveModel:
         self.speeds = before.speeds[self.rows]
         self.extents = {q: ends.extent(q, before.measured[q]) for q in before.outputs}
         self.sites = self._sites()
-        #: Rows, of those used, that did not close at the last parameters that were tried.
+        #: Rows, of those used, that did not close at the last parameters at which the curve does not exist.
         self.lost: Integers = np.zeros(0, dtype=np.int64)
         #: A length that was too short there.
         self.too_short = ""
@@ -158,10 +158,9 @@ class CurveModel:
 
     def _to(self, z: Floats) -> bool:
         """Moves the poses to parameters z; whether every row closes there."""
-        self.lost, self.too_short = np.zeros(0, dtype=np.int64), ""
         short = np.flatnonzero(z <= self.floor)
         if short.size:
-            self.too_short = self.names[int(short[0])]
+            self.lost, self.too_short = np.zeros(0, dtype=np.int64), self.names[int(short[0])]
             return False
         if np.array_equal(z, self._at):
             return True
@@ -179,9 +178,10 @@ class CurveModel:
         bad = np.flatnonzero(~np.isfinite(near).all(axis=1))
         if bad.size:
             near[bad] = loop.closed(x[bad], poses[bad], p)
-            self.lost = bad[~np.isfinite(near[bad]).all(axis=1)]
-        if self.lost.size:
-            return False
+            lost = bad[~np.isfinite(near[bad]).all(axis=1)]
+            if lost.size:
+                self.lost, self.too_short = lost, ""
+                return False
         self._stand(p, near, z)
         return True
 

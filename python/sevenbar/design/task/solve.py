@@ -19,10 +19,10 @@ from typing import Any, Literal
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed, TaskValues
 from sevenbar.design.task.programs import MinimaxValues, lowered
 from sevenbar.design.task.wants.places import heights_of
+from sevenbar.least_squares import nearest_least
 
 #: Evaluations of a first look, of a design that is kept, and of one that comes near to what is wanted.
 LOOK, WHOLE, LONG = 40, 400, 1200
@@ -223,7 +223,7 @@ def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: fl
         )
         if nearest is None:
             return None
-        z, stuck = nearest
+        z, stuck = nearest.z, nearest.end in ("stuck", "closed")
         here = problem.at(z)
         if here is not None and not (here.room < KEPT).any():
             break

@@ -4,6 +4,10 @@ A step s from z solves  `min |r + J s|^2 + l |D s|^2`  over the unknowns that no
 lengths that the columns of J have had; l falls and rises with what the step before kept of its promise. A
 step is tried by its residuals alone; slopes are worked out where one was taken.
 
+Near the minimum the sum is flat to rounding and cannot judge a step, while the step, which the gradient
+decides, still can: `settled` takes steps as long as they become shorter. So its unknowns are those of zero
+gradient to rounding, not those of a sum that no longer falls visibly.
+
 Source: K. Madsen, H. B. Nielsen, O. Tingleff, Methods for non-linear least squares problems, IMM 2004, (3.14)
 to (3.16); J. J. More, Lecture Notes in Mathematics 630 (1978), for D; M. Transtrum, J. Sethna, arXiv
 1201.5885 (2012), for the second order of a step.
@@ -11,8 +15,9 @@ to (3.16); J. J. More, Lecture Notes in Mathematics 630 (1978), for D; M. Transt
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -33,15 +38,25 @@ FALL, STEP = 1e-15, 1e-15
 #: An unknown whose column is shorter, relative to the longest, does nothing; it is rounding.
 LEAST = 1e-8
 
+#: A step that is rounding, and the ratio of one to the last above which steps no longer become shorter.
+SETTLED, NO_SHORTER = 1e-13, 0.7
+
 #: Squares that are rounding of residuals of unit size.
 NOTHING = 1e-31
 
 
+#: How a search ended: at the minimum; where no step led on, though slopes promised it; the same, since the
+#: last one led to where there are no residuals; or after too many evaluations.
+End = Literal["settled", "stuck", "closed", "unsettled"]
+
+
 class Nearest(NamedTuple):
-    """The unknowns (k,) of the least sum of squares; `stuck`: no step led on, though slopes promised it."""
+    """The unknowns (k,) of the least sum of squares, how much it is, the end, and in how many evaluations."""
 
     z: Floats
-    stuck: bool
+    cost: float
+    end: End
+    evaluations: int
 
 
 class _Damped:
@@ -75,16 +90,30 @@ def nearest_least(
     residuals: Callable[[Floats], Floats | None],
     slopes: Callable[[Floats], Floats | None],
     start: Floats,
-    low: Floats,
-    high: Floats,
+    low: Floats | float = -math.inf,
+    high: Floats | float = math.inf,
     *,
     evaluations: int,
     first: float,
+    enough: float = 0.0,
+    shortest: float = STEP,
+    nothing: float = NOTHING,
 ) -> Nearest | None:
     """The nearest least sum of squares within so many `evaluations`; `None` where there is none at the start.
 
     `residuals` gives residuals (r,) of unknowns that are tried, `slopes` (r, k) those of unknowns that a step
-    has led to; either is `None` where there are none: a step never leads there. `first` is the first l.
+    has led to; either is `None` where there are none: a step never leads there. `first` is the first l. It
+    ends, too, where a step promises no more than a part `enough` of the squares, where after one that led
+    nowhere the next is no longer than `shortest`, relative to the unknowns, and where the squares are below
+    `nothing`.
+
+    >>> points, heights = np.array([0.0, 1.0, 2.0]), np.array([1.0, 2.7, 7.4])
+    >>> found = nearest_least(
+    ...     lambda x: np.exp(x[0] * points) - heights,
+    ...     lambda x: (points * np.exp(x[0] * points))[:, None],
+    ...     np.array([0.5]), evaluations=50, first=1e-3, enough=1e-12)
+    >>> found.end, round(float(found.z[0]), 6)
+    ('settled', 1.000496)
     """
     z = np.clip(start, low, high)
     left, by = residuals(z), slopes(z)
@@ -93,11 +122,11 @@ def nearest_least(
     cost = float(left @ left)
     sizes = np.linalg.norm(by, axis=0)
     weight, growth = first, 2.0
-    steps, tried = 0, 1
+    steps, tried, closed = 0, 1, False
     while tried < evaluations:
         pull = by.T @ left
         free = ~(((z <= low) & (pull > 0)) | ((z >= high) & (pull < 0)))
-        if not free.any() or cost < NOTHING:
+        if not free.any() or cost < nothing:
             break
         scale = np.maximum(sizes, LEAST * max(float(sizes.max()), LEAST))[free]
         damped = _Damped(by, free, scale, weight)
@@ -111,14 +140,17 @@ def nearest_least(
         steps += 1
         then_z = np.clip(z + step, low, high)
         step = then_z - z
-        if np.abs(step).max() <= STEP * (1 + float(np.abs(z).max())):
+        if np.abs(step).max() <= (shortest if growth > 2 else STEP) * (1 + float(np.abs(z).max())):
             break
         promised = max(cost - float(((left + by @ step) ** 2).sum()), straight)
+        if enough and promised <= enough * cost:
+            break
         then = residuals(then_z) if promised > 0 else None
         tried += 1
         gained = -np.inf if then is None else cost - float(then @ then)
         then_by = slopes(then_z) if gained > KEPT * promised else None
         if then is None or then_by is None:
+            closed = then is None and promised > 0
             weight *= growth
             growth *= 2
             if weight > MOST:
@@ -131,4 +163,20 @@ def nearest_least(
         if gained <= FALL * cost:
             break
         cost -= gained
-    return Nearest(z, stuck=growth > 2.0 and tried < evaluations)
+    end: End = "settled" if growth == 2.0 else "closed" if closed else "stuck"
+    return Nearest(z, cost, "unsettled" if tried >= evaluations else end, tried)
+
+
+def settled(
+    residuals: Callable[[Floats], Floats | None], slopes: Callable[[Floats], Floats], z: Floats
+) -> Floats:
+    """The unknowns (k,) near those of a minimum at which the gradient is zero to rounding."""
+    last = math.inf
+    while True:
+        left = residuals(z)
+        assert left is not None
+        step = np.linalg.lstsq(slopes(z), -left, rcond=None)[0]
+        length = float(np.linalg.norm(step))
+        if length <= SETTLED or length > NO_SHORTER * last or residuals(z + step) is None:
+            return z
+        z, last = z + step, length
