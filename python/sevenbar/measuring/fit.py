@@ -23,6 +23,7 @@ from sevenbar.errors import RequestError
 from sevenbar.least_squares import nearest_least, settled
 from sevenbar.measuring.doubtful import EXACT, first_of
 from sevenbar.measuring.model import CurveModel
+from sevenbar.measuring.passes import MAY_BE_OPEN
 
 #: Standard error [share of the linkage's size, or rad] beyond which a direction counts as not identifiable:
 #: the curve bends over such a distance, so that (1), which takes it for straight, would mean nothing.
@@ -53,9 +54,6 @@ FIRST, CLOSED = 1e-6, 1e-8
 
 #: Evaluations of one search.
 MOST_EVALUATIONS = 400
-
-#: Share of the rows that may be left out as they lie, in the end, beyond a limit of the input.
-MAY_BE_LOST = 0.1
 
 #: Lines that a message names.
 MOST_LINES = 8
@@ -249,7 +247,7 @@ class CurveFit:
             if nearest.end != "closed":
                 return "unsettled"
             self.unfinished = self._closed_way()
-            if not lost.size or len(self.left_out) + lost.size > MAY_BE_LOST * total:
+            if not lost.size or len(self.left_out) + lost.size > MAY_BE_OPEN * total:
                 return "closed"
             # a few rows at a limit of the input, which has moved
             self.left_out += self.model.before.line[self.model.rows[lost]].tolist()

@@ -15,10 +15,11 @@ from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.path_page import PathPage, path_page
 from sevenbar.design.task.wants.at_inputs import ReadingsWanted
 from sevenbar.design.task.wants.places import PlacesWanted
-from sevenbar.design.task.words import must_words, shown_in
+from sevenbar.design.task.words import must_words
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, OTHER, styled
+from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.text.words import say
 
 #: Wanted readings beyond which they are a line.

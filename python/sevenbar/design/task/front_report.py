@@ -15,10 +15,11 @@ from sevenbar.design.tables import design_table
 from sevenbar.design.task.front import ParetoFront
 from sevenbar.design.task.report import TaskDesigns, as_dict, task_report
 from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
-from sevenbar.design.task.words import measure_unit, shown_in, task_facts, want_words
+from sevenbar.design.task.words import measure_unit, task_facts, want_words
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, styled
+from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, page

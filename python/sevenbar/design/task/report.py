@@ -19,8 +19,9 @@ from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
 from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust
-from sevenbar.design.task.words import must_words, shown_in, task_facts, want_words
+from sevenbar.design.task.words import must_words, task_facts, want_words
 from sevenbar.drawing.configuration import configuration
+from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.page import Facts, page
 

@@ -10,6 +10,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.task import task as kinds
 from sevenbar.design.task.task import DesignTask, Must, Want
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.kinematics.measures import measures_named
 
 #: Free numbers that a line names; the others are counted.
@@ -101,11 +102,6 @@ def _timed(want: kinds.PathWant | kinds.PoseWant) -> str:
     if want.timing is None:
         return ""
     return ", at given inputs" + (" from a free start" if want.phase else "")
-
-
-def shown_in(linkage: Linkage, column: str) -> tuple[str, float]:
-    """The unit in which people read a column, and what 1 of it is there: degrees for angles."""
-    return ("deg", math.degrees(1.0)) if linkage.turns(column) else (linkage.length_unit, 1.0)
 
 
 def measure_unit(name: str, linkage: Linkage) -> str:

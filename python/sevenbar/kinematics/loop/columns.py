@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,6 +15,11 @@ RATES = ("", "_s", "_s2", "_s3")
 
 #: What stands before the axis in the name of a point's position, velocity, acceleration.
 LETTERS = ("", "v", "a")
+
+
+def shown_in(linkage: Loop, column: int | str) -> tuple[str, float]:
+    """The unit in which people read a column, and what 1 of it is there: degrees for angles."""
+    return ("deg", math.degrees(1.0)) if linkage.turns(column) else (linkage.length_unit, 1.0)
 
 
 def joint_column(name: str, *, slides: bool, order: int, length: str, angle: str, who: str = "") -> str:

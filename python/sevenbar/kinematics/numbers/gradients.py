@@ -19,6 +19,7 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
+from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
 
 #: The quantities of a joint, by the order of the derivative, and what time does to their units.
@@ -65,13 +66,6 @@ def measure_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> tuple[Me
     return tuple(found)
 
 
-def _angle_or_length(numbers: Numbers, column: int) -> tuple[str, float]:
-    """The unit of a column as people read it, and its size as it is counted here."""
-    if numbers.turns[column]:
-        return "deg", math.degrees(1.0)
-    return numbers.linkage.length_unit, 1.0
-
-
 def _apart(values: Floats, turns: bool) -> Floats:
     return short_way(values) if turns else values
 
@@ -79,7 +73,7 @@ def _apart(values: Floats, turns: bool) -> Floats:
 def _extremes(loop: NumberedLoop, circuit: Circuit, speed: float) -> Iterator[MeasureSlopes]:
     """Extremes of the output and its rates, swing and time ratio."""
     column, numbers = circuit.output_column, loop.numbers
-    unit, scale = _angle_or_length(numbers, column)
+    unit, scale = shown_in(numbers.linkage, column)
     ends = []
     if circuit.angle is not None:
         for end in ("lowest", "highest"):
@@ -147,7 +141,7 @@ def _limits(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
     """Dead centres of the input, each once."""
     back = numbers.loop(circuit.output_column)
     place = circuit.input_column
-    unit, scale = _angle_or_length(numbers, place)
+    unit, scale = shown_in(numbers.linkage, place)
     centres = [centre for centre in circuit.dead_centres if centre.kind == "input"]
     for number, centre in enumerate(sorted(centres, key=lambda c: c.input), 1):
         slopes = np.full(len(numbers.names), np.nan)

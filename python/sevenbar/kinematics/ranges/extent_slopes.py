@@ -21,6 +21,7 @@ from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
 from sevenbar.curves.least_cone import angles, least_cone
 from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.kinematics.loop.rods import distance_slopes
 from sevenbar.kinematics.loop.stops import Cone
 from sevenbar.kinematics.numbers.gradients import MeasureSlopes
@@ -83,8 +84,7 @@ def _of_range(course: JointCourse, numbers: Numbers, name: str, column: int) -> 
     for place, _ in ends:
         q, driver = course.pose(place)
         slopes.append(numbers.loop(driver).slopes(q, 0).by_number[0, 0, :, column])
-    turns = bool(numbers.turns[column])
-    unit, scale = ("deg", math.degrees(1.0)) if turns else (course.linkage.length_unit, 1.0)
+    unit, scale = shown_in(numbers.linkage, column)
     value = ends[1][1].value - ends[0][1].value
     return MeasureSlopes(name, unit, value * scale, (slopes[1] - slopes[0]) * scale, 1 / scale)
 
