@@ -19,7 +19,7 @@ from numpy.polynomial import Chebyshev, chebyshev, legendre
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Peak, highest_of
-from sevenbar.curves.stationary import AT_END, nodes, real_roots, series_through
+from sevenbar.curves.stationary import AT_END, nodes, nodes_between, real_roots, series_through
 
 #: Pieces of a cycle before any is halved.
 FIRST_PIECES = 12
@@ -163,8 +163,7 @@ def pieces(
     found: list[tuple[float, float, Floats]] = []
     scale = float(np.abs(rows).max())
     for halving in range(HALVINGS + 1):
-        middle, half = todo.mean(axis=1), (todo[:, 1] - todo[:, 0]) / 2
-        grid = middle[:, None] + half[:, None] * nodes()
+        middle, grid = todo.mean(axis=1), nodes_between(todo[:, 0], todo[:, 1])
         values = evaluate(origin + period * grid.ravel())
         values = values.reshape(*grid.shape, *values.shape[1:])
         scale = max(scale, float(np.abs(values).max()))

@@ -35,6 +35,12 @@ def nodes(count: int = NODES) -> Floats:
     return np.asarray(np.cos(np.pi * (np.arange(count) + 0.5) / count))
 
 
+def nodes_between(low: npt.ArrayLike, high: npt.ArrayLike, count: int = NODES) -> Floats:
+    """Those between ends (..), from the high one down to the low one, (.., count)."""
+    low, high = np.asarray(low)[..., None], np.asarray(high)[..., None]
+    return np.asarray((low + high) / 2 + (high - low) / 2 * nodes(count))
+
+
 def coefficients(values: Floats) -> Floats:
     """Chebyshev coefficients (count, ...) of the polynomial through values (count, ...) at `nodes(count)`.
 
@@ -74,7 +80,7 @@ def highest_between(evaluate: Callable[[Floats], Floats], low: Floats, high: Flo
     function is stationary nowhere inside, the place is the middle.
     """
     middle, half = (low + high) / 2, (high - low) / 2
-    grid = middle[:, None] + half[:, None] * nodes()
+    grid = nodes_between(low, high)
     values = evaluate(grid.ravel()).reshape(grid.shape)
     tops = np.zeros(len(middle))
     for i, own in enumerate(values):

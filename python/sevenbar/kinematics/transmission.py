@@ -25,7 +25,7 @@ from typing import Literal
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.curves.stationary import curve_through, nodes, real_roots
+from sevenbar.curves.stationary import curve_through, nodes_between, real_roots
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
@@ -279,7 +279,7 @@ class _Search:
             brackets += [(number, stretch, u[i], u[i + 2]) for i in np.flatnonzero(peaks)]
         if not brackets:
             return []
-        inputs = [stretch.input((a + b) / 2 + (b - a) / 2 * nodes()) for _, stretch, a, b in brackets]
+        inputs = [stretch.input(nodes_between(a, b)) for _, stretch, a, b in brackets]
         values = self.at([number for number, *_ in brackets], inputs)
         flat: list[tuple[int, float]] = []
         for (number, stretch, a, b), (sines, cosines) in zip(brackets, values, strict=True):

@@ -19,7 +19,7 @@ from numpy.polynomial import legendre
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
-from sevenbar.curves.stationary import nodes
+from sevenbar.curves.stationary import nodes_between
 from sevenbar.errors import RequestError
 
 #: Points of Gauss's rule for the rise of U over a short way, and how short, in pieces.
@@ -128,9 +128,8 @@ class EnergyCourse:
     def _nodes(self) -> Floats:
         """m, U and winding (pieces, terms, 3) at the nodes of the first lap's pieces."""
         edges = self.quantities.edges
-        middle, half = (edges[:-1] + edges[1:]) / 2, np.diff(edges) / 2
-        grid = middle[:, None] + half[:, None] * nodes(TERMS)
-        own = self._all.on(np.repeat(np.arange(len(middle)), TERMS), grid.ravel())
+        grid = nodes_between(edges[:-1], edges[1:], TERMS)
+        own = self._all.on(np.repeat(np.arange(len(grid)), TERMS), grid.ravel())
         return own.reshape(*grid.shape, -1)[:, :, [MASS, 5, 6]]
 
     def at_nodes(self, pieces: npt.NDArray[np.int64], laps: Floats) -> tuple[Floats, Floats]:

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
 from sevenbar.arrays import Floats
-from sevenbar.curves.stationary import coefficients, nodes
+from sevenbar.curves.stationary import coefficients, nodes_between
 from sevenbar.forces.free_motion.course import SHORT, TERMS, EnergyCourse
 
 #: A panel is fine enough where its last terms are below this part of the first.
@@ -151,7 +151,7 @@ def run_between(
     resolved = max(RESOLVED, ROUNDING * max(abs(low), abs(high)) / course.shortest)
     for halving in range(HALVINGS + 1):
         _, starts, ends, first, last = own
-        w = (first + last)[:, None] / 2 + (last - first)[:, None] / 2 * nodes(TERMS)
+        w = nodes_between(first, last, TERMS)
         rates, noise = _rates(course, own, w, reference)
         ends_of = np.abs(rates @ _SERIES[[0, -2, -1]].T)
         worst = ends_of[:, 1:].max(axis=1) / ends_of[:, 0]

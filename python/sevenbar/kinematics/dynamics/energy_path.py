@@ -17,7 +17,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.along import Along
-from sevenbar.curves.stationary import nodes, series_through
+from sevenbar.curves.stationary import nodes_between, series_through
 from sevenbar.forces.free_motion.course import EnergyCourse
 from sevenbar.kinematics.dynamics.forces import ForceSolver
 from sevenbar.kinematics.paths.circuit_path import TERMS, CircuitPath, divided
@@ -93,8 +93,7 @@ class EnergyBuilder:
         tail = 0.0
         floor = NOTHING * self._acting()
         for division in range(DIVISIONS + 1):
-            middle, half = todo.mean(axis=1), (todo[:, 1] - todo[:, 0]) / 2
-            grid = middle[:, None] + half[:, None] * nodes(TERMS)
+            middle, grid = todo.mean(axis=1), nodes_between(todo[:, 0], todo[:, 1], TERMS)
             pieces = np.searchsorted(path.poses.edges, middle, "right") - 1
             values, potential = self._values(np.repeat(pieces, TERMS), grid.ravel())
             potentials.append((grid.ravel(), potential))

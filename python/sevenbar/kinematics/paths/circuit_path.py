@@ -21,7 +21,7 @@ from numpy.polynomial import chebyshev
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.along import Along
-from sevenbar.curves.stationary import coefficients, nodes, series_through
+from sevenbar.curves.stationary import coefficients, nodes, nodes_between, series_through
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.numbers.sensitivity import Numbers
@@ -295,7 +295,7 @@ class PathBuilder:
             way = np.sign(x[-1] - x[0])
             if way == 0 or np.any(np.diff(x) * way <= 0):
                 continue
-            at = (x[0] + x[-1]) / 2 + (x[-1] - x[0]) / 2 * nodes(TERMS)
+            at = nodes_between(x[0], x[-1], TERMS)
             order = slice(None) if way > 0 else slice(None, None, -1)
             start = np.column_stack([np.interp(at, x[order], near[order, c]) for c in range(near.shape[1])])
             starts.append((charts[i], start))

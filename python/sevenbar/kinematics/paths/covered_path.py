@@ -8,7 +8,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.along import Along
-from sevenbar.curves.stationary import nodes, series_through
+from sevenbar.curves.stationary import nodes_between, series_through
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.loop.once import once_for
@@ -56,8 +56,7 @@ def _covering(linkage: Solvable, circuit: Circuit) -> Circuit:
 def grid_of(path: CircuitPath) -> tuple[Floats, Integers]:
     """Chebyshev's nodes on the pieces of a path (m, terms), and the piece of each (m * terms,)."""
     edges = path.poses.edges
-    middle, half = (edges[:-1] + edges[1:]) / 2, np.diff(edges) / 2
-    return middle[:, None] + half[:, None] * nodes(TERMS), np.repeat(np.arange(len(middle)), TERMS)
+    return nodes_between(edges[:-1], edges[1:], TERMS), np.repeat(np.arange(len(edges) - 1), TERMS)
 
 
 def closed_on(path: CircuitPath, numbers: Numbers, pieces: Integers, s: Floats) -> Floats:
