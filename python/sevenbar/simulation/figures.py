@@ -13,7 +13,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import headline, input_label, page_figure, shown_value, slides
 from sevenbar.drawing.names import quantity_label, short, shown_name
-from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, OTHER, styled
+from sevenbar.drawing.style import COMPUTED, OTHER, circuit_colour, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.simulation.agreement import Simulation
 from sevenbar.text.words import say
@@ -82,13 +82,13 @@ def joints_figure(run: Simulation) -> Figure:
         unit, convert = ("rad", np.degrees) if turns else (linkage.length_unit, np.asarray)
         label = say("turns [{unit}]", unit="deg") if turns else say("slides [{unit}]", unit=unit)
         curves = [
-            _Curve(name, convert(own), convert(other), np.abs(other - own), _colour(column))
+            _Curve(name, convert(own), convert(other), np.abs(other - own), circuit_colour(column))
             for column, name in enumerate(linkage.columns)
             for own, other in [(run.theory.q[:, column], run.engine.q[:, column])]
             if linkage.turns(column) == turns
         ]
         rows.append(_Row(label, unit, curves, in_degrees=turns))
-    keys = [(shown_name(name, 20), _colour(column)) for column, name in enumerate(linkage.columns)]
+    keys = [(shown_name(name, 20), circuit_colour(column)) for column, name in enumerate(linkage.columns)]
     return _sizes_figure(run, 1.6 + 3.4 * len(rows), rows, keys)
 
 
@@ -106,10 +106,12 @@ def points_figure(run: Simulation) -> Figure:
             engine, theory = (getattr(one, what) for one in both)
             origin = theory[0] if what == "position" else np.zeros(3)
             sizes = (_length(theory - origin), _length(engine - origin), _length(engine - theory))
-            curves.append(_Curve(name, *sizes, _colour(place)))
+            curves.append(_Curve(name, *sizes, circuit_colour(place)))
         unit = f"{run.linkage.length_unit}{per}"
         rows.append(_Row(f"{label} [{unit}]", unit, curves))
-    keys = [(say("point {name}", name=short(n, 20)), _colour(place)) for place, n in enumerate(run.points)]
+    keys = [
+        (say("point {name}", name=short(n, 20)), circuit_colour(place)) for place, n in enumerate(run.points)
+    ]
     return _sizes_figure(run, 7.4, rows, keys)
 
 
@@ -118,7 +120,7 @@ def forces_figure(run: Simulation) -> Figure:
     """The input's torque, and the size of forces and moments in the joints; how far the engine's are off."""
     drive, *others = run.forces
     names = dict.fromkeys(force.name for force in others)
-    colours = {name: _colour(place) for place, name in enumerate(names)}
+    colours = {name: circuit_colour(place) for place, name in enumerate(names)}
     # the input's own has a sign
     signed = [_Curve(drive.name, drive.theory[:, 0], drive.engine[:, 0], drive.apart)]
     label = say("input force") if drive.what == "force" else say("input torque")
@@ -146,10 +148,6 @@ def _sizes_figure(run: Simulation, height: float, rows: list[_Row], keys: list[t
     lines = [Line2D([], [], color=colour, lw=1.5, label=label) for label, colour in keys]
     _finish(figure, run, [*lines, *_keys(run, "0.35")[:2]])
     return figure
-
-
-def _colour(place: int) -> str:
-    return CIRCUIT_COLOURS[place % len(CIRCUIT_COLOURS)]
 
 
 def _length(vectors: Floats) -> Floats:
