@@ -144,6 +144,8 @@ def nearest_least(
             break
         promised = max(cost - float(((left + by @ step) ** 2).sum()), straight)
         if enough and promised <= enough * cost:
+            # also where rounding has refused steps
+            growth = growth if closed else 2.0
             break
         then = residuals(then_z) if promised > 0 else None
         tried += 1
