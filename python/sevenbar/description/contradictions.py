@@ -110,7 +110,10 @@ def _wrong_row_keys(row: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def grounds(raw: Mapping[str, Any]) -> dict[tuple[int | str, ...], str]:
-    """A message for each entry that declares a ground: the last link is the ground without an entry."""
+    """A message for each key that declares a ground: the last link is the ground without an entry.
+
+    An entry that is nothing else is a place of its own, without a message.
+    """
     last = len(joints_of(raw))
     already = f"link {last} is the ground already"
     leave = f"is not known here; {already}; leave it out"

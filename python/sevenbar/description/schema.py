@@ -37,11 +37,11 @@ class TomlSchema(GenerateJsonSchema):
     """JSON schema of a TOML file, in which a key that is not given is left out: there is no null."""
 
     def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
-        """Of a key that may be left out, that of its values."""
+        """The schema of a key that may be left out: that of its values."""
         return self.generate_inner(schema["schema"])
 
     def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
-        """With the default where it is a plain value."""
+        """The schema of a key with a default, which it states where that is a plain value."""
         inner = self.generate_inner(schema["schema"])
         plain = isinstance(schema.get("default"), (str, int, float))
         return {**inner, "default": schema["default"]} if plain else inner
@@ -61,26 +61,29 @@ def json_schema() -> dict[str, Any]:
 
 
 def check(raw: Mapping[str, Any], context: Mapping[str, Any], *, source: str = "") -> LinkageForm:
-    """The checked form, or `DescriptionError` with every problem in it; `source` is the file it came from."""
+    """The checked form of a file's tables.
+
+    `context` is what numbers need to know of the rest (`formulas.context_of`); `source` is the name of the
+    file in messages. Raises `DescriptionError` with every problem of the file.
+    """
     if other := other_file(raw):
         raise DescriptionError.of_all(source, other)
     ground_places = grounds(raw)
+    problems: list[Problem] = []
     try:
         form = LinkageForm.model_validate(raw, context=context)
-        problems = []
     except ValidationError as error:
-        details = [(tuple(detail["loc"]), detail) for detail in error.errors(include_url=False)]
-        problems = [
-            Problem(path_of(place), ground_places[place])
-            if place in ground_places
-            else _FORMS.problem(detail)
-            for place, detail in details
-            # an entry that is nothing but a second ground is reported once
-            if place in ground_places or place[:2] not in ground_places
-        ]
+        for detail in error.errors(include_url=False):
+            place = detail["loc"]
+            if place in ground_places:
+                problems.append(Problem(path_of(place), ground_places[place]))
+            # an entry that is nothing but a ground has one problem, whatever keys it lacks
+            elif place[:2] not in ground_places:
+                problems.append(_FORMS.problem(detail))
     joints = joints_of(raw)
     problems += contradictions(raw)
     if not raw.keys().isdisjoint(("body", "load", "spring")):
+        # most files have none of these
         from sevenbar.description.loads import load_contradictions
 
         problems += load_contradictions(raw, joints, context)
