@@ -94,11 +94,11 @@ def _of_stop(
     problems = []
     if stop.range is not None and joints:
         column, wrong = named_column(stop.joint, joints)
-        if wrong:
-            ball = owner is not None and owner.is_ball
-            remedy = "give it a cone in place of a range" if ball else ""
-            message = f"joint {shown(stop.joint)} is a ball; {remedy}" if ball else wrong
-            problems.append(Problem(f"{place}.{'range' if ball else 'joint'}", message))
+        if owner is not None and owner.is_ball:
+            message = f"joint {shown(stop.joint)} is a ball; give it a cone in place of a range"
+            problems.append(Problem(f"{place}.range", message))
+        elif wrong:
+            problems.append(Problem(f"{place}.joint", wrong))
         elif column in ranged:
             problems.append(Problem(f"{place}.range", f"joint {shown(column)} has a range already"))
         ranged.add(column)
