@@ -32,7 +32,7 @@ Files = Mapping[str, Write[T]]
 
 @dataclass(frozen=True)
 class LongTable(Generic[T]):
-    """Writes a table that says how far it is: columns (n,) in parts, and how many rows there will be."""
+    """Writes a table and reports its progress: columns (n,) in parts, and how many rows there will be."""
 
     parts: Callable[[T], Iterable[Mapping[str, npt.ArrayLike]]]
     rows: Callable[[T], int]
@@ -43,7 +43,7 @@ class LongTable(Generic[T]):
         path: Path,
         progress: Callable[[float], object] = lambda share: None,  # noqa: ARG005
     ) -> None:
-        """Writes it; `progress(share)` is called with the share that is written, 0 to 1."""
+        """Writes it as CSV; `progress(share)` is called with the share that is written, 0 to 1."""
         total = max(1, self.rows(found))
         write_parts(path, self.parts(found), lambda done: progress(done / total))
 
@@ -59,11 +59,11 @@ class Report(Generic[T]):
     figures: Callable[[T], Files[T]] | None = None
     #: files that show the figures; written last
     pages: Files[T] = field(default_factory=dict)
-    #: whether its text is in the language that is spoken; else it is in English
+    #: whether its text may be in another language than English, by `sb.language`
     spoken: bool = False
 
     def targets(self, folder: Path) -> list[Path]:
-        """The files that `write` may write, for a look before long work."""
+        """The files that `write` may write, to be checked before long work."""
         return [folder / name for name in (*self.files, *self.pages)]
 
     def files_of(self, found: T) -> Files[T]:
@@ -77,7 +77,7 @@ class Report(Generic[T]):
 
     def print(self, found: T, console: Console | None = None) -> None:
         """Prints a result for people."""
-        # a program that reads JSON waits for no rich
+        # rich takes a while to load, and JSON does without it
         from rich.console import Console
 
         with language(None if self.spoken else "en"):
@@ -94,9 +94,9 @@ class Report(Generic[T]):
         """Writes the files of a result into a folder, all or none; returns their paths.
 
         The folder is made if need be. All are finished in a folder aside before the first is put in place;
-        after Ctrl+C those that are whole are (`Stopped`). `progress(done, total, name)` is called before each
-        file, and within long tables. Raises `OutputError` where that cannot be done, and where one exists and
-        `force` is not given.
+        Ctrl+C raises `Stopped`, which keeps those that are whole by then. `progress(done, total, name)` is
+        called before each file, and within long tables. Raises `OutputError` where the folder cannot be
+        written, and where a file exists and `force` is not given.
         """
         files = self.files_of(found)
         check_targets([Path(folder) / name for name in files], force=force)
@@ -105,7 +105,7 @@ class Report(Generic[T]):
             for done, (name, write) in enumerate(files.items()):
                 progress(done, len(files), name)
                 if isinstance(write, LongTable):
-                    write(found, staging / name, partial(_further, progress, done, len(files), name))
+                    write(found, staging / name, partial(_within, progress, done, len(files), name))
                 else:
                     write(found, staging / name)
                 yield staging / name
@@ -114,7 +114,8 @@ class Report(Generic[T]):
         return fill_folder(Path(folder), fill, force=force)
 
 
-def _further(progress: Progress, done: int, total: int, name: str, share: float) -> None:
+def _within(progress: Progress, done: int, total: int, name: str, share: float) -> None:
+    """Reports the share of a file that is written as a part of all files."""
     progress(done + share, total, name)
 
 
@@ -144,7 +145,7 @@ def columns_file(columns: Callable[[T], Mapping[str, npt.ArrayLike]]) -> Write[T
 
 
 def figure_files(stem: str, formats: Sequence[str], draw: Callable[[T], Figure | None]) -> Files[T]:
-    """A figure in each of these formats, drawn once; nothing where there is nothing to draw."""
+    """A figure in each of these formats, drawn once; no file where `draw` returns `None`."""
     drawn: list[tuple[T, Figure | None]] = []
 
     def write(found: T, path: Path) -> None:
@@ -154,7 +155,7 @@ def figure_files(stem: str, formats: Sequence[str], draw: Callable[[T], Figure |
             drawn[:] = [(found, draw(found))]
         figure = drawn[0][1]
         if path.suffix == f".{formats[-1]}":
-            # a figure takes room
+            # a figure is large, and this was its last format
             drawn.clear()
         if figure is not None:
             save(figure, path)

@@ -147,7 +147,7 @@ def as_json(motion: Motion, *, ranges: bool = False) -> str:
 
 def text(motion: Motion, *, ranges: bool = False) -> RenderableType:
     """The report for people, to be printed by rich; angles in degrees; with `ranges` of all joints."""
-    # a program that reads JSON waits for no rich
+    # rich takes a while to load, and JSON does without it
     from sevenbar.reporting.printed import motion_page
 
     return motion_page(motion, ranges=ranges)
@@ -276,7 +276,7 @@ def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
 
 
 def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
-    # a program that reads JSON waits for no rich
+    # rich takes a while to load, and JSON does without it
     from sevenbar.reporting.printed import modes_page
 
     return modes_page(linkage, column, modes)
