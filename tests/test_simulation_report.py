@@ -50,6 +50,15 @@ def test_the_report_tells_engine_course_and_differences(engine):
     assert run.stderr == f"{engine}: RSSR of Sun and Zhou ..\n"
 
 
+def test_a_run_is_reported_in_english_whatever_language_is_spoken(rccc, capsys):
+    simulation_report.print_text(rccc)
+    page, plain = capsys.readouterr().out, simulation_report.as_json(rccc)
+    with sb.language("zh"):
+        simulation_report.print_text(rccc)
+        assert capsys.readouterr().out == page
+        assert simulation_report.as_json(rccc) == plain
+
+
 def test_json_is_one_object_and_nothing_else():
     run = sevenbar("simulate", "bennett", "--engine", "mujoco", "--steps", 360, "--json")
     found = json.loads(run.stdout)

@@ -11,19 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from rich.console import Console, RenderableType
+from rich.console import RenderableType
 
 from sevenbar.drawing.names import short
 from sevenbar.kinematics.loop.columns import joint_column, point_column
-from sevenbar.reporting.files import (
-    Report,
-    columns_file,
-    figure_files,
-    json_file,
-    json_text,
-    text_file,
-    without_nan,
-)
+from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
 from sevenbar.reporting.page import Facts, number_table, opening, page
 from sevenbar.reporting.shown import drive_text
 from sevenbar.simulation.agreement import Difference, Simulation
@@ -31,13 +23,14 @@ from sevenbar.text.printing import text_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from rich.console import Console
 
 
 def as_dict(run: Simulation) -> dict[str, Any]:
-    """The result of a run, as plain values: angles in radians, lengths in the linkage's unit."""
+    """The result of a run, as plain values, NaN for none; angles in radians, lengths in the file's unit."""
     way = run.course
     returned = None if run.returned is None else dict(zip(("length", "angle"), run.returned, strict=True))
-    values = {
+    return {
         "format": 1,
         "linkage": {"name": run.linkage.name, "kind": run.linkage.kind},
         "units": {"length": run.linkage.length_unit, "angle": "rad", "time": "s"},
@@ -54,7 +47,6 @@ def as_dict(run: Simulation) -> dict[str, Any]:
         "closure_error": {"length": run.gap, "angle": run.tilt},
         "returned": returned,
     }
-    return without_nan(values)  # type: ignore[no-any-return]
 
 
 def text(run: Simulation) -> RenderableType:
@@ -138,12 +130,12 @@ def write(
 
 def as_json(run: Simulation) -> str:
     """The result of a run as JSON text."""
-    return json_text(as_dict(run))
+    return simulation_report(run.record.engine).json(run)
 
 
 def print_text(run: Simulation, console: Console | None = None) -> None:
     """Prints the report for people."""
-    (console or Console()).print(text(run))
+    simulation_report(run.record.engine).print(run, console)
 
 
 def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
