@@ -21,8 +21,8 @@ from sevenbar.kinematics.loop.rigid import half_turn, inverse, placed
 from sevenbar.kinematics.loop.rigid import pose as matrix
 from sevenbar.text.progress import Progress, silent
 
-#: The names ADAMS has for length units; micrometres are written in millimetres.
-UNITS = {"mm": "mm", "cm": "cm", "m": "meter", "in": "inch", "ft": "foot", "um": "mm"}
+#: The names ADAMS has for length units.
+UNITS = {"mm": "mm", "cm": "cm", "m": "meter", "in": "inch", "ft": "foot"}
 
 #: How much of the way to a dead centre of the input is driven: at it, constant speed asks the impossible.
 DRIVEN_SHARE = 0.98
@@ -75,7 +75,7 @@ class _LinkageFile(CommandFile):
         return "\n".join(self.lines) + "\n"
 
     def _drive(self) -> tuple[float, float, int]:
-        """The input's speed, and the time and the steps of one cycle."""
+        """The input's speed, and the time and the steps of one cycle, or of the way to a dead centre."""
         motion, circuit = self.pose.motion, self.pose.circuit
         if motion.law is not None:
             raise RequestError(
@@ -108,17 +108,15 @@ class _LinkageFile(CommandFile):
         return abs(joint.angle - math.pi / 2) < RIGHT and not set(joint.columns) & given
 
     def _head(self) -> None:
-        unit = self.linkage.length_unit
-        written = "mm" if unit == "um" else unit
         loading = self.linkage.loading
         left_out = loading.left_out(loads=sum(load.table is not None for load in loading.loads))
         own = f"the linkage; parts that have none weigh {MASSLESS:g} of the heaviest"
-        whose = own if has_masses(self.linkage) else "the drawn bodies in steel"
+        origin = own if has_masses(self.linkage) else "the drawn bodies in steel"
         self.lines += [
             f"! {_ascii(self.linkage.name)}",
             "! An ADAMS/View command file written by Sevenbar from the documentation of the language;",
-            "! it has not been run in ADAMS. Lengths in " + written + ", masses in kg; masses are those of",
-            f"! {whose}. Plain angles in functions are in radians."
+            "! it has not been run in ADAMS. Lengths in " + self.unit + ", masses in kg; masses are those of",
+            f"! {origin}. Plain angles in functions are in radians."
             + " No gravity." * (not any(loading.gravity)),
             *([f"! Left out, for it follows a table: {left_out}."] if left_out else []),
             *(f"! Idle freedom: {_ascii(words)}." for words in self.linkage.idle),
@@ -126,7 +124,9 @@ class _LinkageFile(CommandFile):
               for words in self.pose.motion.redundant),
             "!",
         ]  # fmt: skip
-        self.say("defaults units", length=UNITS[unit], angle="deg", force="newton", mass="kg", time="sec")
+        self.say(
+            "defaults units", length=UNITS[self.unit], angle="deg", force="newton", mass="kg", time="sec"
+        )
         self.say("defaults units", coordinate_system_type="cartesian", orientation_type="body313")
         self.say("model create", model_name=self.model)
         self.say("defaults model", model_name=self.model)
@@ -142,7 +142,7 @@ class _LinkageFile(CommandFile):
                 location=location,
                 orientation=orientation,
             )
-            # about its main axes, so that no products of inertia are left
+            # the marker has the principal axes, so that no products of inertia are left
             moments, axes = np.linalg.eigh(mass.inertia)
             axes[:, 2] *= np.linalg.det(axes)
             self.marker(body, "cm", matrix(axes, mass.centre))
@@ -187,7 +187,7 @@ class _LinkageFile(CommandFile):
             self._universal(i, word, j_side, i_side)
             return
         if joint.backwards:
-            # as written: the link, from the ground, about the axis as drawn
+            # the file counts the link against the ground, so I and J change places and the axis turns round
             row, turned = KINDS[joint.kind], half_turn(joint.row.half_turn)
             j_side, i_side = ((body, frame @ turned) for body, frame in (i_side, j_side))
         found = self._connect(joint.row.adams, word, j_side, i_side)

@@ -37,16 +37,18 @@ class Column:
 
 
 class CommandFile:
-    """The commands for an assembly as they are collected, with lengths of `metre` metres."""
+    """The commands for an assembly as they are collected, in the length unit `unit` of `metre` metres."""
 
     def __init__(self, assembly: Assembly) -> None:
         self.assembly, self.pose, self.linkage = assembly, assembly.pose, assembly.pose.linkage
         #: How many joints the linkage has, and so how many bodies before the crosses of universal joints.
         self.count = len(self.linkage.joints)
-        unit = self.linkage.length_unit
-        #: The linkage's length unit in that of the file: of micrometres millimetres, as ADAMS has none.
-        self.scale = LENGTHS[unit] / LENGTHS["mm"] if unit == "um" else 1.0
-        self.metre = LENGTHS[unit] / self.scale
+        own = self.linkage.length_unit
+        # ADAMS has no micrometres
+        self.unit = "mm" if own == "um" else own
+        self.metre = LENGTHS[self.unit]
+        #: The linkage's length unit in that of the file.
+        self.scale = LENGTHS[own] / self.metre
         self.model = "." + word_of(self.linkage.name, "linkage")
         self.lines: list[str] = []
         #: What each column is in the file; none for turns of Hooke joints and balls.
