@@ -151,7 +151,7 @@ _NAMES_ON_DEMAND = {name: module for module, names in _NAMES_OF_MODULES.items() 
 SAID_IN["sevenbar.kinematics"] = "sevenbar.reporting.results"
 SAID_IN["sevenbar.forces.free_motion"] = "sevenbar.reporting.free_motion"
 SAID_IN["sevenbar.forces"] = "sevenbar.reporting.force_results"
-for _folder in ("design.maps", "design.points", "measuring", "simulation"):
+for _folder in ("design.exact", "design.maps", "design.points", "measuring", "simulation"):
     SAID_IN[f"sevenbar.{_folder}"] = f"sevenbar.{_folder}.report"
 # bodies that are given as drawn are those of exports, which stand above the kinematics
 DRAWN_IN["bodies"] = "sevenbar.export.mass"

@@ -13,7 +13,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import CHECK_SAMPLES, Candidate, Claim, Refusal, checked
 from sevenbar.design.exact.dyads import Dyad
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.text.printing import Printed, lines, text_of
+from sevenbar.text.printing import Printed
 
 #: Inputs of a full turn at which poses are sought. A long crank moves by a hundredth of a turn, and less.
 CHECKED_AT, LITTLE_CHECKED_AT = (CHECK_SAMPLES, 16 * CHECK_SAMPLES), 256 * CHECK_SAMPLES
@@ -129,25 +129,3 @@ def judged(draft: Draft, claim: Claim, poses: Floats | None = None) -> ExactAnsw
         if not isinstance(verdict, Refusal) or verdict.fault != "assembly":
             break
     return ExactAnswer(draft, claim, verdict, poses)
-
-
-def answer_facts(found: ExactAnswers) -> list[tuple[str, str]]:
-    """How many answers there are and what they do, by labels."""
-    faults = ", ".join(f"{count} by {fault}" for fault, count in found.faults.items())
-    unjudged = sum(a.verdict is None for a in found.answers)
-    number = "a family" if found.theory is None else f"{found.found} of {found.theory} {found.counted}"
-    return [
-        ("over the complex numbers", number),
-        ("real", f"{found.real}"),
-        ("linkages", f"{len(found.answers)}"),
-        ("assemblable", f"{len(found.assemblable)}"),
-        ("free of defects", f"{len(found.defect_free)}"),
-        ("defects", faults or "none"),
-        *([("without a verdict", f"{unjudged}: two freedoms")] if unjudged else []),
-        ("how", found.how),
-    ]
-
-
-@text_of.register(ExactAnswers)
-def _(found: ExactAnswers) -> str:
-    return lines(f"Answers to {found.task}", answer_facts(found))

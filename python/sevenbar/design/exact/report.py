@@ -11,7 +11,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from sevenbar.design.candidates import Refusal
-from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers, answer_facts
+from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers
 from sevenbar.design.exact.dyads import Line
 from sevenbar.design.exact.given import place_text
 from sevenbar.design.files import design_files
@@ -19,6 +19,7 @@ from sevenbar.design.tables import design_table, plain_designs
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table, page
 from sevenbar.text.listed import named
+from sevenbar.text.printing import lines, text_of
 
 #: Closure errors, relative to the size of the linkage, below which nothing is to be seen but rounding.
 ROUNDING = 1e-9
@@ -52,7 +53,7 @@ def text(count: int, designs: ExactDesigns) -> RenderableType:
     """The answers for people, with the first `count` linkages."""
     found, facts = designs.found, Facts()
     facts.add("task", f"{found.task} of {designs.source}", "bold")
-    facts.add_all(answer_facts(found))
+    facts.add_all(_answer_facts(found))
     parts: list[RenderableType] = []
     if found.dyads:
         unit = designs.length_unit
@@ -75,6 +76,23 @@ def text(count: int, designs: ExactDesigns) -> RenderableType:
     if left > 0:
         parts.append(Text(f"and {left} more; --json lists them all"))
     return page("All answers", facts, *parts)
+
+
+def _answer_facts(found: ExactAnswers) -> list[tuple[str, str]]:
+    """How many answers there are and what they do, by labels."""
+    faults = ", ".join(f"{count} by {fault}" for fault, count in found.faults.items())
+    unjudged = sum(a.verdict is None for a in found.answers)
+    number = "a family" if found.theory is None else f"{found.found} of {found.theory} {found.counted}"
+    return [
+        ("over the complex numbers", number),
+        ("real", f"{found.real}"),
+        ("linkages", f"{len(found.answers)}"),
+        ("assemblable", f"{len(found.assemblable)}"),
+        ("free of defects", f"{len(found.defect_free)}"),
+        ("defects", faults or "none"),
+        *([("without a verdict", f"{unjudged}: two freedoms")] if unjudged else []),
+        ("how", found.how),
+    ]
 
 
 def as_dict(designs: ExactDesigns) -> dict[str, Any]:
@@ -113,3 +131,8 @@ def _place(line: Line, size: float, plane: bool) -> str:
     if plane:
         return f"{place_text(line.at[:2], size)} along {place_text(line.axis[:2], 1.0)}"
     return f"{place_text(line.at, size)} along {place_text(line.axis, 1.0)}"
+
+
+@text_of.register(ExactAnswers)
+def _(found: ExactAnswers) -> str:
+    return lines(f"Answers to {found.task}", _answer_facts(found))
