@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -15,10 +16,11 @@ from sevenbar.design.exact.dyads import Dyad
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed
 
-#: Inputs of a full turn at which poses are sought. A long crank moves by a hundredth of a turn, and less.
-CHECKED_AT, LITTLE_CHECKED_AT = (CHECK_SAMPLES, 16 * CHECK_SAMPLES), 256 * CHECK_SAMPLES
+#: Inputs of a full turn among which the wanted poses are sought, until they are found. A long crank moves by
+#: a hundredth of a turn or less: few inputs of a turn are near its poses.
+CHECKED_AT = (CHECK_SAMPLES, 16 * CHECK_SAMPLES, 256 * CHECK_SAMPLES)
 
-#: Range of the claimed inputs [rad] that is little.
+#: Range of the claimed inputs [rad] from which on poses are not sought among the most.
 LITTLE = 0.2
 
 
@@ -59,11 +61,11 @@ class ExactAnswer:
             return "two freedoms"
         return self.fault or "none"
 
-    @property
+    @cached_property
     def columns(self) -> dict[str, float | str | int | None]:
         """What is reported of it, column by column; each number's name ends in its unit."""
         free = self.verdict if isinstance(self.verdict, Candidate) else None
-        # of other linkages than the RSSR it would be that of the whole circuit
+        # that of other linkages than the RSSR is of the whole circuit, not of the wanted poses
         lowest = None if free is None or self.linkage.form != "rssr" else free.transmission_lowest
         return {
             "defect": self.defect,
@@ -124,7 +126,7 @@ class ExactAnswers(Printed):
 def judged(draft: Draft, claim: Claim, poses: Floats | None = None) -> ExactAnswer:
     """An answer with what its circuits say; `poses` (n, columns) as `checked` takes them."""
     little = float(np.ptp(claim.inputs)) < LITTLE
-    for samples in (*CHECKED_AT, *([LITTLE_CHECKED_AT] if little else [])):
+    for samples in CHECKED_AT if little else CHECKED_AT[:-1]:
         verdict = checked(draft, claim, poses=poses, samples=samples)
         if not isinstance(verdict, Refusal) or verdict.fault != "assembly":
             break
