@@ -35,10 +35,10 @@ class Journal(HeldFolder):
         resume: bool,
         mixed: bool,
     ) -> None:
-        """Makes the folder, or takes that of the same survey up again.
+        """Makes the folder, or goes on with that of the same survey.
 
-        Raises `OutputError` for a folder of something else, for one with parts where `resume` is not given,
-        and for parts of another maker where `mixed` is not.
+        `makers` are what will make parts (`maker`). Raises `OutputError` for a folder of something else, for
+        one with parts where `resume` is not given, and for parts of another maker where `mixed` is not.
         """
         super().__init__(folder, task)
         self._task = task
@@ -91,7 +91,7 @@ class Journal(HeldFolder):
                 row = json.loads(line)
                 by, part = row["made_by"], int(row["part"])
                 tally = SurveyTally.of_dict(row["tally"])
-                if part >= self._task.parts or tally.count != len(self._task.linkages(part)):
+                if not 0 <= part < self._task.parts or tally.count != len(self._task.linkages(part)):
                     raise ValueError
             except (ValueError, KeyError, TypeError, IndexError):
                 raise OutputError(
