@@ -20,12 +20,15 @@ from sevenbar.studio.panels.scenery import arrow_unit
 from sevenbar.studio.pictures.stage import Arrow, Stage
 from sevenbar.studio.state.acting import Switch, SwitchedLoading, drive_sizing, known_force
 from sevenbar.studio.state.session import Session
-from sevenbar.studio.state.verdict import facts_block
+from sevenbar.studio.state.verdict import facts_block, faded
 from sevenbar.studio.state.view import View
 from sevenbar.studio.worker import Worker
 
 #: The longest arrow, as a share of the linkage's extent.
 LONGEST = 0.25
+
+#: The peaks are found so long [s] after the last change: finding them takes longer than a picture may.
+AT_REST = 0.25
 
 NO_ARROWS, EVERY_JOINT = "none", "all joints"
 
@@ -43,8 +46,10 @@ class ForceArrows:
         self._choice = gui.add_dropdown("force arrows", (NO_ARROWS,), hint=_HINT)
         self._choice.on_update(lambda _: worker.ask("forces", lambda: None))
         self._names: tuple[str, ...] = ()
+        # what the arrows on view show, with the row; what the forces along the path are of
         self._drawn: tuple[object, ...] = ()
         self._of: tuple[object, ...] = ()
+        # the force (n, 3) on the rows of the path in each joint with an arrow; `arrow_unit` of all
         self._along: list[tuple[int, Floats]] = []
         self._unit = 0.0
 
@@ -110,10 +115,6 @@ class ForceArrows:
         return arrows
 
 
-#: The peaks are found so long [s] after the last change: finding them takes longer than a picture may.
-AT_REST = 0.25
-
-
 class ForcesPanel:
     """Check boxes of gravity, loads and springs, the arrows in the joints, and the peaks of the drive."""
 
@@ -147,7 +148,7 @@ class ForcesPanel:
             self._worker.ask("peaks", lambda: None)
         else:
             self._worker.ask("peaks", self._find, delay=AT_REST)
-        self._tell(stale=True)
+        self._show_facts(stale=True)
 
     def _find(self) -> None:
         """Finds what the facts say of what is on view."""
@@ -161,11 +162,10 @@ class ForcesPanel:
             found = [*drive_facts(forces, drive_sizing(forces)), *open_facts(forces)]
         title = f"circuit {view.circuit.index}"
         self._text = facts_block([fact for fact in found if fact[1]], title=title)
-        self._tell(stale=bool(self._session.problem))
+        self._show_facts(stale=bool(self._session.problem))
 
-    def _tell(self, *, stale: bool) -> None:
-        faint = f'<div style="opacity:0.45">{self._text}</div>'
-        settle(self._facts, content=faint if stale and self._text else self._text)
+    def _show_facts(self, *, stale: bool) -> None:
+        settle(self._facts, content=faded(self._text, stale=stale))
 
     def _build(self, switches: tuple[Switch, ...]) -> None:
         """Makes the check boxes of other switches than before."""

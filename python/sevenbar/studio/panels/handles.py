@@ -9,16 +9,15 @@ import numpy as np
 import viser
 
 from sevenbar.arrays import Floats
+from sevenbar.kinematics.circuits.timed_walk import SAME_ROW
 from sevenbar.studio.panels.controls import Alert, on_change, put
 from sevenbar.studio.pictures.stage import Stage
 from sevenbar.studio.state.grips import Grip, grips
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.worker import Worker
 
-#: The length of a handle's arrows, and how thick they are [1, pixels].
+#: The length of a handle's arrows [1, in the scene], and how thick they are [pixels].
 ARROWS, THICK = 0.17, 3.0
-#: Parts of a row that are none.
-SAME_ROW = 1e-6
 
 DRAWN = (
     "Pull an arrow, or a square between two. The linkage is shown as drawn; what lies in one place moves "

@@ -15,6 +15,14 @@ from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
 from sevenbar.studio.worker import Worker
 
+#: What the list of points says where there is none.
+NONE = "no points yet"
+
+_HINT = (
+    "In Denavit-Hartenberg rows: u along the link's joint, v along the link, w = u x v, from where the link "
+    "before meets the joint's axis. In [rssr]: in the link's frame. In drawn joints: in ground coordinates."
+)
+
 
 class PointsPanel:
     """The points of the description, and the form for one more."""
@@ -87,15 +95,6 @@ def _speeds(view: View, index: int) -> str:
         return ""
     line = escape(f"{point.name} on link {point.link}: {', '.join(parts)}")
     return f'<div style="padding:2px 12px 6px;font-size:12.5px">{line}</div>'
-
-
-#: What the list of points says where there is none.
-NONE = "no points yet"
-
-_HINT = (
-    "In Denavit-Hartenberg rows: u along the link's joint, v along the link, w = u x v, from where the link "
-    "before meets the joint's axis. In [rssr]: in the link's frame. In drawn joints: in ground coordinates."
-)
 
 
 def _names() -> Iterator[str]:

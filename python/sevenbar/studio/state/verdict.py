@@ -41,9 +41,13 @@ def verdict(session: Session) -> str:
     motion = session.motion
     html = "" if motion is None else _facts(_of_motion(motion))
     if session.view is not None:
-        stale = "opacity:0.45;" if session.problem else ""
-        html += f'<div style="{stale}">{_of_circuit(session.view)}</div>'
+        html += faded(_of_circuit(session.view), stale=bool(session.problem))
     return _block(html)
+
+
+def faded(html: str, *, stale: bool) -> str:
+    """A piece of the page, in grey where it is out of date."""
+    return f'<div style="opacity:0.45">{html}</div>' if stale and html else html
 
 
 def facts_block(facts: Iterable[tuple[str, str]], *, title: str) -> str:
