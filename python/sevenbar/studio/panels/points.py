@@ -8,12 +8,12 @@ from itertools import count
 
 import viser
 
-from sevenbar.errors import RequestError, shown
 from sevenbar.studio.panels.controls import Alert, put, settle
 from sevenbar.studio.panels.shaping import DimensionList
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
 from sevenbar.studio.worker import Worker
+from sevenbar.text.ranges import three_numbers
 
 #: What the list of points says where there is none.
 NONE = "no points yet"
@@ -45,15 +45,9 @@ class PointsPanel:
         self._view: object = None
 
     def _add(self) -> None:
-        text = self._at.value
-        try:
-            u, v, w = (float(part) for part in text.replace(";", ",").split(","))
-        except ValueError:
-            raise RequestError(
-                f"at: {shown(text)} is not a place; give three numbers, as in -100, -90, -80"
-            ) from None
+        at = three_numbers("at", self._at.value.replace(";", ","), "a place", "-100, -90, -80")
         name = self._name.value.strip()
-        self._session.add_point(name, int(self._link.value.partition(" ")[0]), (u, v, w))
+        self._session.add_point(name, int(self._link.value.partition(" ")[0]), at)
 
     def _take_away(self) -> None:
         names = [str(point["name"]) for point in self._session.draft.raw.get("point", ())]
