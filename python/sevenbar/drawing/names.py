@@ -13,7 +13,7 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.units import LENGTHS, length_sizes
 from sevenbar.text.words import say
 
-#: The name of a joint that nobody named, as the descriptions make it, and the number of a column of its own.
+#: The name of a joint that nobody named, and of its columns: theta_5, theta_5.2.
 _UNNAMED = re.compile(r"theta_(\d+)(\.\d+)?")
 
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -21,7 +21,7 @@ _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 #: The letters of the RSSR paper for its two balls, by their place in the loop.
 RSSR_LETTERS = {1: "A", 2: "B"}
 
-#: From this value on a length or its rate is written in metres, if its unit is smaller.
+#: From this value on a length or its rate is written in metres, if its unit is metric and smaller.
 LARGE = 1e4
 
 
@@ -43,9 +43,9 @@ def shown_name(name: str, width: int = 40) -> str:
 
 
 def joint_label(linkage: Loop, joint: int) -> str:
-    """What a joint is called in a picture of the linkage: its name; A, B in an RSSR; else its number."""
+    """What a joint is called in a picture: A, B in an RSSR of the paper; else its name, or its number."""
     name = linkage.joints[joint].name
-    if linkage.kind == "RSSR" and joint in RSSR_LETTERS and linkage.form == "rssr":
+    if linkage.form == "rssr" and joint in RSSR_LETTERS:
         return RSSR_LETTERS[joint]
     return str(joint + 1) if _UNNAMED.fullmatch(name) else short(name, 24)
 
@@ -53,9 +53,10 @@ def joint_label(linkage: Loop, joint: int) -> str:
 def named_together(
     names: Sequence[str], places: Floats, near: float, without: Container[int] = ()
 ) -> dict[int, list[str]]:
-    """The names of places (n, k, ..) in n poses by the first place of each group, `without` some places.
+    """The names of places (n, k, ..) in n poses, those of one group together, by the group's first place.
 
-    Places that are nearer to it than `near` in all poses are of its group; a name is there once.
+    A group has the places that are nearer to its first one than `near` in every pose, each name once; places
+    in `without` are left out.
     """
     named: dict[int, list[str]] = {}
     for place, name in enumerate(names):
