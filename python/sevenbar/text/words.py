@@ -15,12 +15,12 @@ from sevenbar.errors import RequestError, shown, suggestion
 #: The languages by their codes, and what each calls itself.
 LANGUAGES = {"en": "English", "zh": "中文"}
 
-#: The part of a catalogue with sentences that are made before a language is chosen.
+#: The part of a catalogue with sentences that are filled in before a language is chosen.
 MADE_BEFORE = "made before"
 
 _spoken: ContextVar[str] = ContextVar("language", default="en")
 
-#: A place for a value in a sentence.
+#: A place for a value, as `re.escape` leaves it in a sentence.
 _PLACE = re.compile(r"\\\{(\w+)\\\}")
 
 
@@ -69,7 +69,10 @@ def say(sentence: str, /, **values: object) -> str:
 
 
 def retold(text: str) -> str:
-    """A text that was made in English, in the language that is spoken if the catalogue has its sentence."""
+    """A text that was made in English, in the spoken language if its catalogue has the sentence.
+
+    A sentence with values is recognised by what is between them.
+    """
     known = catalogue(_spoken.get()).get(text)
     if known is not None:
         return known
@@ -99,7 +102,7 @@ def _parts(code: str) -> Mapping[str, Mapping[str, str]]:
 
 @cache
 def _patterns(code: str) -> list[tuple[re.Pattern[str], str]]:
-    """The sentences that are made before, each as a pattern with a group for each value."""
+    """The sentences of `MADE_BEFORE`, each as a pattern with a group for each value."""
     return [
         (re.compile(_PLACE.sub(r"(?P<\1>.+?)", re.escape(sentence))), text)
         for sentence, text in _parts(code).get(MADE_BEFORE, {}).items()

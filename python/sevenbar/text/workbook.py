@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from io import BytesIO
@@ -10,7 +11,7 @@ from typing import Any
 
 from sevenbar.errors import TableError, of_extra, shown
 
-#: How a file of this kind begins: a workbook is a zip archive, as LibreOffice's and others are.
+#: How an .xlsx file begins: it is a zip archive, as the files of LibreOffice and others are.
 ZIP = b"PK\x03\x04"
 #: How an .xls file begins.
 OLD = b"\xd0\xcf\x11\xe0"
@@ -70,14 +71,12 @@ def _open(content: bytes, source: str, *, data_only: bool) -> Any:
     needs = f"{source}: an Excel workbook needs openpyxl"
     with of_extra("excel", needs, ", or export the table as CSV"):
         import openpyxl
-    import warnings
-
     try:
         with warnings.catch_warnings():
-            # it warns of charts and styles, which are not read
+            # openpyxl warns of charts and styles, which are not read
             warnings.simplefilter("ignore")
             return openpyxl.load_workbook(BytesIO(content), data_only=data_only)
-    except Exception:  # what it raises is that of its parts: zip, XML, missing entries
+    except Exception:  # openpyxl lets through whatever zip, XML and missing entries raise
         raise TableError(
             f"{source}: is no Excel workbook that can be read; save it again as .xlsx, or export it as CSV"
         ) from None

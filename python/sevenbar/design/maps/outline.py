@@ -83,10 +83,10 @@ def joined(pieces: Iterable[Floats]) -> list[Floats]:
 
 def regions(mesh: Mesh) -> tuple[Region, ...]:
     """The parts of the window by kind, the largest first."""
-    hands: dict[tuple[tuple[float, float], ...], int] = {}
+    left_of: dict[tuple[tuple[float, float], ...], int] = {}
     for chord in mesh.chords:
         start, end = mesh.places[chord.start], mesh.places[chord.end]
-        hands[start, end], hands[end, start] = chord.left, chord.right
+        left_of[start, end], left_of[end, start] = chord.left, chord.right
     ends = np.array([(mesh.places[chord.start], mesh.places[chord.end]) for chord in mesh.chords])
     chords = shapely.linestrings(ends.reshape(-1, 2, 2))
     lines = shapely.union_all([shapely.box(0, 0, 1, 1).exterior, *chords])
@@ -94,7 +94,8 @@ def regions(mesh: Mesh) -> tuple[Region, ...]:
     for face in map(orient, shapely.get_parts(shapely.polygonize(shapely.get_parts(lines)))):
         rings = [shapely.get_coordinates(ring).tolist() for ring in (face.exterior, *face.interiors)]
         sides = [(tuple(a), tuple(b)) for ring in rings for a, b in pairwise(ring)]
-        kinds = Counter(hands[side] for side in sides if side in hands)
+        # the face is on the left of its rings; the border and pieces of chords that cross have no kind
+        kinds = Counter(left_of[side] for side in sides if side in left_of)
         # without a boundary all the window is one
         kind = kinds.most_common(1)[0][0] if kinds else mesh.corners[0, 0]
         found.append(Region(kind, face))

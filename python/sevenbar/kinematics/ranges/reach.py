@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,7 +18,7 @@ class Reach:
     """A stretch of a walk from row `low` to row `high`, within all stops.
 
     On a closed circuit `high` may be greater than the last row: the stretch then goes on over the end.
-    `first_stop` and `last_stop` say what ends it: "range of rocker", "cone of ball_a", "links 1 and 3"; empty
+    `first_stop` and `last_stop` are what ends it: "range of rocker", "cone of ball_a", "links 1 and 3"; empty
     where the circuit itself ends.
     """
 
@@ -30,7 +29,7 @@ class Reach:
     last_stop: str
 
     @property
-    def _round(self) -> float:
+    def _cycle(self) -> float:
         """Rows of a whole cycle of a closed circuit."""
         return float(len(self.way.path.rows) - 1)
 
@@ -42,11 +41,11 @@ class Reach:
         """A row counted on from the stretch's first, over the end of a closed circuit."""
         if not self.way.circuit.closed or row >= self.low - SAME_ROW:
             return row
-        return row + self._round
+        return row + self._cycle
 
     def rolled(self, row: float) -> float:
         """A row of the stretch as a row of the path."""
-        return row - self._round if row > self._round else row
+        return row - self._cycle if row > self._cycle else row
 
     def clamped(self, row: float) -> float:
         """A row that is counted as `unrolled` does, no farther than the stops."""
@@ -54,7 +53,7 @@ class Reach:
 
     def time_at(self, row: float) -> float:
         """The time [s] of a row that is counted as `unrolled` does."""
-        over = row > self._round
+        over = row > self._cycle
         return self.way.time_at(self.rolled(row)) + (self.way.period if over else 0.0)
 
     @cached_property
@@ -124,18 +123,20 @@ def reaches(way: TimedWalk) -> tuple[Reach, ...]:
 
     found = []
     for first, past in _runs(free, closed=way.circuit.closed):
-        laps = last if past - 1 > last else 0
+        # a run over the end of a closed circuit is counted on from there
+        over = last if past - 1 > last else 0
         low, first_stop = end(first, first - 1)
-        high, last_stop = end(past - 1 - laps, past - laps)
-        found.append(Reach(way, low, high + laps, first_stop, last_stop))
+        high, last_stop = end(past - 1 - over, past - over)
+        found.append(Reach(way, low, high + over, first_stop, last_stop))
     return tuple(found)
 
 
-def _runs(free: Flags, *, closed: bool) -> Iterator[tuple[int, int]]:
+def _runs(free: Flags, *, closed: bool) -> list[tuple[int, int]]:
     """The first row of each run within the stops, and the first past it; over the end of a closed circuit."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], free, [False]])))
     runs = [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
     if closed and len(runs) > 1 and free[0] and free[-1]:
         first, last = runs[0], runs[-1]
+        # the last row of a closed circuit is its first
         runs = [*runs[1:-1], (last[0], last[1] + first[1] - 1)]
-    yield from runs
+    return runs
