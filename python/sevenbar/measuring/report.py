@@ -27,7 +27,7 @@ from sevenbar.text.words import retold, say
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: Decimals of values that exact rows give.
+#: Decimals of values whose interval has no width, or is not known.
 EXACT_DIGITS = 6
 
 #: The JSON has all candidates and notes; the page has as many candidates.
@@ -358,7 +358,7 @@ def _parameter_table(calibration: Calibration) -> Table:
 def _digits(reach: float) -> int:
     """Decimals that show two digits of an interval."""
     if not reach > 0:
-        return 6
+        return EXACT_DIGITS
     return min(max(1 - math.floor(math.log10(reach)), 0), 12)
 
 

@@ -74,14 +74,15 @@ def modes_page(linkage: Loop, column: int, modes: Modes) -> RenderableType:
 
 
 def _table(sheet: Sheet) -> Table:
-    # the box has a space of its own between columns
+    # of the gap the box itself puts one space between columns
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, GAP - 1, 0, 0))
     for place, head in enumerate(sheet.heads):
         right = place in sheet.right
         table.add_column(Text(head), justify="right" if right else "left", overflow="fold", no_wrap=right)
-    several = any("\n" in cell for row in sheet.rows for cell in row)
+    # rows of several lines are kept apart
+    is_tall = any("\n" in cell for row in sheet.rows for cell in row)
     for row in sheet.rows:
-        table.add_row(*map(Text, row), end_section=False)
-        if several and row is not sheet.rows[-1]:
+        table.add_row(*map(Text, row))
+        if is_tall and row is not sheet.rows[-1]:
             table.add_row()
     return table
