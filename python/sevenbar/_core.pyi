@@ -145,7 +145,7 @@ class Product:
 
 @final
 class Carried:
-    """A point that the link behind so many joints carries; its coordinates are numbers, or given."""
+    """A point of the link behind so many steps (joints of the core); coordinates are numbers, or given."""
 
     def __new__(
         cls,

@@ -14,7 +14,8 @@ use sevenbar_core::parallel::in_order;
 use sevenbar_core::rigid::Pose;
 use sevenbar_core::rssr::{self, MOST_LIMITS, MotionMeasures};
 
-/// What circuits are measured by: arrays (c,), and extremes (c, 4); NaN where there is nothing.
+/// What circuits are measured by: arrays (c,), and extremes (c, 4), the lowest and its input, the highest and its input; NaN where
+/// there is nothing.
 #[pyclass(frozen, get_all, module = "sevenbar._core")]
 pub(crate) struct RawMeasures {
     turns: Py<PyArray1<i64>>,
@@ -49,7 +50,8 @@ impl RawMeasures {
     }
 }
 
-/// The motions of RSSRs: codes (n,), limits (n, 4), rising, NaN after the last, circuits of each (n,), and these one after the other.
+/// The motions of RSSRs: codes of motion types (n,), limits (n, 4), rising, NaN after the last, how many circuits each has (n,), and
+/// the measures of all circuits (c,), one after the other.
 #[pyclass(frozen, get_all, module = "sevenbar._core")]
 pub(crate) struct RssrBatch {
     codes: Py<PyArray1<u8>>,
@@ -70,8 +72,8 @@ impl RssrBatch {
     }
 }
 
-/// The motions of general loops: whether each is driven (n,), its motion type, circuits of each (n,); of these, one after the other,
-/// the motion type, how many input dead centres (c,), where the input is there, and the measures.
+/// The motions of general loops: whether each is driven (n,), its motion type, how many circuits it has (n,); of all circuits, one
+/// after the other, the motion type, how many input dead centres (c,), the inputs at these, and the measures.
 #[pyclass(frozen, get_all, module = "sevenbar._core")]
 pub(crate) struct LoopBatch {
     status: Py<PyArray1<u8>>,

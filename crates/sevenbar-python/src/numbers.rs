@@ -14,7 +14,7 @@ use std::sync::Arc;
 #[derive(Clone, PartialEq)]
 pub(crate) struct Product(loops::Product);
 
-/// A point that the link behind so many joints carries, in a frame there; its coordinates are numbers, or given.
+/// A point of the link behind so many steps (joints of the core); coordinates are numbers, or given.
 #[pyclass(frozen, eq, from_py_object, module = "sevenbar._core")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Carried(loops::Carried);
@@ -48,7 +48,7 @@ impl Product {
 
 #[pymethods]
 impl Product {
-    /// The motion that leaves all where it is.
+    /// The identity.
     #[new]
     fn new() -> Self {
         Self(loops::Product::default())
@@ -75,7 +75,8 @@ impl Product {
         Self::along(axis, Factor::Slide(axis, number))
     }
 
-    /// The frame on a joint as drawn at a place: z along one of its axes, x across it towards another place, or square to two axes.
+    /// The frame on a joint as drawn: its place, its axes (two of U, none of a ball), which of them is z, the place towards which
+    /// x goes where there is one axis, and whether x counts, since the joint slides in a plane.
     #[staticmethod]
     fn drawn(at: Three, axes: Vec<Three>, which: usize, towards: Three, has_plane: bool) -> PyResult<Self> {
         if which >= axes.len().max(1) || axes.len() > 2 {
@@ -95,12 +96,12 @@ impl Product {
         Self(loops::Product::of(Factor::Held(Held { axis, line, which })))
     }
 
-    /// It, and another behind it.
+    /// This motion, then another.
     fn __add__(&self, other: &Self) -> Self {
         Self(self.0.then(&other.0))
     }
 
-    /// It backwards.
+    /// The inverse motion.
     #[getter]
     fn back(&self) -> Self {
         Self(self.0.back())

@@ -18,7 +18,7 @@ pub struct MotionMeasures {
     pub motion_type: u8,
     /// Input dead centres in [0, 2 pi), rising, NaN after the last.
     pub limits: [f64; MOST_LIMITS],
-    /// Those of its circuits, in order.
+    /// The measures of its circuits, in order.
     pub circuits: Vec<CircuitMeasures>,
 }
 

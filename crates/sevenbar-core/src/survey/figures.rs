@@ -5,7 +5,7 @@ use crate::rssr::MOST_LIMITS;
 /// What one linkage is measured by.
 #[derive(Clone, Copy, Debug)]
 pub struct Figures {
-    /// The motion type as a number.
+    /// The code of its [`crate::rssr::MotionType`].
     pub motion_type: u8,
     /// Input dead centres in [0, 2 pi), rising, NaN after the last.
     pub limits: [f64; MOST_LIMITS],
