@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 import shutil
 from pathlib import Path
 
@@ -201,6 +202,13 @@ def test_rows_without_numbers_are_left_out_where_asked(tmp_path):
     report = json.loads(run.stdout)
     assert report["rows"] == bench_curve.ROWS - 1
     assert "1 rows without a number were left out" in report["notes"]
+
+
+def test_circuits_that_a_page_does_not_list_are_counted(tmp_path):
+    (tmp_path / "speeds.csv").write_text("quantity,lowest,highest\nvelocity [rad/s],-7,8\n")
+    page = " ".join(sevenbar("compare", "seven_r", tmp_path / "speeds.csv").stdout.split())
+    assert len(re.findall(r"circuit \d \(residual", page)) == 5
+    assert "; 3 more residual:" in page
 
 
 def test_a_table_of_another_program_is_compared_by_naming_its_columns(tmp_path):

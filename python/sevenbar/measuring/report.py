@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 #: Decimals of values whose interval has no width, or is not known.
 EXACT_DIGITS = 6
 
-#: The JSON has all candidates and notes; the page has as many candidates.
+#: Candidates on the page that do not explain the data; the JSON has all.
 MOST_CANDIDATES = 4
 
 
@@ -44,8 +44,7 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
             _with_residual(say("circuit {number}", number=i), m) for i, m in comparison.residuals
         )
         facts.add("explained by", first, style="bold")
-        if others:
-            facts.add("not by", say("; ").join(others[:MOST_CANDIDATES]))
+        _add_others(facts, others)
         facts.add("", say("residual: root mean square of the errors relative to the measured range"))
         return page(heading, facts, table)
     chosen = comparison.chosen
@@ -57,10 +56,7 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
         if not any(alike(candidate, other) for other in named):
             named.append(candidate)
             others.append(_candidate(candidate))
-    if others:
-        more = len(others) - MOST_CANDIDATES
-        rest = [say("{count} more", count=more)] if more > 0 else []
-        facts.add("not by", say("; ").join([*others[:MOST_CANDIDATES], *rest]))
+    _add_others(facts, others)
     facts.add("", say("residual: root mean square of the differences relative to the measured range"))
     if "phase" in comparison.aligned:
         phase = _value(comparison.ends, "input", chosen.phase)
@@ -114,6 +110,14 @@ def _facts(ends: Ends, speed: float, measured: str) -> Facts:
     facts.add("measured", measured)
     facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output))
     return facts
+
+
+def _add_others(facts: Facts, others: Sequence[str]) -> None:
+    """Adds the candidates that do not explain the data, those beyond `MOST_CANDIDATES` by their number."""
+    more = len(others) - MOST_CANDIDATES
+    rest = [say("{count} more", count=more)] if more > 0 else []
+    if others:
+        facts.add("not by", say("; ").join([*others[:MOST_CANDIDATES], *rest]))
 
 
 def _measured(found: Comparison | Calibration, rows: str) -> str:
