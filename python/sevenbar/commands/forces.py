@@ -84,7 +84,7 @@ def forces(
     at_rest = unit is not None
     loaded = sb.load(linkage)
     if loaded.loading.is_empty:
-        raise RequestError(f"{linkage}: {NOTHING_ACTS}")
+        raise RequestError(f"{linkage}: {NOTHING_ACTS.format(place='it')}")
     names, known = options.words(joint, "--joint"), [one.name for one in loaded.joints]
     for name in names:
         if name not in known:

@@ -28,8 +28,9 @@ LISTED = {"force": "N", "radial": "N", "axial": "N", "tilting": "N m", "turning"
 #: What a cell says of a part that rigid bodies leave open.
 OPEN = "open"
 
-#: What a file without anything that acts lacks.
-NOTHING_ACTS = """nothing in it has a mass and nothing acts; write a body, a load or a spring into it, as in
+#: What a file without anything that acts lacks, with a place for a word of the file.
+NOTHING_ACTS = """\
+nothing in {place} has a mass and nothing acts; write a body, a load or a spring into it, as in
   [forces]
   gravity = [0, 0, -9.80665]
 

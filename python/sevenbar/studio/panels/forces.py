@@ -186,8 +186,7 @@ class ForcesPanel:
 
 def _nothing() -> str:
     """What a file lacks for forces."""
-    words = NOTHING_ACTS.replace("nothing in it", "nothing in the file", 1)
     return (
         '<div style="padding:6px 12px;font-size:12.5px;line-height:1.4;white-space:pre-wrap;color:#555">'
-        f"{escape(words)}</div>"
+        f"{escape(NOTHING_ACTS.format(place='the file'))}</div>"
     )
