@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+import sevenbar as sb
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.ranges.reach import reaches, stopped_by
 from sevenbar.studio.panels.playback import _rows
@@ -47,6 +48,16 @@ def test_each_end_of_a_stretch_is_a_stop_and_none_of_its_poses_lies_beyond(text,
                 value = math.degrees(reach.way.joints(reach.rolled(row))[column_at] + math.pi) % 360 - 180
                 assert min(abs(value - low), abs(value - high)) < 2e-2
                 assert reach.stop_at(reach.rolled(row)) == stop
+
+
+def test_two_stops_at_one_place_end_a_stretch_there_and_not_at_the_row_before():
+    crank = 50.3
+    rocker = math.degrees(sb.load("rssr").output([math.radians(crank)]).position[0][0])
+    stops = f'[[stop]]\njoint = "crank"\nrange = [-40, {crank}]\n'
+    stops += f'[[stop]]\njoint = "rocker"\nrange = [-60, {rocker!r}]\n'
+    (reach,) = Session(RSSR + stops, "stops.toml").reaches
+    assert reach.last_stop == "range of crank, range of rocker"
+    assert reach.high == pytest.approx(crank, abs=1e-9)
 
 
 @pytest.mark.parametrize(

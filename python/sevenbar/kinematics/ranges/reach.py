@@ -48,11 +48,11 @@ class Reach:
         return row - self._cycle if row > self._cycle else row
 
     def clamped(self, row: float) -> float:
-        """A row that is counted as `unrolled` does, no farther than the stops."""
+        """A row as `unrolled` counts it, moved to the nearer stop where it is beyond one."""
         return min(max(row, self.low), self.high)
 
     def time_at(self, row: float) -> float:
-        """The time [s] of a row that is counted as `unrolled` does."""
+        """The time [s] of a row as `unrolled` counts it."""
         over = row > self._cycle
         return self.way.time_at(self.rolled(row)) + (self.way.period if over else 0.0)
 
@@ -118,7 +118,13 @@ def reaches(way: TimedWalk) -> tuple[Reach, ...]:
             return float(inside), ""
         names = str(allowed.stopped_by[way.path.rows[outside]])
         low = min(inside, outside)
-        met = (one for one in ends if low <= one[0] <= low + 1 and one[1] in names.split(", "))
+        # several stops may end it at one place; one of them may forbid more rows than the others
+        forbidding = set(names.split(", "))
+        met = (
+            (row, stop)
+            for row, stop in ends
+            if low <= row <= low + 1 and not forbidding.isdisjoint(stop.split(", "))
+        )
         return next(met, (float(inside), names))
 
     found = []
