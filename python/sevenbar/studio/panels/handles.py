@@ -61,7 +61,7 @@ class Handles:
             self._session.as_drawn()
 
     def follow(self) -> None:
-        """Keeps a linkage that was changed as drawn; takes the handles away from one that was moved."""
+        """Shows a linkage as drawn again after a change of it; ends pulling where a person has moved it."""
         session = self._session
         if not self._on:
             return
@@ -116,15 +116,16 @@ class Handles:
             depth_test=False,
             position=place,
         )
-        stroke: list[object] = [object()]
+        stroke = object()
 
         # awaited by viser, which gives plain functions to threads that may overtake each other
         async def pulled(event: viser.TransformControlsEvent) -> None:
+            nonlocal stroke
             if event.phase == "start":
-                stroke[0] = object()
+                stroke = object()
                 self._held = key
             elif event.phase == "update":
-                to, own = np.array(event.target.position), stroke[0]
+                to, own = np.array(event.target.position), stroke
                 self._worker.ask(("pull", key), lambda: self._pull(key, to, own))
             else:
                 self._worker.ask(("pulled", key), lambda: self._let_go(key))
@@ -133,7 +134,7 @@ class Handles:
         return handle
 
     def _pull(self, key: str, to: Floats, stroke: object) -> None:
-        """Changes the place of a handle that was pulled to a place in the scene."""
+        """Moves what a handle holds to a place in the scene; pulls of one `stroke` are one step of undo."""
         grip = self._grips.get(key)
         if grip is None or not self._on:
             return
