@@ -48,6 +48,11 @@ pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Cur
     curves
 }
 
+/// Whether a curve ended since it had too many nodes: it may have no end, as on a surface of poses.
+pub(super) fn is_endless(curve: &Curve) -> bool {
+    curve.nodes.len() >= MOST_NODES
+}
+
 /// A walk from an end, with the reason of that end.
 fn begun_for(why: End, mut walked: Curve) -> Curve {
     if !walked.is_closed() {

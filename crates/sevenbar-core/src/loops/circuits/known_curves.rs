@@ -24,6 +24,10 @@ const NARROW: f64 = 1e-5;
 const SHARP: f64 = 1e4;
 const BESIDE_BEND: f64 = 30.0;
 
+/// Curves with too many nodes after which modes at sharp bends are followed no more: on what is nearly a surface of poses each leads to
+/// another such curve.
+const MOST_ENDLESS: usize = 2;
+
 /// All curves of a chain.
 pub(crate) struct Curves {
     pub curves: Vec<Curve>,
@@ -118,8 +122,13 @@ impl Curves {
         for mode in std::mem::take(&mut self.unfollowed) {
             let near = |n: &Node| length(&chain.difference(&n.at, &mode)) * n.inverse_norm < BESIDE_BEND;
             let beside_bend = |c: &Curve| c.nodes.iter().any(|n| n.inverse_norm > SHARP && near(n));
-            if !self.curves.iter().any(beside_bend) {
+            if self.curves.iter().any(beside_bend) {
+                continue;
+            }
+            if self.curves.iter().filter(|c| follow::is_endless(c)).count() < MOST_ENDLESS {
                 self.take_together(chain, &[mode], self.wished[0]);
+            } else {
+                self.search.unfollowed += 1;
             }
         }
         self.curves.extend(self.arcs.joined(chain, self.wished[0]));
