@@ -155,12 +155,12 @@ def test_the_commands_take_it(tmp_path):
 @pytest.mark.slow
 def test_what_is_nearly_a_surface_of_poses_is_followed_twice_and_the_rest_is_counted():
     # the last twist is a billionth of a degree; at zero the loop moves with two freedoms
-    rows = dict(
-        length=[1, 0, 10, 10, 0, 0.5, 0, 1],
-        twist=np.radians([0, -90, 90, -90, 180, 45, 45, 1e-9]),
-        offset=[1, None, None, 0.5, 2, 0.5, 0, 0],
-        angle=[None, *np.radians([-90, 180]), None, None, None, None, None],
-    )
+    rows = {
+        "length": [1, 0, 10, 10, 0, 0.5, 0, 1],
+        "twist": np.radians([0, -90, 90, -90, 180, 45, 45, 1e-9]),
+        "offset": [1, None, None, 0.5, 2, 0.5, 0, 0],
+        "angle": [None, *np.radians([-90, 180]), None, None, None, None, None],
+    }
     motion = sb.from_dh("RPPRRRRR", **rows).motion()
     assert [circuit.closed for circuit in motion] == [False, False]
     assert motion.search.unfollowed > 0

@@ -195,7 +195,8 @@ def skeleton_of(
                 rail = (far - end * second, far - start * second)
             marks.append((i, "rail", (add(rail[0]), add(rail[1]))))
         if shape != "ball":
-            marks.append((i, "axis", along(near, first, AXIS, far)))
+            # where nothing slides, a closure error would turn the axis round between two rows
+            marks.append((i, "axis", along(near, first, AXIS, far if joint.row.rides else None)))
         if joint.row.has_cross:
             marks.append((i, "axis", along(far, second, AXIS)))
             marks += [(i, shape, along(near, first, CYLINDER)), (i, shape, along(far, second, CYLINDER))]
