@@ -13,6 +13,7 @@ import pytest
 
 import sevenbar as sb
 from evidence.accuracy.reference_loops import Loop
+from sevenbar.description.draft import Draft
 from sevenbar.description.gallery import names, text
 from sevenbar.drawing.skeleton import places_of
 from sevenbar.errors import RequestError
@@ -377,3 +378,15 @@ def test_an_input_out_of_reach_is_told_with_a_range_that_is_in_reach(
         for end in told:
             session.seek_input(float(end) / size)
         session.seek(5.5)
+
+
+@pytest.mark.parametrize("share", np.linspace(0.6e-9, 1.4e-9, 9))
+def test_a_corner_at_the_edge_of_rounding_is_a_place_of_one_pose_as_of_all(share: float) -> None:
+    draft = Draft.of(text("seven_r"), "seven_r")
+    length, offset = (
+        next(d for d in draft.dimensions if d.name == name) for name in ("length_1", "offset_1")
+    )
+    motion = draft.with_value(offset.place, share * length.value).linkage.motion(60)
+    frame = views_of(motion)[0].frame
+    for row in range(0, 60, 7):
+        assert places_of(motion.circuits[0].q[row : row + 1], frame).shape[1:] == frame.places.shape[1:]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -214,7 +214,9 @@ def skeleton_of(
         if sphere:
             inner = tuple(add(place) for place in _arc_between(sphere, places[start], places[end]))
         elif in_rows:
-            inner = _bend(after[:, i], places[start], places[end], add)
+            corner = _corner(after[:, i], places[start], places[end])
+            if len(like.links[i]) > 2 if like else _bends(corner, places[start], places[end]):
+                inner = (add(corner),)
         links.append((start, *inner, end))
     solid = len(places)
     named = [""] * solid
@@ -249,14 +251,16 @@ def _extent(places: Floats) -> float:
     return float((high - low).max())
 
 
-def _bend(frame: Floats, start: Floats, end: Floats, add: Callable[[Floats], int]) -> tuple[int, ...]:
-    """The corner of a link of Denavit-Hartenberg rows, between its offset and its common normal."""
+def _corner(frame: Floats, start: Floats, end: Floats) -> Floats:
+    """The corner (n, 3) of a link of Denavit-Hartenberg rows, between its offset and its common normal."""
     axis = frame[:, :3, 2]
-    corner = start + ((end - start) * axis).sum(axis=1, keepdims=True) * axis
+    return np.asarray(start + ((end - start) * axis).sum(axis=1, keepdims=True) * axis)
+
+
+def _bends(corner: Floats, start: Floats, end: Floats) -> bool:
+    """Whether the corner of a link is a place of its own in any pose."""
     small = 1e-9 * max(1e-300, float(np.nanmax(np.abs(end - start), initial=0.0)))
-    if min(np.nanmax(np.abs(corner - start)), np.nanmax(np.abs(corner - end))) <= small:
-        return ()
-    return (add(corner),)
+    return not min(np.nanmax(np.abs(corner - start)), np.nanmax(np.abs(corner - end))) <= small
 
 
 def _sphere(linkage: Loop, named: Sequence[Floats]) -> DrawnSphere | None:
