@@ -34,17 +34,17 @@ MADE = ("accuracy.md", "benchmarks.md", "hard-use.md", "changelog.md")
 
 #: How often each word may still be in the sources. A smaller number is always right; none may grow.
 ALLOWED = {
-    "told": 87,
-    "comes to": 23,
+    "told": 74,
+    "comes to": 14,
     "misfit": 0,
     "established": 0,
-    "stands": 83,
+    "stands": 64,
     "beside": 159,
-    "but for": 4,
+    "but for": 3,
     "parts of": 38,
-    "looks": 81,
+    "looks": 73,
     "hard use": 8,
-    "asks of": 38,
+    "asks of": 36,
     "is said": 0,
 }
 
