@@ -118,7 +118,7 @@ def in_plane(loop: Loop) -> InPlane | None:
             frames[i], now = now, now @ links[i]
         end = now if still is None else frames.pop(still)
         normal = _normal(letters, frames)
-        if normal is not None and _in_plane(letters, frames, end, normal, size_of(loop), still is None):
+        if normal is not None and _in_plane(letters, frames, end, normal, loop, still is None):
             back = frames.get(0, end)
             plane = _drawn(parts.base[:3, :3] @ back[:3, :3].T @ normal, parts.base[:3, 3])
             out = [i for i in frames if letters[i] == "P" and abs(frames[i][:3, 2] @ normal) > SAME]
@@ -139,7 +139,7 @@ def _normal(letters: str, frames: Mapping[int, Floats]) -> Floats | None:
 
 
 def _in_plane(
-    letters: str, frames: Mapping[int, Floats], end: Floats, normal: Floats, size: float, whole: bool
+    letters: str, frames: Mapping[int, Floats], end: Floats, normal: Floats, loop: Loop, whole: bool
 ) -> bool:
     """Whether joints with their frames (4, 4) at zero keep all links square to a normal.
 
@@ -160,7 +160,7 @@ def _in_plane(
         return False
     back = end[:3, :3].T @ normal
     off = math.hypot(*(back - normal)) if whole else max(abs(back[2]), abs(normal[2]))
-    level = out == 1 or bool(abs(end[:3, 3] @ normal) <= SAME * size)
+    level = out == 1 or bool(abs(end[:3, 3] @ normal) <= SAME * size_of(loop))
     return len(balls) <= MOST_BALLS and out <= 1 and off <= SAME and level
 
 

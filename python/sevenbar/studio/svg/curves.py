@@ -176,7 +176,7 @@ def _empty(frame: picture.Frame, quantity: Quantity, reason: str) -> picture.Pan
     content = [
         f'<rect width="{frame.width}" height="{frame.height}" fill="{picture.GROUND}"/>',
         f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" fill="#f4f5f7"/>',
-        picture.head(frame, quantity.name, quantity.unit, [], picture.INK),
+        picture.head(frame, quantity.name, quantity.unit, (), picture.INK),
         picture.words(frame, *middle, text, anchor="middle", look=f'fill="{picture.QUIET}"'),
     ]
     nothing = np.empty(0)
@@ -221,14 +221,14 @@ def _shown_range(quantity: Quantity, own: Span, everything: Span, least: float) 
     return low - (0.2 * room if quantity.is_size else room), high + room
 
 
-def _keys(quantity: Quantity, own: ShownCurve) -> list[tuple[str, str]]:
+def _keys(quantity: Quantity, own: ShownCurve) -> tuple[tuple[str, str], ...]:
     """Short words, with their dashes, that tell the passes apart and that rates are cut."""
     keys = [("axis cut", "")] if quantity.order and own.view.circuit.turns_back else []
     if len(own.passes) > 1 and own.view.motion.law is None:
         keys += [("rising", "20 0"), ("falling", "5 3")]
     if own.view.motion.linkage.stops.stops and not own.within.all():
         keys.append(("pale: beyond a stop", ""))
-    return keys
+    return tuple(keys)
 
 
 def _limits(view: View, frame: picture.Frame, below: Scale, unit: str) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
@@ -141,7 +140,8 @@ def _axis_below(frame: Frame, below: Scale, name: str, unit: str) -> tuple[str, 
     return "".join(f"M{x:.2f} {top}V{bottom}" for x in across), "".join(parts)
 
 
-def head(frame: Frame, name: str, unit: str, keys: Sequence[tuple[str, str]], colour: str) -> str:
+@lru_cache(64)
+def head(frame: Frame, name: str, unit: str, keys: tuple[tuple[str, str], ...], colour: str) -> str:
     """The name of what is drawn, and keys (word, dashes of its line) at the right, above the plot area."""
     parts: list[str] = []
     end = frame.box[2] + 4.0
