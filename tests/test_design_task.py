@@ -41,8 +41,8 @@ from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
 from sevenbar.design.task.wants.figures import figure_left
 from sevenbar.kinematics.loop.rods import nearest_shares
+from sevenbar.kinematics.numbers.least_squares import nearest_least
 from sevenbar.kinematics.ranges.ball_angle import ball_angle
-from sevenbar.least_squares import nearest_least
 
 KNOWN = Draft.of_linkage(sb.load("rssr")).with_values({"L2": 1000.0}).with_point("Q", 3, (50.0, 60.0, 20.0))
 NAMES = ("M", "N", "L1", "L2", "L3", "D")

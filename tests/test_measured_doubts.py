@@ -17,7 +17,7 @@ from evidence.fuzz.random_linkages import Dimensions
 from sevenbar.description.gallery import text
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.loop.geometry import following_coupler
-from sevenbar.least_squares import nearest_least
+from sevenbar.kinematics.numbers.least_squares import nearest_least
 from sevenbar.measuring.calibrate import calibrate
 from sevenbar.measuring.compare import compare, ends_of
 from sevenbar.measuring.figures import calibration_figure

@@ -215,8 +215,8 @@ def skeleton_of(
             inner = tuple(add(place) for place in _arc_between(sphere, places[start], places[end]))
         elif in_rows:
             corner = _corner(after[:, i], places[start], places[end])
-            if len(like.links[i]) > 2 if like else _bends(corner, places[start], places[end]):
-                inner = (add(corner),)
+            bends = len(like.links[i]) > 2 if like else _bends(corner, places[start], places[end])
+            inner = (add(corner),) if bends else ()
         links.append((start, *inner, end))
     solid = len(places)
     named = [""] * solid

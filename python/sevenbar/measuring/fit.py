@@ -20,7 +20,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
-from sevenbar.least_squares import nearest_least, settled
+from sevenbar.kinematics.numbers.least_squares import nearest_least, settled
 from sevenbar.measuring.doubtful import EXACT, first_of
 from sevenbar.measuring.model import CurveModel
 from sevenbar.measuring.passes import MAY_BE_OPEN

@@ -131,8 +131,8 @@ def _quotient(size: float, other: float) -> float:
     return round(size * 1e6) / round(other * 1e6)
 
 
-def in_range(speed: float) -> bool:
-    """Whether a speed [rad/s, or length/s] is one that moves something and that rates can be computed of."""
+def usable_speed(speed: float) -> bool:
+    """Whether a speed [rad/s, or length/s] moves something, and rates at it can be computed."""
     return SLOWEST <= abs(speed) <= FASTEST
 
 
@@ -147,7 +147,7 @@ def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str)
             speed = math.inf
     else:
         raise RequestError(f"{shown(value)} is not a speed; {hint}")
-    if in_range(speed):
+    if usable_speed(speed):
         return speed
     first = example.split(" or ")[0]
     if speed == 0:

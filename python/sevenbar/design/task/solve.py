@@ -22,7 +22,7 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed, TaskValues
 from sevenbar.design.task.programs import MinimaxValues, lowered
 from sevenbar.design.task.wants.places import heights_of
-from sevenbar.least_squares import nearest_least
+from sevenbar.kinematics.numbers.least_squares import nearest_least
 
 #: Evaluations of a first look, of a design that is kept, and of one that comes near to what is wanted.
 LOOK, WHOLE, LONG = 40, 400, 1200

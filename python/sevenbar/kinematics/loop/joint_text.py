@@ -10,7 +10,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.text.units import examples_of, in_range, sliding_speed, turning_speed
+from sevenbar.text.units import examples_of, sliding_speed, turning_speed, usable_speed
 
 
 def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
@@ -100,8 +100,8 @@ def drive_speed(value: object, length_unit: str | None = None) -> float:
 
 def joint_speed(speed: object, linkage: Loop, column: int) -> float:
     """The speed of a joint [rad/s, or length/s] that a caller gives: a number, or a text as in "60 rpm"."""
-    # what most calls give; the reader costs as much as a few poses
-    if isinstance(speed, float) and in_range(speed):
+    # most calls give this, and the reader takes as long as some poses
+    if isinstance(speed, float) and usable_speed(speed):
         return float(speed)
     try:
         plain = float(speed) if isinstance(speed, np.number) else speed

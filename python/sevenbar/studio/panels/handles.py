@@ -9,7 +9,6 @@ import numpy as np
 import viser
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits.timed_walk import SAME_ROW
 from sevenbar.studio.panels.controls import Alert, on_change, put
 from sevenbar.studio.pictures.stage import Stage
 from sevenbar.studio.state.grips import Grip, grips
@@ -18,6 +17,8 @@ from sevenbar.studio.worker import Worker
 
 #: The length of a handle's arrows [1, in the scene], and how thick they are [pixels].
 ARROWS, THICK = 0.17, 3.0
+#: How far from its row a linkage still counts as drawn [rows].
+NOT_MOVED = 1e-6
 
 DRAWN = (
     "Pull an arrow, or a square between two. The linkage is shown as drawn; what lies in one place moves "
@@ -77,7 +78,7 @@ class Handles:
         if drawn is None:
             return False
         view, row = drawn
-        return view is not self._session.view or abs(row - self._session.row) > SAME_ROW
+        return view is not self._session.view or abs(row - self._session.row) > NOT_MOVED
 
     def show(self) -> None:
         """Puts the handles where the description has its places now."""

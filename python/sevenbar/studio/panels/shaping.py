@@ -77,6 +77,7 @@ class DimensionRow:
     def _written(self, value: float) -> None:
         """Has the box say a value; what a person wrote stays as it is written."""
         if self._box.value == number_text(value):
+            # as nearly all boxes do after a change, and reading takes longer
             return
         try:
             written = self.dimension.read(self._box.value)

@@ -35,6 +35,7 @@ class Batches:
                 handle.batched_wxyzs = turn.astype(np.float32)
                 handle.batched_positions = middle.astype(np.float32)
                 handle.batched_scales = scale.astype(np.float32)
+                # colours seldom change, and viser takes long to find that
                 if colours is not None and not np.array_equal(handle.batched_colors, colours[shape]):
                     handle.batched_colors = colours[shape]
             elif colours is not None:

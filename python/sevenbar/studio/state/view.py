@@ -172,7 +172,7 @@ def nearest(views: Sequence[View], view: View, row: float) -> tuple[View, float]
 
     value = float(q[measure.input])
     here = [(unlike(other, at), i, at) for i, other in enumerate(views) for at in other.rows_at(value)]
-    # no other pose can be more alike by more than that
+    # a nearer pose at another input counts only where it is nearer by that
     if not here or min(here)[0] > FARTHER:
         gaps = [measure.apart(other.circuit.q, q) for other in views]
         tops = [int(np.nanargmin(gap)) for gap in gaps]

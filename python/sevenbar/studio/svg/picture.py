@@ -68,7 +68,7 @@ class Frame:
         )
 
 
-# a change draws the same words again, but for a few numbers
+# after a change of the linkage most words are the same
 @lru_cache(4096)
 def breadth(text: str, *, bold: bool = False) -> float:
     """How wide a text is at most."""
