@@ -281,6 +281,7 @@ WRONG = {
     "time ratio below 1": ("planar.toml", FREE + "[[want]]\nkind = 'figure'\nname = 'time_ratio'\nvalue = 0.5\n", "task.toml: want[1].value: 0.5 cannot be: time_ratio is never below 1"),
     "a swing over a turn": ("planar.toml", FREE + "[[want]]\nkind = 'figure'\nname = 'swing'\nvalue = 400\n", "task.toml: want[1].value: 400 cannot be: swing is never above 360"),
     "two values of a measure": ("planar.toml", FREE + "".join(f"[[want]]\nkind = 'figure'\nname = 'swing'\nvalue = {x}\n" for x in (40, 60)), "task.toml: want[2].name: want 1 wants swing, too, and another value; leave one out"),
+    "small and great of a measure": ("planar.toml", FREE + "".join(f"[[want]]\nkind = 'figure'\nname = 'swing'\nvalue = {x!r}\n" for x in ('small', 'great')), "task.toml: want[2].name: want 1 wants swing, too, and another value; leave one out"),
     "no poses given": ("planar.toml", FREE + "[[want]]\nkind = 'poses'\nlink = 2\nposes = []\n", "task.toml: want[1].poses: none given; give tables of at, axis and angle"),
     "a swing at most below 0": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'figure'\nname = 'swing'\nmost = -10\n", "task.toml: must[1].most: -10 cannot be: swing is never below 0"),
     "a swing at least over a turn": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'figure'\nname = 'swing'\nleast = 400\n", "task.toml: must[1].least: 400 cannot be: swing is never above 360"),
@@ -385,3 +386,10 @@ def test_the_first_example_of_the_page_is_a_task(tmp_path):
     (tmp_path / "my_task.toml").write_text(text)
     task = read_task(tmp_path / "my_task.toml")
     assert task.names == ("M", "L1")
+
+
+def test_an_x_that_may_be_in_degrees_is_hinted_at_before_the_search(tmp_path):
+    want = "[[want]]\nkind = 'function'\ny = 'sin(x)'\nx = '0:90'\ninput = '0:60deg'\noutput = '0:40deg'\n"
+    (tmp_path / "task.toml").write_text("linkage = 'planar_4r'\n" + FREE + want, encoding="utf-8")
+    (hint,) = task_file(tmp_path / "task.toml").hints
+    assert hint.startswith("want[1].y: sin takes radians; x goes to 90: write sind(x) or x = 0:90deg")

@@ -185,11 +185,18 @@ def checked_designs(count: int, most: int = MOST_DESIGNS) -> None:
         raise RequestError(f"--designs: {count} designs are not offered; give 1 to {most}")
 
 
-def refuse_degrees_twice(y: str, x: str) -> None:
-    """Raises `RequestError` where sind and the like would take an x in radians."""
+def check_degrees(y: str, x: str, ends: tuple[float, float]) -> None:
+    """Raises `RequestError` where sind and the like would take an x in radians.
+
+    States on the error stream, before the search begins, that the sine of an x in degrees was perhaps meant.
+    """
+    from sevenbar.design.wish import degrees_hint
+
     with_unit = any(unit in x for unit in (*ANGLES, "\u00b0"))
     if with_unit and (called := sorted(calls_in(y) & IN_DEGREES.keys())):
         raise RequestError(
             f"--x: {shown(x)} counts in radians, and {called[0]} takes degrees; "
             f"write {IN_DEGREES[called[0]]}, or leave the unit of x out"
         )
+    if hint := degrees_hint(y, ends):
+        typer.echo(f"--y: {hint}", err=True)

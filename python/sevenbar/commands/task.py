@@ -58,6 +58,8 @@ def task(
     formats = options.figure_formats(figures, out)
     check_counts(designs, starts, seed)
     read = task_file(file, agree=agreed(agree))
+    for hint in read.hints:
+        typer.echo(f"{read.source}: {hint}", err=True)
     if pareto is not None:
         from sevenbar.design.task.front import pareto as front_of
         from sevenbar.design.task.front_report import FrontFound, front_report

@@ -56,6 +56,7 @@ Fault = Literal[
     "cone",
     "box",
     "distance",
+    "length",
     "figure",
 ]
 

@@ -295,9 +295,9 @@ def _figure(task: DesignTask, want: kinds.FigureWant) -> Flaws:
     else:
         if flaw := value_flaw(task.draft.linkage, want.name, float(want.value)):
             yield "value", flaw
-        for i, other in enumerate(task.wants[: task.wants.index(want)]):
-            if isinstance(other, kinds.FigureWant) and other.name == want.name and other.value != want.value:
-                yield "name", f"want {i + 1} wants {want.name}, too, and another value; leave one out"
+    for i, other in enumerate(task.wants[: task.wants.index(want)]):
+        if isinstance(other, kinds.FigureWant) and other.name == want.name and other.value != want.value:
+            yield "name", f"want {i + 1} wants {want.name}, too, and another value; leave one out"
 
 
 def _straight(task: DesignTask, want: kinds.StraightWant) -> Flaws:

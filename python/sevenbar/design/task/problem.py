@@ -36,7 +36,7 @@ from sevenbar.design.task.placing import (
 from sevenbar.design.task.task import DesignTask
 from sevenbar.design.task.wants.at_inputs import LineWanted, ReadingsWanted
 from sevenbar.design.task.wants.figures import Figures, figure_left
-from sevenbar.design.task.wants.places import PlacesWanted, heights_of
+from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Stations, Wanted
 
 #: A step after which a passive joint is further away [rad, or of the size] has left its branch.
@@ -268,19 +268,20 @@ class TaskProblem:
         values, own = self.values(z), self.own(z)
         here = self.loop.here(values, poses, slopes=slopes)
         parts = []
+        bounds: list[tuple[Fault, Floats, Floats]] = []
         for one, u, rows, place in zip(self.model.wanted, own, self._rows, self._own, strict=True):
-            left, by = one.left(here.part(rows).along(one.stations.by), u)
-            if slopes:
-                wide = np.zeros((*by.shape[:-1], len(z)))
-                wide[..., : self._k], wide[..., place] = by[..., : self._k], by[..., self._k :]
-                by = wide * self.scales
-            parts.append((left, by))
+            seen = here.part(rows).along(one.stations.by)
+            left, by = one.left(seen, u)
+            parts.append((left, self._by_all(by, place) if slopes else by))
+            if bound := one.bound(seen):
+                by = self._by_all(bound.slack_by, place) if slopes else bound.slack_by
+                bounds.append((bound.fault, np.array([bound.slack]), by[None]))
         placing = self._placing(z, [left for left, _ in parts])
         lefts, lefts_by = self._placed(z, parts, placing)
         figures = self._figures(values, slopes=slopes)
         if figures is None:
             return None
-        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True)))
+        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True))) + bounds
         rooms.append(("figure", *figures[1]))
         least: dict[Fault, float] = {"figure": math.inf}
         for fault, own_room, _ in rooms:
@@ -295,6 +296,12 @@ class TaskProblem:
             room_by = np.concatenate([by for _, _, by in rooms])
         good = all(np.isfinite(part).all() for part in (left, left_by, room, room_by))
         return TaskValues(left, left_by, room, room_by, placing, least) if good else None
+
+    def _by_all(self, by: Floats, place: slice) -> Floats:
+        """Slopes (.., k + m) by the free numbers and a want's unknowns as those by all unknowns."""
+        wide = np.zeros((*by.shape[:-1], len(self.scales)))
+        wide[..., : self._k], wide[..., place] = by[..., : self._k], by[..., self._k :]
+        return np.asarray(wide * self.scales)
 
     def _wide(self, by: Floats) -> Floats:
         """Slopes (r, k) by the free numbers as those by all unknowns."""
@@ -393,7 +400,7 @@ class TaskProblem:
         for i, must in self.model.most:
             at = slice(None) if must.at is None else list(must.at)
             left, by = wants[i][0][at], wants[i][1][at]
-            height, height_by = heights_of(self.model.wanted[i], left, by)
+            height, height_by = self.model.wanted[i].heights(left, by)
             rooms.append(("error", must.most - height, -height_by))
         return rooms
 

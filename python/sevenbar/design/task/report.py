@@ -18,7 +18,7 @@ from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
-from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust
+from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust, StraightWant
 from sevenbar.design.task.words import must_words, task_facts, want_words
 from sevenbar.drawing.configuration import configuration
 from sevenbar.kinematics.loop.columns import shown_in
@@ -87,6 +87,8 @@ def design_figures(task: DesignTask, design: TaskDesign) -> dict[str, float]:
                 figures[f"{own}{key}_zero_{of_column}"] = zero * times
         if isinstance(want, DwellWant):
             figures[f"{own}level_{unit}"] = along.zeros(number)[1] * scale
+        if isinstance(want, StraightWant):
+            figures[f"{own}travel_{unit}"] = along.travel(number)
     figures |= design.figures
     figures |= {"cost": design.cost, "kkt_residual": design.optimality}
     if math.isfinite(design.room):
@@ -188,13 +190,16 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
     """Tables with a line for each design: how well each want is met, what it is, its free numbers."""
     task, designs, unit = found.task, found.found.designs, found.task.draft.linkage.length_unit
     met: list[tuple[str, list[str]]] = []
-    for number, (place, _) in enumerate(task.sampled):
+    for number, (place, want) in enumerate(task.sampled):
         mets = [design.met[number] for design in designs]
         own, scale = mets[0].shown
         met += [
             (f"want {place + 1}\ngreatest\n[{own}]", [f"{one.greatest * scale:.4g}" for one in mets]),
             (f"want {place + 1}\nRMS\n[{own}]", [f"{one.rms * scale:.4g}" for one in mets]),
         ]
+        if isinstance(want, StraightWant):
+            travels = [f"{DesignAlong(task, design).travel(number):.5g}" for design in designs]
+            met.append((f"want {place + 1}\ntravel\n[{own}]", travels))
     for name in dict.fromkeys(name for design in designs for name in design.figures):
         met.append((name.replace("_", "\n"), [f"{design.figures[name]:.5g}" for design in designs]))
     rest = [("least\nroom", [f"{design.room:.2g}" for design in designs])]

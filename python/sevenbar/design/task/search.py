@@ -49,6 +49,7 @@ EASE = {
     "cone": "a wider cone, or another seat",
     "box": "a larger box",
     "distance": "a smaller distance of the links",
+    "length": "a shorter length of the straight line",
     "figure": "other ends of the measure",
 }
 

@@ -21,7 +21,6 @@ import numpy as np
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed, TaskValues
 from sevenbar.design.task.programs import MinimaxValues, lowered
-from sevenbar.design.task.wants.places import heights_of
 from sevenbar.kinematics.numbers.least_squares import nearest_least
 
 #: Evaluations of a first look, of a design that is kept, and of one that comes near to what is wanted.
@@ -247,7 +246,7 @@ def _heights(problem: TaskProblem, here: TaskValues) -> tuple[Floats, Floats]:
         rows = slice(count, count + one.count)
         count += one.count
         left, by = math.sqrt(one.count) * here.left[rows], math.sqrt(one.count) * here.left_by[rows]
-        height, height_by = heights_of(one, left, by)
+        height, height_by = one.heights(left, by)
         heights.append(height)
         slopes.append(height_by)
     heights += [here.left[count:], -here.left[count:]]

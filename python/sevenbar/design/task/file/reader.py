@@ -17,10 +17,11 @@ from sevenbar.description.gallery import names as gallery_names
 from sevenbar.description.values import TableForm
 from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
-from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form
+from sevenbar.design.task.file.schema import FunctionForm, LimitsForm, TaskForm, check_form
 from sevenbar.design.task.file.tables import must_of, want_of
 from sevenbar.design.task.file.units import amount
 from sevenbar.design.task.task import DesignTask, FreeNumber, Most, Must, Want
+from sevenbar.design.wish import degrees_hint
 from sevenbar.errors import (
     DescriptionError,
     Problem,
@@ -35,11 +36,12 @@ from sevenbar.kinematics.linkage import Linkage
 
 @dataclass(frozen=True, eq=False)
 class TaskFile:
-    """A task as its file has it: its `name`, and where it came from."""
+    """A task as its file has it: its `name`, where it came from, and hints of what may have been meant."""
 
     task: DesignTask
     name: str
     source: str
+    hints: tuple[str, ...] = ()
 
 
 @ends_here
@@ -98,7 +100,13 @@ def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskF
         mistakes.found += list(contradictions(task)) or list(start_flaws(task))
     if mistakes.found:
         raise DescriptionError(list(dict.fromkeys(mistakes.found)), source)
-    return TaskFile(task, form.name or draft.linkage.heading, source)
+    return TaskFile(task, form.name or draft.linkage.heading, source, tuple(_hints(form)))
+
+
+def _hints(form: TaskForm) -> Iterator[str]:
+    for i, want in enumerate(form.want):
+        if isinstance(want, FunctionForm) and want.y is not None and (hint := degrees_hint(want.y, want.x)):
+            yield f"want[{i + 1}].y: {hint}"
 
 
 class _Mistakes:

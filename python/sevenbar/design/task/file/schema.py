@@ -184,7 +184,7 @@ class StraightForm(TableForm):
     kind: Annotated[Literal["straight"], key("this want")]
     point: Annotated[Text, key("the name of the linkage's point")]
     range: Annotated[Span, key("of the input", _OF_INPUT)]
-    length: Annotated[Length | None, key("how far it goes at least", "length")] = None
+    length: Annotated[Length | None, key("how far it must go at least", "length")] = None
     samples: Annotated[Samples, key("inputs of the range that count")] = 41
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
