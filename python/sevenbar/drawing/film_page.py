@@ -13,7 +13,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import column_label, shown_value
 from sevenbar.drawing.names import named_together
 from sevenbar.drawing.output_curves import QUANTITIES, output_label, passes
-from sevenbar.drawing.scene import SAME, link_colours, paths
+from sevenbar.drawing.scene import SAME, link_colours, paths, stays
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import GROUND, PATH, circuit_colour
 from sevenbar.drawing.view import Projection
@@ -100,7 +100,7 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
             for places, colour in zip(frame.links, [*links, GROUND], strict=True)
         ],
         "marks": marks,
-        "stays": [list(stay) for stay in frame.stays if stay[1] not in frame.far],
+        "stays": [{"at": list(stay), "colour": colour} for stay, colour in stays(frame, ends)],
         "points": points,
         "names": [{"at": place, "text": ", ".join(names)} for place, names in named.items()],
         "paths": traces,
