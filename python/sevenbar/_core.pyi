@@ -15,6 +15,7 @@ __all__ = [
     "Loop",
     "LoopBatch",
     "LoopWord",
+    "NO_SIZE",
     "Numbers",
     "Product",
     "RawCircuit",
@@ -47,6 +48,8 @@ _Ends = tuple[float, float, float, float]
 
 #: The closure error [rad, or parts of the size] up to which redundant constraints agree.
 AGREE: float
+#: Below this share of the way from the origin to a loop, its size is rounding.
+NO_SIZE: float
 __version__: str
 
 class CoreError(ValueError):

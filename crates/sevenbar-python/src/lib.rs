@@ -93,6 +93,7 @@ mod _core {
     fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
         use pyo3::types::PyModuleMethods;
         module.add("AGREE", sevenbar_core::loops::AGREE)?;
+        module.add("NO_SIZE", sevenbar_core::loops::NO_SIZE)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

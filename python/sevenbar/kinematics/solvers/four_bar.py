@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import accumulate
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.grashof import FourBar, four_bar_of_links, least, slider_crank_of_links
 from sevenbar.kinematics.loop.rigid import cross, inverse
-from sevenbar.kinematics.solvers.general import expanded
+from sevenbar.kinematics.solvers.general import Expanded, expanded
 from sevenbar.kinematics.solvers.plane_and_sphere import in_plane, sphere_of
 
 #: The links of a loop with four joints, where the first and the last are input and output.
@@ -57,7 +58,8 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     if found is None:
         arcs = [math.atan2(math.hypot(*cross(m[:3, 2], _Z)), float(m[2, 2])) for m in between]
         return four_bar_of_links("spherical", least(arcs), names, roles)
-    lengths = [math.hypot(m[0, 3], m[1, 3]) for m in between]
+    normals = _normals(parts, moves, found.plane.normal)
+    lengths = [math.hypot(*cross(n, m[:3, 3])) for n, m in zip(normals, between, strict=True)]
     if "P" not in letters:
         return four_bar_of_links("planar", lengths, names, roles)
     slide = letters.index("P")
@@ -65,10 +67,19 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     # from the pin on the slider to that on the other side of the slide, in the frame of the slide
     to_slide = inverse(between[c])
     apart = between[slide][:3, 3] - to_slide[:3, 3]
-    offset = abs(float(apart @ cross(to_slide[:3, 2], _Z)))
+    offset = abs(float(apart @ cross(normals[slide], _Z)))
     return slider_crank_of_links(
         lengths[a], lengths[b], offset, [names[k] for k in (a, b, c)], (roles[a], roles[b])
     )
+
+
+def _normals(parts: Expanded, moves: Sequence[int], normal: Floats) -> list[Floats]:
+    """The normal (3,) of the plane in the frame of each joint that moves: z of one that turns.
+
+    Balls and slides may have any frame; all joints at zero, which changes nothing where all move in a plane.
+    """
+    frames = list(accumulate([parts.base, *parts.links], np.matmul))
+    return [_Z if parts.letters[i] == "R" else frames[i][:3, :3].T @ normal for i in moves]
 
 
 def _between(links: Sequence[Floats], last: Floats, moves: Sequence[int]) -> list[Floats]:

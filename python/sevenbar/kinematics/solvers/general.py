@@ -347,7 +347,9 @@ def expanded(linkage: Loop) -> Expanded:
 def size_of(linkage: Loop) -> float:
     """The size [length] of a loop, as the core has it: all links' lengths, and pitches by radian."""
     lengths = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
-    return lengths + sum(abs(joint.pitch) / math.tau for joint in linkage.joints) or 1.0
+    size = lengths + sum(abs(joint.pitch) / math.tau for joint in linkage.joints)
+    reach = max(math.hypot(*frame[:3, 3]) for frame in (linkage.base, linkage.ground))
+    return size if size > _core.NO_SIZE * reach else 1.0
 
 
 def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
