@@ -214,6 +214,9 @@ def test_a_closed_path_does_not_repeat_its_first_place(tmp_path):
 
 
 WRONG = {
+    "linkage outside": ("../planar.toml", FREE + PATH, "task.toml: linkage: '../planar.toml' is not below the folder of this file"),
+    "linkage from the root": ("/etc/passwd", FREE + PATH, "task.toml: linkage: '/etc/passwd' is not below the folder of this"),
+    "table outside": ("planar.toml", FREE + "[[want]]\nkind = 'poses'\nlink = 2\ntable = '../none.csv'\n", "task.toml: want[1].table: '../none.csv' is not below the folder of this file"),
     "no linkage": ("", FREE + PATH, "task.toml: linkage: is missing; give a file in the folder of this one"),
     "unknown linkage": ("planar_4rr", FREE + PATH, "task.toml: linkage: 'planar_4rr': no such file"),
     "unknown key": ("planar.toml", 'gaol = "minimax"\n' + FREE + PATH, "task.toml: gaol: is not known here; did you mean 'goal'?"),

@@ -170,7 +170,7 @@ class LoadForm(TableForm):
     table: Annotated[
         Table | None,
         key(
-            "its factor along the input: a CSV file in the folder of this one, "
+            "its factor along the input: a CSV file below the folder of this one, "
             "or rows of input (angle_unit, or length) and factor"
         ),
     ] = None

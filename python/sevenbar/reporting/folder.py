@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.errors import OutputError
+from sevenbar.text.csv_cells import harmless
 
 #: Rows of a table that are text at once.
 ROWS_AT_ONCE = 5_000
@@ -134,7 +135,7 @@ def write_parts(
         writer = csv.writer(file, lineterminator="\n")
         for part in parts:
             if not head:
-                writer.writerow(list(part))
+                writer.writerow(map(harmless, part))
                 head = True
             arrays = [np.asarray(column) for column in part.values()]
             count = len(arrays[0]) if arrays else 0
@@ -154,9 +155,13 @@ def write_csv(path: Path | StringIO, head: Sequence[str], lines: Iterable[Iterab
     written = path.open("w", newline="", encoding="utf-8") if isinstance(path, Path) else nullcontext(path)
     with written as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(head)
+        writer.writerow(map(harmless, head))
         writer.writerows(map(_cells, lines))
 
 
 def _cells(line: Iterable[Any]) -> list[Any]:
-    return ["" if cell is None or cell != cell else cell for cell in line]
+    """Cells without a value empty, and text as no spreadsheet runs it."""
+    return [
+        "" if cell is None or cell != cell else harmless(cell) if isinstance(cell, str) else cell
+        for cell in line
+    ]

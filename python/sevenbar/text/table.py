@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.errors import TableError, read_start, shown
+from sevenbar.text.csv_cells import NUMBER, as_written
 from sevenbar.text.units import MeasuredUnit, is_unit, measured_unit
 from sevenbar.text.workbook import ZIP, refuse_old, sheets_of
 
@@ -39,7 +40,6 @@ NO_NUMBER = frozenset(
 #: A line of only these characters counts as empty; spreadsheets leave such lines, and \x1a ends files of DOS.
 NOTHING = " \t\r\f\x1a,;"
 
-NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 COMMA_NUMBER = re.compile(r"[-+]?\d+,\d+(?:[eEdD][-+]?\d+)?")
 NAME_AND_UNIT = re.compile(r'"[^"]*"|\S+(?:[ \t]?(?:\[[^\]]*\]|\([^)]*\)))?')
 
@@ -360,7 +360,8 @@ def _decimal_comma(rows: Sequence[Sequence[str]]) -> bool:
 def _cells(line: str, delimiter: str) -> list[str]:
     if not delimiter:
         return line.split()
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))]
+    row = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
+    return [as_written(cell.strip()) for cell in row]
 
 
 def _header(

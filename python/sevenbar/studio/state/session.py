@@ -9,6 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from sevenbar.description.draft import Draft
+from sevenbar.description.files import toml_tables
+from sevenbar.description.load_tables import refuse_tables
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Place
@@ -53,7 +55,11 @@ class Session:
         self._take(self.draft)
 
     def open(self, text: str, source: str) -> None:
-        """Shows a TOML text as one more step; raises `DescriptionError`, and then nothing has changed."""
+        """Shows a TOML text as one more step; raises `DescriptionError`, and then nothing has changed.
+
+        It may come from another machine, so it names no files of this one.
+        """
+        refuse_tables(toml_tables(text, source), source)
         draft = Draft.of(text, source, agree=self.draft.agree)
         self.view, self.forwards = None, True
         self._step(draft)

@@ -14,6 +14,7 @@ from sevenbar.description.contradictions import FORMS
 from sevenbar.description.draft import Draft
 from sevenbar.description.files import near_files, toml_tables, toml_text
 from sevenbar.description.gallery import names as gallery_names
+from sevenbar.description.named_files import file_below
 from sevenbar.description.values import TableForm
 from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
@@ -68,7 +69,7 @@ def task_file(path: str | os.PathLike[str], *, agree: float | None = None) -> Ta
 
 
 def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskFile:
-    """The task of a TOML text; files that it names lie in its folder, that of `source`."""
+    """The task of a TOML text; files that it names lie below its folder, that of `source`."""
     raw = toml_tables(text, source)
     folder = Path(source).parent
     draft = _draft(raw, source, folder, agree)
@@ -154,7 +155,10 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
         )
         raise wrong(f"{what}; {hint}")
     name = given.strip()
-    path = folder / name
+    try:
+        path = file_below(folder, name, "rssr.toml")
+    except RequestError as error:
+        raise wrong(str(error)) from None
     if not path.exists() and name in gallery_names():
         return Draft.of(toml_text(name), name, agree=agree)
     if not path.is_file():

@@ -281,7 +281,7 @@ class TaskForm(TableForm):
 
     linkage: Annotated[
         str | dict[str, Any],
-        key("a file in the folder of this one, a name of the gallery, or tables of a linkage file"),
+        key("a file below the folder of this one, a name of the gallery, or tables of a linkage file"),
     ]
     want: Annotated[tuple[_Want, ...], key("what is wanted; one or more")]
     free: Annotated[
