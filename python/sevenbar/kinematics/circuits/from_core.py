@@ -121,7 +121,7 @@ def circuit_from(
         dead_centres=tuple(DeadCentre(*d) for d in raw.dead_centres),
         input_range=raw.input_range,
         output_range=raw.output_range,
-        velocity=velocity,
+        _velocity=velocity,
         acceleration=acceleration,
         jerk=jerk,
         angle=_extremes(raw.angle),
