@@ -173,3 +173,33 @@ def test_at_an_ordinary_dead_centre_angle_and_advantage_are_zero():
     assert (circuit.transmission_angle[dead] == 0).all()
     assert (circuit.mechanical_advantage[dead] == 0).all()
     assert circuit.velocity is None
+
+
+def test_read_at_a_slide_between_two_balls_it_is_the_same_from_either_end():
+    joints = [
+        {"name": "in", "kind": "R", "at": [0, 0, 0], "axis": Z},
+        {"name": "a", "kind": "S", "at": [1, 0, 0.2]},
+        {"name": "slide", "kind": "P", "at": [2, 1, 1.2], "axis": [1.0, 0.2, 1.0]},
+        {"name": "b", "kind": "S", "at": [3, 2, 2.2]},
+    ]
+    found = []
+    for start in range(4):
+        rolled = joints[start:] + joints[:start]
+        for order in (rolled, rolled[::-1]):
+            circuits = linkage(order).motion(36, input="in", output="slide").circuits
+            found.append(
+                sorted((round(c.transmission.lowest, 9), round(c.transmission.highest, 9)) for c in circuits)
+            )
+    assert found.count(found[0]) == len(found)
+
+
+def test_an_output_that_is_at_an_end_of_its_range_at_two_inputs_has_no_time_ratio():
+    for circuit in sb.load("rccc").motion(72, input="crank", output="slide_3"):
+        turned = [d.output for d in circuit.dead_centres if d.kind == "output"]
+        ends = (circuit.angle.lowest, circuit.angle.highest)
+        assert max(sum(abs(x - end) < 1e-9 for x in turned) for end in ends) == 2
+        assert circuit.many_strokes
+        assert circuit.time_ratio is None
+    ordinary = sb.load("planar_4r").motion(36)[0]
+    assert not ordinary.many_strokes
+    assert ordinary.time_ratio > 1

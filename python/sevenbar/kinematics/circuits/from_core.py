@@ -126,7 +126,7 @@ def circuit_from(
         jerk=jerk,
         angle=_extremes(raw.angle),
         swing=raw.swing,
-        time_ratio=raw.time_ratio,
+        _time_ratio=raw.time_ratio,
         input_column=input_column,
         output_column=output_column,
         input_turns=linkage.turns(input_column),
