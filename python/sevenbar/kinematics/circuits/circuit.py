@@ -185,7 +185,7 @@ class Circuit(Printed, WithExtents):
 
     @property
     def many_strokes(self) -> bool:
-        """Whether the output is at its highest, or lowest, at several inputs: it has more than two strokes."""
+        """Whether the output is at its highest, or lowest, at several inputs: more than two strokes."""
         unit = 1.0 if self.output_turns else self.size
         ends = () if self.angle is None else (self.angle.lowest, self.angle.highest)
         turns = [d for d in self.dead_centres if d.kind == "output"]

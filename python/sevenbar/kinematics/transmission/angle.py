@@ -120,10 +120,11 @@ def _through_a_ball(letters: str, last: list[int], first: int, second: int) -> C
     return None
 
 
-def ways(coupling: Coupling, axes: Axes) -> tuple[Floats, Floats, Floats]:
+def ways(coupling: Coupling, axes: Axes, normal: Floats | None = None) -> tuple[Floats, Floats, Floats]:
     """u, or the force f, and w on each row (n, 3), and what u and w are in a plane square to.
 
-    Polynomials of the axes, so that those of complex axes are their derivatives' (a complex step).
+    Polynomials of the axes, so that those of complex axes are their derivatives' (a complex step). A plane's
+    `normal` (3,), or (n, 3), is the coupling's own unless given.
     """
     at, output = coupling.at, coupling.output
     if coupling.kind == "spherical":
@@ -132,8 +133,9 @@ def ways(coupling: Coupling, axes: Axes) -> tuple[Floats, Floats, Floats]:
         return u, w, here
     here = axes.places[at]
     w = axes.velocity(output, here)
-    if coupling.normal is not None:
-        normal, free = coupling.normal, coupling.free[0]
+    normal = coupling.normal if normal is None else normal
+    if normal is not None:
+        free = coupling.free[0]
         # a ball is a pin there
         turned = np.cross(normal, here - axes.places[free])
         u = turned if axes.parts.letters[free] == "S" else axes.velocity(free, here)
