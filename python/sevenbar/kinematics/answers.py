@@ -73,19 +73,31 @@ class LinkageAnswers:
 
     def transmission_angle(self, circuit: Circuit) -> Floats | None:
         """On each row (n,) [rad]; `None` where it is not defined."""
-        from sevenbar.kinematics.transmission import transmission_angle
+        from sevenbar.kinematics.transmission.angle import transmission_angle
 
         return transmission_angle(self.linkage, circuit)
 
     def transmission(self, circuit: Circuit) -> Extremes | None:
         """The extremes of it [rad]; `None` where it is not defined."""
-        from sevenbar.kinematics.transmission import transmission_extremes
+        from sevenbar.kinematics.transmission.search import transmission_extremes
 
         return transmission_extremes(self.linkage, circuit)
 
+    def velocity(self, circuit: Circuit) -> Extremes | None:
+        """The extremes of the output's velocity where it has a limit at dead centres of the input."""
+        from sevenbar.kinematics.transmission.search import velocity_extremes
+
+        return velocity_extremes(self.linkage, circuit)
+
+    def rests_together(self, circuit: Circuit) -> Mapping[int, float]:
+        """d(output)/d(input) on the rows in which both rest."""
+        from sevenbar.kinematics.transmission.axes import ratios_at_rest
+
+        return ratios_at_rest(self.linkage, circuit)
+
     def advantage(self, circuit: Circuit) -> Extremes | None:
         """The lowest and highest mechanical advantage; `None` where the output stands still on the way."""
-        if any(centre.kind == "output" for centre in circuit.dead_centres):
+        if circuit.output_rests:
             return None
         ends = _by_rates(circuit) or self._by_driving_back(circuit)
         if ends is None:
@@ -98,7 +110,7 @@ class LinkageAnswers:
     def _by_driving_back(self, circuit: Circuit) -> list[Place] | None:
         """The extremes of the input's rate, the output driving: where the input turns back, too."""
         from sevenbar.kinematics.loop.law import Law
-        from sevenbar.kinematics.transmission import best_row
+        from sevenbar.kinematics.transmission.axes import best_row
 
         row = best_row(circuit)
         if row is None:

@@ -141,6 +141,8 @@ class _Texts:
     def time_ratio(self, circuit: Circuit) -> Texts:
         """The time ratio: one of angles, and of times at a constant speed."""
         ratio = circuit.time_ratio
+        if circuit.many_strokes and self.motion.law is None:
+            return (say("not defined: more than two strokes"),)
         if ratio is None or self.motion.law is not None:
             return ("-",)
         between = degrees(math.pi * (ratio - 1) / (ratio + 1))

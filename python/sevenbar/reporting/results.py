@@ -141,13 +141,19 @@ def _(circuit: Circuit) -> str:
             (circuit.columns[circuit.output_column], extent(circuit.output_range, result)),
             ("input dead centres", still("input")),
             ("output dead centres", still("output")),
-            ("time ratio", "" if circuit.time_ratio is None else f"{circuit.time_ratio:.6g}"),
+            ("time ratio", _time_ratio(circuit)),
             ("transmission angle", range_of(_known_transmission(circuit), Shown("rad"))),
             ("velocity", range_of(circuit.velocity)),
             ("acceleration", range_of(circuit.acceleration)),
             ("closure error", closure_text([circuit]).rstrip()),
         ],
     )
+
+
+def _time_ratio(circuit: Circuit) -> str:
+    if circuit.many_strokes:
+        return "not defined: more than two strokes"
+    return "" if circuit.time_ratio is None else f"{circuit.time_ratio:.6g}"
 
 
 def _known_transmission(circuit: Circuit) -> Extremes | None:

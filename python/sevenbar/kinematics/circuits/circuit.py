@@ -32,6 +32,12 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.loop.geometry import Point
     from sevenbar.kinematics.loop.screw_axes import ScrewAxes, Twists
 
+#: Dead centres of input and output whose angles [rad, or relative to the size] differ by less are one pose.
+TOGETHER = 1e-7
+
+#: Extremes of the output [rad, or relative to the size] that differ by less differ by rounding.
+ALIKE = 1e-9
+
 #: An output that moves less than this compared with the input [rad, or relative to the size] rests.
 AT_REST = 1e-12
 
@@ -50,6 +56,12 @@ class Answers(ExtentAnswers, Protocol):
 
     def advantage(self, circuit: Circuit) -> Extremes | None:
         """The extremes of the mechanical advantage."""
+
+    def velocity(self, circuit: Circuit) -> Extremes | None:
+        """The extremes of the output's velocity where it has a limit at dead centres of the input."""
+
+    def rests_together(self, circuit: Circuit) -> Mapping[int, float]:
+        """d(output)/d(input) on the rows in which both rest."""
 
     def sensitivity(self, circuit: Circuit) -> Sensitivity:
         """By every number of the description."""
@@ -112,19 +124,17 @@ class Circuit(Printed, WithExtents):
     #: on the way.
     input_range: tuple[float, float] | None
     output_range: tuple[float, float] | None
-    #: Of the output's velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3]; `None` where they grow
-    #: without bound, or a change point lies within.
-    velocity: Extremes | None
+    #: Of the output's velocity [rad/s] as the core has it, acceleration [rad/s^2] and jerk [rad/s^3]; `None`
+    #: where they grow without bound, or a change point lies within.
+    _velocity: Extremes | None = field(repr=False)
     acceleration: Extremes | None
     jerk: Extremes | None
     #: Of the output itself [rad, or length]: its lowest and highest dead centre; `None` where it turns fully.
     angle: Extremes | None
     #: How far the output rocks [rad, or length]; `None` for one that turns fully.
     swing: float | None
-    #: Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output. `None`
-    #: also for a crank that turns back on the way, and at a change point where both ends of the output are at
-    #: one input: a stroke without time.
-    time_ratio: float | None
+    #: Time of the slower stroke over that of the quicker, as the core has it.
+    _time_ratio: float | None = field(repr=False)
     input_column: int
     output_column: int
     #: Whether input and output are angles, not slides.
@@ -139,6 +149,58 @@ class Circuit(Printed, WithExtents):
     _answers: Answers = field(repr=False)
     #: The extremes of the transmission angle where the closed form has them.
     _transmission: Extremes | None = field(repr=False)
+
+    @cached_property
+    def velocity(self) -> Extremes | None:
+        """The extremes of the output's velocity [rad/s, or length/s].
+
+        `None` where it grows without bound, or a change point lies within. At a dead centre of the input at
+        which the output rests, too, it has a limit.
+        """
+        ends = [d for d in self.dead_centres if d.kind == "input"]
+        if self._velocity is None and ends and len(self._together) == len(ends):
+            return self._answers.velocity(self.fleeting())
+        return self._velocity
+
+    @property
+    def _together(self) -> list[DeadCentre]:
+        """Dead centres of the input at which the output rests, too."""
+        units = [1.0 if turns else self.size for turns in (self.input_turns, self.output_turns)]
+
+        def same(one: DeadCentre, other: DeadCentre) -> bool:
+            apart = max(abs(one.input - other.input) / units[0], abs(one.output - other.output) / units[1])
+            return apart < TOGETHER
+
+        ends, turns = ([d for d in self.dead_centres if d.kind == kind] for kind in ("input", "output"))
+        return [one for one in ends if any(same(one, other) for other in turns)]
+
+    @property
+    def time_ratio(self) -> float | None:
+        """Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output.
+
+        `None` also for a crank that turns back on the way, at a change point where both ends of the output
+        are at one input, a stroke without time, and where `many_strokes` leave it open which count.
+        """
+        return None if self.many_strokes else self._time_ratio
+
+    @property
+    def many_strokes(self) -> bool:
+        """Whether the output is at its highest, or lowest, at several inputs: more than two strokes."""
+        unit = 1.0 if self.output_turns else self.size
+        ends = () if self.angle is None else (self.angle.lowest, self.angle.highest)
+        turns = [d for d in self.dead_centres if d.kind == "output"]
+        for end in ends:
+            inputs = [d.input for d in turns if abs(d.output - end) < ALIKE * unit]
+            apart = np.abs(np.sin((np.array(inputs) - inputs[0]) / 2)) if inputs else np.zeros(1)
+            if self.goes_round and float(apart.max()) > TOGETHER:
+                return True
+        return False
+
+    @property
+    def output_rests(self) -> bool:
+        """Whether the output rests while the input moves: there the advantage has no bound."""
+        turns = sum(d.kind == "output" for d in self.dead_centres)
+        return turns > len(self._together)
 
     @cached_property
     def transmission(self) -> Extremes | None:
@@ -158,8 +220,8 @@ class Circuit(Printed, WithExtents):
     def transmission_angle(self) -> Floats | None:
         """The transmission angle [rad] on each row (n,), from 0 to a right angle; `None` where not defined.
 
-        0 at dead centres of the input, NaN on rows without a pose. The pressure angle is a right angle less
-        it.
+        0 at dead centres of the input, but its limit where the output rests, too; NaN on rows without
+        a pose. The pressure angle is a right angle less it.
 
         Source: docs/theory_measures.md, (4) to (6).
         """
@@ -171,7 +233,7 @@ class Circuit(Printed, WithExtents):
 
         Torque over torque has no unit; a force at a slide over a torque is in 1/length, a torque over a
         force in length. Negative where they go opposite ways; without bound (inf) at dead centres of the
-        output, 0 at those of the input, NaN where a row has no rates.
+        output, 0 at those of the input, its limit at those of both, NaN where a row has no rates.
 
         Source: docs/theory_measures.md, (11).
         """
@@ -183,6 +245,9 @@ class Circuit(Printed, WithExtents):
         ).T
         ratio[driven <= AT_REST * driving] = np.inf
         ratio[self.status == "dead-centre"] = 0.0
+        if self._together:
+            for row, rate in self._answers.rests_together(self).items():
+                ratio[row] = 1 / rate if rate else np.inf
         return np.asarray(ratio)
 
     @cached_property

@@ -415,7 +415,7 @@ def _as_motion(
         residual=np.zeros(count),
         condition=np.full(count, np.nan),
         speed=math.nan,
-        velocity=None,
+        _velocity=None,
         acceleration=None,
         jerk=None,
         _point=point,  # type: ignore[arg-type]

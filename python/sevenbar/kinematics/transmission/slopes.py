@@ -1,0 +1,127 @@
+"""Derivatives of the transmission angle by the description's numbers, for every loop that has it.
+
+The angle is a function of points on the axes of the joints that make it: with the derivatives of these by a
+number, it follows by a complex step, exact to rounding, since (4) and (5) are analytic. An extreme over the
+input changes as the angle does in its place.
+
+Source: docs/theory_design.md, (6).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.numbers.gradients import MeasureSlopes, nearest, poses_at
+from sevenbar.kinematics.numbers.sensitivity import Numbers
+from sevenbar.kinematics.numbers.word import Carried, Product
+from sevenbar.kinematics.solvers.general import expanded
+from sevenbar.kinematics.transmission.angle import Coupling, coupling_of, sine_and_cosine, ways
+from sevenbar.kinematics.transmission.axes import COMPLEX_STEP, Axes
+
+#: 1 - sin of a transmission angle of 90 degrees, and the angle of one of 0: there it has a kink, or is kept.
+RIGHT_ANGLE, DEAD = 1e-12, 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class AxisPoints:
+    """The points by which the angle of a coupling is known: two on the axis of each of its joints."""
+
+    coupling: Coupling
+    axes: Axes
+    parts: tuple[int, ...]
+    points: tuple[Carried, ...]
+    size: float
+
+    @staticmethod
+    def of(numbers: Numbers, input: int, output: int) -> AxisPoints | None:
+        """Those of a loop driven by one column and read at another.
+
+        `None` without a transmission angle, and where a screw, whose pitch may be a number, makes it.
+        """
+        linkage: Loop = numbers.linkage
+        coupling = coupling_of(linkage, input, output)
+        if coupling is None:
+            return None
+        parts = expanded(linkage)
+        # the last turns give the plane its normal
+        own = tuple(dict.fromkeys((coupling.at, *coupling.free, coupling.output, coupling.input)))
+        if "H" in {parts.letters[part] for part in own}:
+            return None
+        points = []
+        for part in own:
+            column = parts.columns[part]
+            count = next(k for k, step in enumerate(numbers.word.steps, 1) if column in step.columns)
+            points += [Carried(count, Product(), None, (0.0, 0.0, end)) for end in (0.0, numbers.size)]
+        none = np.empty((len(parts.letters), 0, 3))
+        return AxisPoints(coupling, Axes(parts, none, none), own, tuple(points), numbers.size)
+
+    def angle(self, places: Floats, by: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Sine and cosine (n,) of the angle, with no sign, and both slopes (n, k).
+
+        `places` (n, points, 3) of the points, `by` (n, points, 3, k) their slopes.
+        """
+        sine, cosine = self._made(places)
+        whole = np.hypot(sine, cosine)
+        stepped = places[..., None] + 1j * COMPLEX_STEP * by
+        count = by.shape[-1]
+        every = np.moveaxis(stepped, -1, 0).reshape(-1, *places.shape[1:])
+        sine_by, cosine_by = (
+            (v.imag / COMPLEX_STEP).reshape(count, len(places)).T for v in self._made(every)
+        )
+        with np.errstate(invalid="ignore", divide="ignore"):
+            sign = np.sign(sine) * np.sign(cosine)
+            turned = (sign / whole**2)[:, None] * (cosine[:, None] * sine_by - sine[:, None] * cosine_by)
+            s, c = np.abs(sine) / whole, np.abs(cosine) / whole
+        return s, c, c[:, None] * turned, -s[:, None] * turned
+
+    def _made(self, places: Floats) -> tuple[Floats, Floats]:
+        """Sine and cosine times |u| |w| at places (n, points, 3), real or complex."""
+        letters = self.axes.parts.letters
+        shape = (len(letters), len(places), 3)
+        feet, directions = np.zeros((2, *shape), dtype=places.dtype)
+        for k, part in enumerate(self.parts):
+            feet[part] = places[:, 2 * k]
+            directions[part] = (places[:, 2 * k + 1] - places[:, 2 * k]) / self.size
+        axes = Axes(self.axes.parts, directions, feet)
+        if self.coupling.normal is None:
+            return sine_and_cosine(self.coupling, *ways(self.coupling, axes))
+        turning = next((part for part in self.parts if letters[part] == "R"), None)
+        normal = self.coupling.normal if turning is None else directions[turning]
+        return sine_and_cosine(self.coupling, *ways(self.coupling, axes, normal))
+
+
+def transmission_slopes(numbers: Numbers, circuit: Circuit) -> tuple[MeasureSlopes, ...]:
+    """The extremes of a circuit's transmission angle with their slopes; NaN by numbers that open the loop."""
+    extremes = circuit.transmission
+    if extremes is None:
+        return ()
+    made = AxisPoints.of(numbers, circuit.input_column, circuit.output_column)
+    loop = None if made is None else numbers.loop(circuit.input_column, extra=made.points)
+    found = []
+    for name in ("lowest", "highest"):
+        value, at = getattr(extremes, name), getattr(extremes, f"{name}_at")
+        slopes = np.full(len(numbers.names), np.nan)
+        if made is not None and loop is not None:
+            here = loop.slopes(poses_at(loop, circuit, at), 0)
+            own = slice(-len(made.points), None)
+            places, by = here.points[:, own, 0], np.moveaxis(here.points_by_number[:, own, 0], 2, 3)
+            sine, cosine, sine_by, _ = made.angle(places, by)
+            best = nearest(np.abs(np.arctan2(sine, cosine) - value))
+            if best is not None and np.isfinite(by[best]).all() and 1 - sine[best] > RIGHT_ANGLE:
+                slopes = np.degrees(sine_by[best] / cosine[best])
+        if value < DEAD:
+            # it is 0 at every dead centre of the input
+            slopes = np.zeros(len(slopes))
+        found.append(
+            MeasureSlopes(f"transmission_{name}", "deg", math.degrees(value), slopes, math.radians(1.0))
+        )
+    opening = numbers.loop(circuit.input_column).opening(circuit)
+    for one in found:
+        one.slopes[opening] = np.nan
+    return tuple(found)
