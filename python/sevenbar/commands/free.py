@@ -61,7 +61,7 @@ def free(
     report = free_report(options.figure_formats(figures, out))
     seconds = amount_in(duration, "s")
     if seconds is None or seconds <= 0:
-        raise RequestError(f"--time: {shown(duration)} is not a time; give seconds > 0, as in 10s")
+        raise RequestError(f"--time: {shown(duration)} is not a time; give one > 0, as in 10s or 500ms")
     check_out(report, out, force=force)
     if film is not None:
         check_targets([film], force=force)

@@ -296,7 +296,9 @@ def free_motion_of(
 def _seconds(duration: float | str) -> float:
     value = amount_in(duration, "s") if isinstance(duration, str) else finite_number("duration", duration)
     if value is None or value <= 0:
-        raise RequestError(f"duration: {shown(duration)} is not a time; give seconds > 0, as in 10 or '10s'")
+        raise RequestError(
+            f"duration: {shown(duration)} is not a time; give one > 0, as in 10, '10s' or '500ms'"
+        )
     return float(value)
 
 
