@@ -27,7 +27,7 @@ def free(
         typer.Option(
             "--from",
             help="Value of the input at the start: '30deg', '12mm'; a plain number is in degrees or lengths; "
-            "the first row by default.",
+            "by default the drawn pose, or the first one.",
         ),
     ] = None,
     speed: Annotated[
@@ -42,6 +42,12 @@ def free(
     circuit: Annotated[int, typer.Option(help="The circuit on which it moves.")] = 0,
     branch: Annotated[
         int | None, typer.Option(help="Which of the poses with this start, counted along the circuit.")
+    ] = None,
+    restitution: Annotated[
+        float | None,
+        typer.Option(
+            help="What part of its speed a stop gives back: 0, the default, takes all, 1 gives all back."
+        ),
     ] = None,
     rows: options.Samples = 361,
     input_joint: options.InputJoint = None,
@@ -61,7 +67,7 @@ def free(
     report = free_report(options.figure_formats(figures, out))
     seconds = amount_in(duration, "s")
     if seconds is None or seconds <= 0:
-        raise RequestError(f"--time: {shown(duration)} is not a time; give seconds > 0, as in 10s")
+        raise RequestError(f"--time: {shown(duration)} is not a time; give one > 0, as in 10s or 500ms")
     check_out(report, out, force=force)
     if film is not None:
         check_targets([film], force=force)
@@ -69,7 +75,14 @@ def free(
     chosen = chosen_circuit(loaded.motion(input=input_joint), circuit)
     place = None if start is None else input_value("--from", start, loaded, input_joint)
     found = chosen.free_motion(
-        seconds, start=place, speed=speed, energy=energy, branch=branch, torque=torque, samples=rows
+        seconds,
+        start=place,
+        speed=speed,
+        energy=energy,
+        branch=branch,
+        torque=torque,
+        samples=rows,
+        restitution=restitution,
     )
     places = chosen.equilibria(torque=torque or 0.0)
     also = {}

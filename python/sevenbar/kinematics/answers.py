@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
     from sevenbar.kinematics.dynamics.forces import ForceSolver
     from sevenbar.kinematics.loop.stops import Cone
+    from sevenbar.kinematics.paths.stretch import Stretch
 
 #: A mechanical advantage, and the input [rad, or length] at which it is had.
 Place = tuple[float, float]
@@ -218,10 +219,19 @@ class LinkageAnswers:
         """How a circuit moves by itself."""
         from sevenbar.kinematics.dynamics.free import free_motion_of
 
-        return free_motion_of(self.linkage, circuit, loading, duration, **how)
+        found = self._stretches(circuit)
+        return free_motion_of(self.linkage, circuit, loading, duration, stretches=found, **how)
+
+    def _stretches(self, circuit: Circuit) -> tuple[Stretch, ...] | None:
+        """The parts of a circuit between stops; `None` where the linkage has no stops."""
+        if not self.linkage.stops.stops:
+            return None
+        from sevenbar.kinematics.ranges.allowed import stretches
+
+        return stretches(self.linkage, circuit)
 
     def equilibria(self, circuit: Circuit, loading: Loading, torque: float) -> tuple[Equilibrium, ...]:
         """Where a circuit can rest."""
         from sevenbar.kinematics.dynamics.free import equilibria_of
 
-        return equilibria_of(self.linkage, circuit, loading, torque)
+        return equilibria_of(self.linkage, circuit, loading, torque, self._stretches(circuit))

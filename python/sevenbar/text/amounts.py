@@ -67,7 +67,7 @@ def value_of(text: str, kind: Kind, *, length_unit: str = "mm", angle_unit: str 
 
 
 def amount_in(text: str, unit: str, plain: str = "") -> float | None:
-    """The number in "rad", "mm", "mm/turn", "rad/s" or "" that a text writes down; `None` for what is none.
+    """The number in "rad", "mm", "s", "rad/s" or "" that a text writes down; `None` for what is none.
 
     The text is a number with or without a unit, or a formula. Without a unit it is in `plain`, the same unit
     where none is given; an angle of pi is in radians.

@@ -25,7 +25,7 @@ from sevenbar.text.printing import Printed
 #: A curvature of U below this part of its greatest is zero: neither stable nor unstable to the first order.
 FLAT = 1e-9
 
-Kind = Literal["stable", "unstable", "flat", "edge"]
+Kind = Literal["stable", "unstable", "flat", "edge", "on its stop"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -33,7 +33,9 @@ class Equilibrium(Printed):
     """A place where the linkage can rest.
 
     `input` [rad, or length]; `q` (columns,) all joint values; `kind` is "stable", "unstable", "flat"
-    where the curvature of the potential vanishes, "edge" where a load that sets in or ends there holds it.
+    where the curvature of the potential vanishes, "edge" where a load that sets in or ends there holds it,
+    "on its stop" where what acts presses it against the `stop`, "range of crank", which gives `holding` along
+    the positive turn of the joint whose range it is, else of the input [N m, of a slide N].
     `frequency` [rad/s] is that of small vibrations about a stable one, `rate` [1/s] that of leaving an
     unstable one; NaN where there is none, as where nothing with a mass moves. `potential` [J] is that of
     weights, springs and loads.
@@ -47,6 +49,9 @@ class Equilibrium(Printed):
     rate: float
     potential: float
     place: float
+    stop: str = ""
+    holding: float = math.nan
+    holding_unit: str = ""
 
 
 #: Place, kind, frequency and rate.

@@ -422,6 +422,7 @@ class Circuit(Printed, WithExtents):
         torque: Any = None,
         torque_by_time: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
         samples: int = 361,
+        restitution: float | None = None,
         bodies: Mapping[int, Body | Sequence[Body]] | None = None,
         gravity: tuple[float, float, float] | None = None,
         loads: Sequence[Load] | None = None,
@@ -429,13 +430,15 @@ class Circuit(Printed, WithExtents):
     ) -> FreeMotion:
         """How the linkage moves by itself along this circuit for a `duration` [s, or "10s"].
 
-        It starts at the input `start` [rad, length, or text], the circuit's first row by default, with the
-        input's `speed` [rad/s, length/s, or text] or the kinetic `energy` [J], at rest by default; `branch`
-        counts the poses that have this input. `torque` acts on the input [N m, of a slide N]: a number, a
-        curve (speeds, torques), or a function of the speed; `torque_by_time` is a curve (times, torques).
-        Without dampers and with a torque that is a number at most, time is an integral along the circuit and
-        nothing is stepped. Change points are passed along the circuit's smooth continuation. Rows are
-        `samples` even times; the rest is as for `forces`.
+        It starts at the input `start` [rad, length, or text], by default in the drawn pose, or the circuit's
+        first row where it has none, with the input's `speed` [rad/s, length/s, or text] or the kinetic
+        `energy` [J], at rest by default; `branch` counts the poses that have this input. Stops of the linkage
+        end the way: they give back the part `restitution` of the speed, 0 (the default) to 1, and hold what
+        is pressed against them; by default it then starts in the first pose that they allow. `torque` acts
+        on the input [N m, of a slide N]: a number, a curve (speeds, torques), or a function of the speed;
+        `torque_by_time` is a curve (times, torques). Without dampers and with a torque that is a number at
+        most, time is an integral along the circuit and nothing is stepped. Change points are passed along the
+        circuit's smooth continuation. Rows are `samples` even times; the rest is as for `forces`.
 
         Raises `RequestError` where nothing has a mass, and for a start that the circuit does not have.
 
@@ -461,6 +464,7 @@ class Circuit(Printed, WithExtents):
             torque=torque,
             torque_by_time=torque_by_time,
             samples=samples,
+            restitution=restitution,
         )
 
     @ends_here
@@ -473,7 +477,7 @@ class Circuit(Printed, WithExtents):
         loads: Sequence[Load] | None = None,
         springs: Sequence[Spring] | None = None,
     ) -> tuple[Equilibrium, ...]:
-        """All poses of this circuit in which the linkage can rest, along the circuit.
+        """All poses of this circuit within the stops in which the linkage can rest, along the circuit.
 
         Under a constant `torque` [N m, of a slide N] at the input; the rest is as for `forces`. None where
         the potential is constant, as without gravity and springs: then it rests anywhere. Where a spring in a

@@ -17,11 +17,12 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, Words, finite_array, finite_number, whole_number
 from sevenbar.errors import RequestError, shown
-from sevenbar.forces.free_motion.conservative import conservative
+from sevenbar.forces.free_motion.conservative import BALANCED
 from sevenbar.forces.free_motion.course import DAMPING, INPUT, MASS, MASSLESS_WAY, EnergyCourse
-from sevenbar.forces.free_motion.driven import COARSE, TOLERANCE, Motor, driven
-from sevenbar.forces.free_motion.equilibria import Equilibrium, resting_places
-from sevenbar.forces.free_motion.result import FreeMotion, FreeStates, TurningPoint
+from sevenbar.forces.free_motion.driven import COARSE, TOLERANCE, Motor, force_at
+from sevenbar.forces.free_motion.equilibria import Equilibrium, Kind, resting_places
+from sevenbar.forces.free_motion.result import FreeMotion, FreeStates, Impact, TurningPoint
+from sevenbar.forces.free_motion.stages import Stages, Walls, elastic, staged, stepped, without_losses
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
@@ -31,8 +32,9 @@ from sevenbar.kinematics.dynamics.free_rows import CourseRows
 from sevenbar.kinematics.loop.columns import joint_columns
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_speed
 from sevenbar.kinematics.loop.law import Law
-from sevenbar.kinematics.paths.circuit_path import CircuitPath
+from sevenbar.kinematics.paths.circuit_path import HAS, CircuitPath
 from sevenbar.kinematics.paths.covered_path import covered_path
+from sevenbar.kinematics.paths.stretch import Stretch, first_place, stopped_column, used_stretch
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.units import LENGTHS
 
@@ -53,6 +55,8 @@ class FreeCourse:
     linkage: Solvable
     circuit: Circuit
     loading: Loading
+    #: The stretches of its path between stops; `None` where the linkage has no stops.
+    stretches: tuple[Stretch, ...] | None
 
     @cached_property
     def solver(self) -> ForceSolver:
@@ -96,54 +100,135 @@ class FreeCourse:
         return int(np.flatnonzero(np.isfinite(self.circuit.q).all(axis=1))[0])
 
     def start(self, value: float | str | None, branch: int | None) -> float:
-        """The place of a start: an input [rad, or length], on a pass between dead centres of the input."""
+        """The place of a start: an input [rad, or length], on a pass between dead centres of the input.
+
+        On a stretch between stops, where the linkage has some.
+        """
         if value is None and branch is None:
-            return self._on_lap(self._first, float(self.circuit.q[self.first_row, self.path.input]))
+            return self.home
         if value is None:
             raise RequestError("start: is missing; give the input at which the pass `branch` is entered")
         number = joint_number("start", value, self.linkage, self.path.input)
         places = self.path.places(number, turns=self.turns)
         if not places.size:
-            unit = self.linkage.length_unit
-            place = f"{math.degrees(number):.9g} deg" if self.turns else f"{number:.9g} {unit}"
-            raise RequestError(f"start: the circuit has no pose at {place}; see its input_range")
-        first = self._first
-        ordered = places[np.argsort((places - first + 1e-9 * self.path.length) % self.path.length)]
-        if branch is None:
-            return self._on_lap(float(ordered[0]), number)
-        if (
-            isinstance(branch, bool)
-            or not isinstance(branch, (int, np.integer))
-            or not 0 <= branch < len(ordered)
-        ):
-            raise RequestError(
-                f"branch: {shown(branch)} is not offered; {len(ordered)} poses have this start, "
-                f"give 0 to {len(ordered) - 1}"
-            )
-        return self._on_lap(float(ordered[branch]), number)
+            raise RequestError(f"start: the circuit has no pose at {self.shown(number)}; {self._inputs}")
+        ordered = places[np.argsort((places - self._first + 1e-9 * self.path.length) % self.path.length)]
+        if branch is not None:
+            if (
+                isinstance(branch, bool)
+                or not isinstance(branch, (int, np.integer))
+                or not 0 <= branch < len(ordered)
+            ):
+                raise RequestError(
+                    f"branch: {shown(branch)} is not offered; {len(ordered)} poses have this start, "
+                    f"give 0 to {len(ordered) - 1}"
+                )
+            ordered = ordered[branch : branch + 1]
+        free = [place for place in ordered if self.stretch_at(float(place)) is not None]
+        if not free:
+            raise RequestError(f"start: {self.shown(number)} is beyond the stops; {self._between_stops}")
+        # of several the one that is reached from where the linkage is at home
+        home = self.stretch_at(self.home)
+        own = [place for place in free if home is not None and home.held(place, self.path) is not None]
+        return self._on_lap(float((own or free)[0]), number)
+
+    def shown(self, value: float) -> str:
+        """An input with its unit, without rounding."""
+        value = 0.0 if abs(value) < HAS * (1.0 if self.turns else self.solver.numbers.size) else value
+        unit = self.linkage.length_unit
+        return f"{math.degrees(value):.9g} deg" if self.turns else f"{value:.9g} {unit}"
+
+    @property
+    def _inputs(self) -> str:
+        """What inputs the circuit has, for a message."""
+        if self.circuit.input_range is None:
+            return "give another start"
+        low, high = self.circuit.input_range
+        return f"its input goes from {self.shown(low)} to {self.shown(high)}"
+
+    @property
+    def _between_stops(self) -> str:
+        """What inputs are within the stops, for a message."""
+        ends = [
+            " to ".join(self.shown(self._input(place)) for place in (one.begin, one.end))
+            for one in self._found
+        ]
+        return f"they allow {', and '.join(ends)}"
+
+    def _input(self, place: float) -> float:
+        """The input [rad, or length] at a place."""
+        lap = math.floor(place / self.path.length) if self.path.closed else 0
+        own = float(
+            self.path.poses.part(self.path.input).at(np.array([place - lap * self.path.length]))[0, 0]
+        )
+        return own + lap * float(self.path.gain[self.path.input])
 
     def _on_lap(self, place: float, value: float) -> float:
         """A place on the lap where the input has a value, not one by whole turns away."""
         gain = float(self.path.gain[self.path.input])
         if not gain:
             return place
-        own = float(self.path.poses.part(self.path.input).at(np.array([place]))[0, 0])
-        return place + round((value - own) / gain) * self.path.length
+        return place + round((value - self._input(place)) / gain) * self.path.length
+
+    def on_rows_lap(self, place: float) -> float:
+        """A place on the lap of the circuit's rows."""
+        gain = float(self.path.gain[self.path.input])
+        if not gain:
+            return place
+        first = float(self.circuit.q[self.first_row, self.path.input])
+        return place - math.floor((self._input(place) - first) / gain + 1e-12) * self.path.length
 
     @cached_property
     def _first(self) -> float:
-        """The place of that row."""
-        circuit, path, row = self.circuit, self.path, self.first_row
-        value = float(circuit.q[row, path.input])
-        places = path.places(value, turns=self.turns)
-        if not places.size:
-            return 0.0
-        smooth = ~self.solver.numbers.is_ball
-        here = self.solver.numbers.poses(circuit.q[row : row + 1])[0]
-        off = path.poses.at(places)[:, smooth] - here[smooth]
-        turning = self.solver.numbers.turns[smooth]
-        off[:, turning] -= math.tau * np.round(off[:, turning] / math.tau)
-        return float(places[np.linalg.norm(off / self.solver.numbers.scales[smooth], axis=1).argmin()])
+        """The place of the first row."""
+        return first_place(self.linkage, self.circuit, self.path, self.solver.numbers)
+
+    @cached_property
+    def _found(self) -> tuple[Stretch, ...]:
+        """The stretches, one of the whole path without stops."""
+        whole = (Stretch(0.0, self.path.length, "", ""),)
+        return whole if self.stretches is None else self.stretches
+
+    @cached_property
+    def home(self) -> float:
+        """Where it starts if nothing else is said: the drawn pose, else the first row, within the stops."""
+        numbers, circuit = self.solver.numbers, self.circuit
+        if not self._found:
+            raise RequestError(
+                f"circuit: no pose of circuit {circuit.index} is within the stops of the linkage; take "
+                "another circuit, or leave a [[stop]] out"
+            )
+        used = used_stretch(self.linkage, circuit, self.path, numbers, self._found)
+        assert used is not None
+        return self.on_rows_lap(used[1])
+
+    def stretch_at(self, place: float) -> Stretch | None:
+        """The stretch between stops that holds a place, on its lap; `None` beyond the stops."""
+        for one in self._found:
+            own = one.held(place, self.path)
+            if own is not None:
+                # by whole laps
+                off = round((place - own) / self.path.length) * self.path.length
+                return replace(one, begin=one.begin + off, end=one.end + off)
+        return None
+
+    def cut(self, energy: EnergyCourse, one: Stretch) -> tuple[EnergyCourse, float]:
+        """The course on a stretch, and where on the path it begins; the whole one where no stop ends it."""
+        if one.is_whole:
+            return energy, 0.0
+        return energy.between(one.begin, one.end), one.begin
+
+    def pushed(self, force: float, place: float, stop: str) -> tuple[float, str]:
+        """What a stop gives at rest, against a force along the path [J for a unit of it], and its unit."""
+        named = stopped_column(stop)
+        column = self.path.input if named is None else self.linkage.columns.index(named)
+        inside = np.array([place % self.path.length if self.path.closed else place])
+        by_s = float(self.path.poses.slope.at(inside)[0, column])
+        if abs(by_s) < AT_DEAD_CENTRE * float(self.solver.numbers.scales[column]):
+            by_s = math.nan
+        turns = self.linkage.turns(column)
+        unit = 1.0 if turns else LENGTHS[self.linkage.length_unit]
+        return -force / (by_s * unit), "N m" if turns else "N"
 
     def rate(self, place: float, speed: float | str | None, energy: float | None) -> float:
         """The rate s' at a place, from the input's speed [rad/s, or length/s] or the kinetic energy [J]."""
@@ -175,7 +260,9 @@ class FreeCourse:
 _COURSES: WeakKeyDictionary[Circuit, list[tuple[object, FreeCourse]]] = WeakKeyDictionary()
 
 
-def course_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> FreeCourse:
+def course_of(
+    linkage: Solvable, circuit: Circuit, loading: Loading, stretches: tuple[Stretch, ...] | None
+) -> FreeCourse:
     """The course of a circuit under a loading, made once for each."""
     if not any(loading.bodies.values()):
         raise RequestError("bodies: nothing has a mass; give bodies, or write [[body]]")
@@ -184,7 +271,7 @@ def course_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> FreeCour
     for own, course in known:
         if own == key:
             return course
-    course = FreeCourse(linkage, circuit, loading)
+    course = FreeCourse(linkage, circuit, loading, stretches)
     if known:
         # the path is that of the circuit, whatever acts
         course.__dict__["path"] = known[0][1].path
@@ -193,30 +280,70 @@ def course_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> FreeCour
 
 
 def equilibria_of(
-    linkage: Solvable, circuit: Circuit, loading: Loading, torque: float
+    linkage: Solvable,
+    circuit: Circuit,
+    loading: Loading,
+    torque: float,
+    stretches: tuple[Stretch, ...] | None = None,
 ) -> tuple[Equilibrium, ...]:
-    """All equilibria of a circuit; see `Circuit.equilibria`."""
-    course = course_of(linkage, circuit, loading)
+    """All equilibria of a circuit within its stops; see `Circuit.equilibria`."""
+    course = course_of(linkage, circuit, loading, stretches)
     energy = course.energy.driven_by(finite_number("torque", torque))
-    found = []
-    begin = course.start(None, None) if energy.winds else 0.0
-    gain = course.path.gain[course.path.input]
-    first = float(circuit.q[course.first_row, course.path.input])
-    for inside, kind, frequency, rate in resting_places(energy, begin):
-        place = inside
-        if gain and not energy.winds:
-            # on the lap of the circuit's rows
-            own = float(course.path.poses.at(np.array([inside]))[0, course.path.input])
-            place -= math.floor((own - first) / gain + 1e-12) * course.path.length
-        here, still = np.array([place]), (np.zeros(1),) * 3
-        q = course.rows.at(here, still)[0][0]
-        found.append(
-            Equilibrium(
-                float(q[course.path.input]), circuit.columns, q, kind, frequency, rate,
-                float(energy.at(here)[2][0]), place,
+    if stretches is None or any(one.is_whole for one in stretches):
+        begin = course.home if energy.winds else 0.0
+        return tuple(
+            _equilibrium(
+                course, energy, place if energy.winds else course.on_rows_lap(place), kind, frequency, rate
             )
-        )  # fmt: skip
+            for place, kind, frequency, rate in resting_places(energy, begin)
+        )
+    found: list[Equilibrium] = []
+    for one in stretches:
+        off = course.on_rows_lap(one.begin) - one.begin
+        own, begin = course.cut(energy, replace(one, begin=one.begin + off, end=one.end + off))
+        inner = [_equilibrium(course, own, *each, begin=begin) for each in resting_places(own)]
+        first, last = (
+            [_on_stop(course, own, begin, place, stop, None, 0.0)]
+            if stop and way * force_at(own, place, np.zeros(1), None)[0] > BALANCED * energy.steepest
+            else []
+            for place, stop, way in ((0.0, one.first_stop, -1), (own.length, one.last_stop, 1))
+        )
+        found += [*first, *inner, *last]
     return tuple(found)
+
+
+def _equilibrium(
+    course: FreeCourse,
+    energy: EnergyCourse,
+    place: float,
+    kind: Kind,
+    frequency: float = math.nan,
+    rate: float = math.nan,
+    *,
+    begin: float = 0.0,
+) -> Equilibrium:
+    """An equilibrium at a place of a course that begins at one of the path."""
+    q = course.rows.at(np.array([begin + place]), (np.zeros(1),) * 3)[0][0]
+    potential = float(energy.at(np.array([place]))[2][0])
+    columns = course.circuit.columns
+    value = float(q[course.path.input])
+    return Equilibrium(value, columns, q, kind, frequency, rate, potential, begin + place)
+
+
+def _on_stop(
+    course: FreeCourse,
+    energy: EnergyCourse,
+    begin: float,
+    place: float,
+    stop: str,
+    motor: Motor | None,
+    time: float,
+) -> Equilibrium:
+    """A rest at an end of a stretch that begins at a place of the path, and what the stop gives there."""
+    force = float(force_at(energy, place, np.array([time]), motor)[0])
+    holding, unit = course.pushed(force, begin + place, stop)
+    found = _equilibrium(course, energy, place, "on its stop", begin=begin)
+    return replace(found, stop=stop, holding=holding, holding_unit=unit)
 
 
 def free_motion_of(
@@ -232,38 +359,51 @@ def free_motion_of(
     torque: Torque | None = None,
     torque_by_time: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     samples: int = 361,
+    restitution: float | None = None,
+    stretches: tuple[Stretch, ...] | None = None,
 ) -> FreeMotion:
     """A free motion; see `Circuit.free_motion`."""
     seconds = _seconds(duration)
     samples = whole_number("samples", samples, 2, None, "a number of rows")
-    course = course_of(linkage, circuit, loading)
+    returned = _restitution(restitution, stretches)
+    course = course_of(linkage, circuit, loading, stretches)
     constant, motor = _motor(torque, torque_by_time, course)
-    own = course.energy.driven_by(constant)
     place = course.start(start, branch)
+    stretch = course.stretch_at(place)
+    assert stretch is not None
+    energies = course.energy.driven_by(constant)
+    own, begin = course.cut(energies, stretch)
     rate = course.rate(place, speed, energy)
     times = np.linspace(0.0, seconds, samples)
     damped = own.quantities.reach[DAMPING] > UNDAMPED * own.quantities.reach[MASS]
     difference = math.nan
-    period: float | None = None
-    turns: tuple[float, ...] = ()
-    if damped or motor is not None:
-        solved, coarse = (driven(own, place, rate, seconds, motor, tol) for tol in (TOLERANCE, COARSE))
-        kind = "ends" if solved.ended else "driven"
+    stepping = damped or motor is not None
+    walls = Walls(stretch.first_stop, stretch.last_stop, returned)
+    origin = (min(max(place - begin, 0.0), own.length) if begin or not walls.none else place, rate)
+    if stepping:
+        solved, coarse = (
+            staged(own, walls, origin, seconds, stepped(own, motor, tol), motor)
+            for tol in (TOLERANCE, COARSE)
+        )
         difference = float(np.nanmax(np.abs(solved.at(times)[0] - coarse.at(times)[0])))
-        state = solved.at
     else:
-        found = conservative(own, place, rate, seconds)
-        kind, period, turns, state = found.kind, found.period, found.turning, found.at
-    states = partial(_states, course, own, state, motor)
+        ideal = elastic(own, walls, origin) if returned == 1.0 else None
+        solved = ideal or staged(own, walls, origin, seconds, without_losses(own))
+    states = partial(_states, course, own, solved, motor, begin)
     rows = states(times)
+    turns = np.array(solved.turning, dtype=np.float64)
     still = (np.zeros(len(turns)),) * 3
-    at_turns = course.rows.at(np.array(turns, dtype=np.float64), still)[0][:, course.path.input]
-    heights = own.at(np.array(turns, dtype=np.float64))[2]
+    at_turns = course.rows.at(begin + turns, still)[0][:, course.path.input]
+    heights = own.at(turns)[2]
     error = math.nan
-    if not (damped or motor is not None):
-        total = rows.kinetic + rows.potential
-        most = float(np.nanmax(rows.kinetic))
+    if not stepping:
+        total = rows.kinetic + rows.potential + solved.lost_at(times)
+        most = max(float(np.nanmax(rows.kinetic)), float(solved.lost.max()))
         error = float(np.nanmax(np.abs(total - total[0]))) / most if most else 0.0
+    rest = None
+    if solved.kind == "on its stop":
+        last = float(solved.flights[-1].at(np.zeros(1))[0][0])
+        rest = _on_stop(course, own, begin, last, walls.at(last, own)[0], motor, seconds)
     return FreeMotion(
         time=times,
         columns=circuit.columns,
@@ -273,8 +413,8 @@ def free_motion_of(
         dddq=rows.dddq,
         kinetic=rows.kinetic,
         potential=rows.potential,
-        kind=kind,
-        period=period,
+        kind=solved.kind,
+        period=solved.period,
         turning=tuple(TurningPoint(float(x), float(h)) for x, h in zip(at_turns, heights, strict=True)),
         energy_error=error,
         difference=difference,
@@ -285,18 +425,55 @@ def free_motion_of(
         column_kinds=linkage.column_kinds,
         length_unit=linkage.length_unit,
         through_change_points=bool(course.path.centres.size),
+        impacts=_impacts(course, begin, solved),
+        rest=rest,
+        rests_from=math.nan if rest is None else float(solved.begins[-1]),
+        restitution=returned,
         heading=linkage.heading,
         _states=states,
         _law=_as_law,
-        _motion=partial(_as_motion, course, state, motor, own),
+        _motion=partial(_as_motion, course, solved, motor, own, begin),
         _table=partial(_as_table, linkage),
+    )
+
+
+def _restitution(given: float | None, stretches: tuple[Stretch, ...] | None) -> float:
+    """What part of the speed a stop gives back; raises `RequestError` for what is no part."""
+    if given is None:
+        return 0.0
+    value = finite_number("restitution", given)
+    if not 0 <= value <= 1:
+        raise RequestError(
+            f"restitution: {shown(given)} is not a part of the speed; give 0 (no rebound) to 1 (no loss)"
+        )
+    if stretches is None:
+        raise RequestError(
+            "restitution: the linkage has no stops to rebound from; write [[stop]], or leave it out"
+        )
+    return value
+
+
+def _impacts(course: FreeCourse, begin: float, found: Stages) -> tuple[Impact, ...]:
+    """The stops that are met, by the input."""
+    if not found.met:
+        return ()
+    places = np.array([begin + one.place for one in found.met])
+    rates = np.array([one.rate for one in found.met])
+    none = np.zeros(len(rates))
+    q, dq, *_ = course.rows.at(places, (rates, none, none))
+    column = course.path.input
+    return tuple(
+        Impact(one.time, one.stop, float(value), float(speed))
+        for one, value, speed in zip(found.met, q[:, column], dq[:, column], strict=True)
     )
 
 
 def _seconds(duration: float | str) -> float:
     value = amount_in(duration, "s") if isinstance(duration, str) else finite_number("duration", duration)
     if value is None or value <= 0:
-        raise RequestError(f"duration: {shown(duration)} is not a time; give seconds > 0, as in 10 or '10s'")
+        raise RequestError(
+            f"duration: {shown(duration)} is not a time; give one > 0, as in 10, '10s' or '500ms'"
+        )
     return float(value)
 
 
@@ -330,14 +507,11 @@ def _motor(
     return finite_number("torque", torque), None
 
 
-State = Callable[[Floats], tuple[Floats, Floats]]
-
-
 def _rates(
-    own: EnergyCourse, state: State, motor: Motor | None, times: Floats
+    own: EnergyCourse, state: Stages, motor: Motor | None, times: Floats
 ) -> tuple[Floats, tuple[Floats, Floats, Floats], Floats, Floats]:
     """Places, s', s'' and s''', kinetic and potential energy at times."""
-    place, v = state(times)
+    place, v = state.at(times)
     known = np.isfinite(place)
     s = np.where(known, place, 0.0)
     mass, slope, potential, damping = own.at(s)
@@ -351,12 +525,12 @@ def _rates(
             by_s = own.quantities.at(inside)[:, INPUT]
             force = force + motor.at(times, by_s * v) * by_s
         # at a place without mass nothing is but at rest
-        massless = own.is_massless(mass)
-        a = np.where(massless, 0.0, force / mass)
+        still = own.is_massless(mass) | state.rests(times)
+        a = np.where(still, 0.0, force / mass)
         curvature = by[:, 1] + lap * by[:, 4]
         by_place = -(curvature + by[:, DAMPING] * v + second[:, MASS] * v**2 / 2 + a * by[:, MASS]) / mass
         by_speed = -(damping + by[:, MASS] * v) / mass
-        j = np.where(massless, 0.0, by_place * v + by_speed * a)
+        j = np.where(still, 0.0, by_place * v + by_speed * a)
         if motor is not None:
             j = np.full(v.shape, np.nan)
     kinetic = mass * v**2 / 2
@@ -366,9 +540,10 @@ def _rates(
 
 
 def _states(
-    course: FreeCourse, own: EnergyCourse, state: State, motor: Motor | None, times: Floats
+    course: FreeCourse, own: EnergyCourse, state: Stages, motor: Motor | None, begin: float, times: Floats
 ) -> FreeStates:
     place, rates, kinetic, potential = _rates(own, state, motor, times)
+    place = begin + place
     q, dq, ddq, dddq = course.rows.at(place, rates)
     return FreeStates(q, dq, ddq, dddq, kinetic, potential, place, rates[0])
 
@@ -390,11 +565,17 @@ def _as_table(linkage: Solvable, found: FreeMotion, si: bool) -> dict[str, npt.N
 
 
 def _as_motion(
-    course: FreeCourse, state: State, motor: Motor | None, own: EnergyCourse, found: FreeMotion
+    course: FreeCourse,
+    state: Stages,
+    motor: Motor | None,
+    own: EnergyCourse,
+    begin: float,
+    found: FreeMotion,
 ) -> Motion:
     """A motion whose one circuit has the rows of a free motion."""
     circuit, linkage = course.circuit, course.linkage
     place, rates, *_ = _rates(own, state, motor, found.time)
+    place = begin + place
     count = len(found.time)
     status: Words = np.where(np.isfinite(place), "ok", "no-solution").astype("<U15")
     status[(status == "ok") & np.isnan(found.q).any(axis=1)] = "turns-undefined"
