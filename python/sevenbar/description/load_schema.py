@@ -164,7 +164,8 @@ class LoadForm(TableForm):
     between: Annotated[
         Between | None,
         key(
-            "from where to where of the input it acts, rising; left out, everywhere", "angle_unit, or length"
+            "from where to where of the input it acts, rising, a turn at most; left out, everywhere",
+            "angle_unit, or length",
         ),
     ] = None
     table: Annotated[

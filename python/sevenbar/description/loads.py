@@ -53,6 +53,7 @@ def load_contradictions(
 ) -> list[Problem]:
     """What is wrong with tables whose values are each right; wrong values are reported elsewhere."""
     problems: list[Problem] = []
+    turns = not context["slides"]
     units = str(context["mass_unit"]), str(context["length_unit"])
     for place, body in valid_tables(raw, "body", BodyForm, context):
         problems += _on_ground(place, body.link, joints, "a body there moves nothing, leave it out")
@@ -66,7 +67,7 @@ def load_contradictions(
             problems += flaws_of_value(place, lambda body=body: body_of(body, *units))
     for place, load in valid_tables(raw, "load", LoadForm, context):
         problems += _on_ground(place, load.link, joints, "a load on it moves nothing, leave it out")
-        problems += flaws_of_value(place, lambda load=load: load_of(load))
+        problems += flaws_of_value(place, lambda load=load: load_of(load).check_input(turns=turns))
     for place, spring in valid_tables(raw, "spring", SpringForm, context):
         problems += _of_spring(place, spring, joints)
     return problems

@@ -49,9 +49,17 @@ class Loading:
         words = [f"{count} {what}{'s' * (count > 1)}" for what, count in counts.items() if count]
         return ", ".join(["gravity", *words] if gravity and any(self.gravity) else words)
 
+    def check_input(self, *, turns: bool) -> None:
+        """Refuses loads whose range or table is none of the input; `turns`: the input is an angle."""
+        for i, load in enumerate(self.loads):
+            try:
+                load.check_input(turns=turns)
+            except RequestError as error:
+                raise RequestError(f"loads[{i}].{error}") from None
+
     def breaks(self, *, turns: int) -> tuple[float, ...]:
         """Inputs [rad] in so many turns at which a load sets in, ends, or its table has a corner."""
-        corners = [x for load in self.loads for x in (load.between or (load.table or ((),))[0])]
+        corners = [x for load in self.loads for x in load.corners(turns=True)]
         return tuple(x + math.tau * turn for turn in range(turns) for x in corners)
 
 

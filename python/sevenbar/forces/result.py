@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Booleans, Floats, Integers, Words
-from sevenbar.curves.cycle_series import CycleSeries
 from sevenbar.errors import RequestError, ends_here
 from sevenbar.forces.bodies import Body
+from sevenbar.forces.closing import Closing, closing
 from sevenbar.forces.loading import Loading
-from sevenbar.forces.sizing import Sizing, sizing
+from sevenbar.forces.sizing import WITHHELD, Sizing, sizing
 from sevenbar.text.printing import Drawable, Printed
 
 #: Which rows are meant: a mask, their numbers or a slice.
@@ -153,7 +154,9 @@ class Forces(Drawable):
         With an `unevenness`, (highest less lowest speed) / mean speed, also the flywheel for it. `None` for
         rows without a torque, as of a circuit that rocks at constant speed: there it has no bound. Of a
         circuit that passes change points the series through its rows goes across these; forces in joints
-        that grow without bound there are NaN. Of loads that set in or end on such a circuit `None`, too.
+        that grow without bound there are NaN. Of loads that set in or end on such a circuit `None`, too, and
+        where more than a thousandth of the greatest value may be missed between the rows, or power does not
+        close along the cycle to that.
 
             >>> import sevenbar as sb
             >>> circuit = sb.load("rssr").motion().circuits[0]
@@ -173,7 +176,7 @@ class Forces(Drawable):
         breaks = () if period is None else self.loading.breaks(turns=round(abs(period) / math.tau))
         if self.through_change_points and len(breaks):
             return None
-        return sizing(
+        found = sizing(
             self,
             period=period,
             speed=self.even_speed if period is not None else None,
@@ -182,6 +185,8 @@ class Forces(Drawable):
             gaps=self.status == "change-point" if self.through_change_points else None,
             unevenness=unevenness,
         )
+        withheld = found is not None and max(found.tail, self.unclosed) > WITHHELD
+        return None if withheld else found
 
     @property
     def balance(self) -> float | None:
@@ -193,16 +198,47 @@ class Forces(Drawable):
 
         Source: docs/theory_forces.md, (7).
         """
-        total = self.torque if self.at_rest else self.power + self.supplied
+        return None if self._closing is None else self._closing.power
+
+    @property
+    def work(self) -> float | None:
+        """What drive, loads and dampers give over a closed cycle, as a part of the peak power; 0 if right.
+
+        `None` as `balance` is, and at rest.
+        """
+        return None if self._closing is None or self.at_rest else self._closing.work
+
+    @property
+    def unclosed(self) -> float:
+        """The greater of `balance` and `work`; 0 where there is none."""
+        return max(self.balance or 0.0, self.work or 0.0)
+
+    @cached_property
+    def _closing(self) -> Closing | None:
         if self.at_rest and self.loading.loads:
             return None
-        if not self.periodic or len(total) < 3 or not np.isfinite(total).all():
+        period = self.period
+        if period is None or len(self.input) < 3 or not np.isfinite(self.power + self.supplied).all():
             return None
-        # by time, or at rest by the input
-        way = self.period if self.at_rest else float(self.time[1] - self.time[0]) * len(total)
-        change = CycleSeries(self.kinetic + self.potential, 0.0, way or 1.0).finer(1, 1)
-        peak = max(np.abs(change).max(), np.abs(total if self.at_rest else self.power).max())
-        return float(np.abs(total - change).max() / peak) if peak else 0.0
+
+        # at rest the torque is the slope of the energy by the input; else power is, by the speed
+        rate = 1.0 if self.at_rest else self.even_speed
+
+        def rows(own: Forces) -> Floats:
+            total = own.torque if own.at_rest else own.power + own.supplied
+            return np.stack([own.kinetic + own.potential, total / rate], axis=1)
+
+        between = None if self.through_change_points else self.between
+        drive = float(np.abs(self.torque if self.at_rest else self.power).max())
+        energy, total = rows(self).T
+        return closing(
+            energy,
+            total,
+            drive / abs(rate),
+            first=float(self.input[0]),
+            period=period,
+            evaluate=None if between is None else lambda inputs: rows(between(inputs)),
+        )
 
     @property
     def ground_balance(self) -> float | None:

@@ -22,8 +22,10 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Curve, Peak, mean
-from sevenbar.curves.cycle_series import cycle_series
+from sevenbar.curves.cycle_series import CycleSeries
+from sevenbar.curves.pieces import cycle_curve
 from sevenbar.curves.timed_rows import TimedRows
+from sevenbar.forces.sizing import WITHHELD
 from sevenbar.text.printing import Printed
 
 if TYPE_CHECKING:
@@ -39,7 +41,7 @@ class Shaking(Printed):
 
     `orders` (m, 6) is the amplitude of the wave that goes round k = 0, 1, .. times in the cycle, moment x, y,
     z, then force x, y, z: 1 is the primary, 2 the secondary order of an input that turns once in it; empty
-    for rows of a law.
+    for rows of a law. `tail` is how much may lie between the rows, as a part of the greatest value.
     """
 
     force: Peak
@@ -47,6 +49,7 @@ class Shaking(Printed):
     rms_force: float
     rms_moment: float
     orders: Floats
+    tail: float = math.nan
 
 
 def shaking_of(
@@ -72,25 +75,32 @@ def shaking_of(
         both = TimedRows(wrench / units, input, time)
     else:
         ask = None if evaluate is None else lambda inputs: np.asarray(evaluate(inputs) / units)
-        both = series = cycle_series(ask, wrench / units, float(input[0]), period)
-        orders = np.abs(series.spectrum) * units
+        both = cycle_curve(ask, wrench / units, float(input[0]), period)
+        waves = (
+            both if isinstance(both, CycleSeries) else CycleSeries(wrench / units, float(input[0]), period)
+        )
+        orders = np.abs(waves.spectrum) * units
     found = []
     for part in (FORCE, MOMENT):
         squares, unit = both.part(part).squared(), float(units[part[0]])
         top = squares.highest()
         found.append((Peak(unit * _root(top.value), top.input), unit * _root(mean(squares))))
     (force, rms_force), (moment, rms_moment) = found
-    return Shaking(force, moment, rms_force, rms_moment, orders)
+    return Shaking(force, moment, rms_force, rms_moment, orders, both.tail)
 
 
 def shaking_along(forces: Forces) -> Shaking | None:
-    """The shaking of the rows of forces, of a cycle between them, too; `None` where a row has none."""
+    """The shaking of the rows of forces, of a cycle between them, too.
+
+    `None` where a row has none, or too much of it may be missed between the rows.
+    """
     if not len(forces.input) or not np.isfinite(forces.shaking).all():
         return None
     between = None if forces.through_change_points else forces.between
     evaluate = None if between is None else lambda inputs: between(inputs).shaking
     period, time = forces.period, forces.time
-    return shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate)
+    found = shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate)
+    return None if max(found.tail, forces.unclosed) > WITHHELD else found
 
 
 def _root(square: float) -> float:

@@ -23,8 +23,8 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Booleans, Floats, finite_number
 from sevenbar.curves.curve import Curve, Peak, greatest, mean
-from sevenbar.curves.cycle_series import CycleSeries, cycle_series, filled
-from sevenbar.curves.pieces import pieces
+from sevenbar.curves.cycle_series import CycleSeries, filled
+from sevenbar.curves.pieces import cycle_curve, pieces
 from sevenbar.curves.timed_rows import TimedRows
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.printing import Printed
@@ -42,6 +42,12 @@ PARTS: Mapping[str, tuple[int, ...]] = {
 
 #: A force has a bound at change points where its last waves are below this part of its greatest value.
 ACROSS = 1e-6
+
+#: Figures of which more than this part of the greatest value may be missed are withheld.
+WITHHELD = 1e-3
+
+#: How a sizing was found; see `Sizing`.
+Found = Literal["series", "pieces", "refined", "rows"]
 
 #: A moment or force below this part of the others of its kind is rounding.
 ROUNDING = 1e-9
@@ -130,8 +136,9 @@ class Sizing(Printed):
     `(highest - lowest) / mean speed` at `unevenness`: all inertia that is needed, of which the mean of the
     linkage's own may be taken off. `None` without a constant speed.
 
-    `found` says how: by a "series" through the rows, in "pieces" between jumps, or from the "rows" as they
-    are; `tail` how much may lie between the rows, as a part of the greatest torque, force or moment.
+    `found` says how: by a "series" through the rows, in "pieces" between jumps, in pieces that are "refined"
+    where a quantity is too sharp for a series, or from the "rows" as they are; `tail` how much may lie
+    between the rows, as a part of the greatest torque, force or moment.
     """
 
     peak_torque: Peak
@@ -145,7 +152,7 @@ class Sizing(Printed):
     unevenness: float | None
     flywheel: float | None
     bearings: Mapping[str, Bearing]
-    found: Literal["series", "pieces", "rows"]
+    found: Found
     tail: float
 
 
@@ -184,7 +191,7 @@ def sizing(
     if gaps is not None and np.isfinite(table[:, 0]).all():
         # what grows without bound at a change point has no series that ends
         bounded = [
-            not part.size or CycleSeries(part, 0.0, math.tau).tail <= ACROSS
+            not part.size or CycleSeries(part, 0.0, math.tau).last_waves <= ACROSS
             for part in _wrench_parts(table, known)
         ]
         known[1:] &= np.repeat(np.array(bounded, dtype=bool), 3)
@@ -200,14 +207,15 @@ def sizing(
         return np.where(known, _table(evaluate(inputs), names), 0.0) / units
 
     every: Curve
-    found: Literal["series", "pieces", "rows"]
+    found: Found
     if period is None:
         every, found = TimedRows(table / units, rows.input, rows.time), "rows"
     elif len(breaks):
         every, found = pieces(between, table / units, float(rows.input[0]), period, breaks), "pieces"
     else:
         ask = between if evaluate is not None else None
-        every, found = cycle_series(ask, table / units, float(rows.input[0]), period), "series"
+        every = cycle_curve(ask, table / units, float(rows.input[0]), period)
+        found = "series" if isinstance(every, CycleSeries) else "refined"
     torque = every.part(0)
     unit = float(units[0])
     if period is None:

@@ -141,20 +141,22 @@ class LinkageAnswers:
         from sevenbar.kinematics.dynamics.forces import ForceSolver, forces_of
 
         if given:
-            solver = ForceSolver(self.linkage, self.loading(given), circuit.input_column)
+            solver = ForceSolver(self.linkage, self.loading(circuit, given), circuit.input_column)
             return forces_of(solver, circuit, at_rest=at_rest)
         if circuit.input_column not in self._solvers:
-            solver = ForceSolver(self.linkage, self.linkage.loading, circuit.input_column)
+            solver = ForceSolver(self.linkage, self.loading(circuit, given), circuit.input_column)
             self._solvers[circuit.input_column] = solver
         return forces_of(self._solvers[circuit.input_column], circuit, at_rest=at_rest)
 
-    def loading(self, given: Mapping[str, Any]) -> Loading:
-        """What acts on the linkage, with what is given in place of what it has."""
-        if not given:
-            return self.linkage.loading
-        from sevenbar.kinematics.dynamics.loaded import loading_with
+    def loading(self, circuit: Circuit, given: Mapping[str, Any]) -> Loading:
+        """What acts on the linkage, with what is given in place of what it has; its loads go by the input."""
+        loading = self.linkage.loading
+        if given:
+            from sevenbar.kinematics.dynamics.loaded import loading_with
 
-        return loading_with(self.linkage, **given)
+            loading = loading_with(self.linkage, **given)
+        loading.check_input(turns=self.linkage.turns(circuit.input_column))
+        return loading
 
     def sensitivity(self, circuit: Circuit) -> Sensitivity:
         """By every number of the description."""

@@ -15,7 +15,7 @@ from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking
-from sevenbar.forces.sizing import Sizing
+from sevenbar.forces.sizing import WITHHELD, Sizing
 from sevenbar.reporting.shown import Shown, number
 from sevenbar.text.words import retold, say
 
@@ -158,6 +158,18 @@ def no_peak(forces: Forces) -> str:
         return say(
             "no peak: loads that set in or end are not sized on a circuit that passes change points; "
             "see the rows"
+        )
+    if not lost.any() and forces.periodic:
+        if forces.unclosed > WITHHELD:
+            return say(
+                "no peak: next to a limit of {joint} the circuit is not followed to enough digits: power "
+                "closes along the cycle to {value:.1e} of the peak only",
+                joint=forces.driver, value=forces.unclosed,
+            )  # fmt: skip
+        return say(
+            "no peak: next to a limit the {quantity} is too sharp to be followed, and more than a thousandth "
+            "of it may be missed",
+            quantity=say(quantity(forces)),
         )
     if not lost.any():
         return ""
@@ -333,11 +345,7 @@ def shaking_facts(forces: Forces, found: Shaking | None) -> list[tuple[str, str]
 
 def check_values(forces: Forces) -> dict[str, float | None]:
     """The checks of a result, each an error as a part of a peak; `None` where one cannot be made."""
-    work = None
-    if forces.periodic and not forces.at_rest and np.isfinite(forces.power).all():
-        peak = float(np.abs(forces.power).max())
-        work = float(abs(np.mean(forces.power + forces.supplied)) / peak) if peak else 0.0
-    return {"power": forces.balance, "ground": forces.ground_balance, "work": work}
+    return {"power": forces.balance, "ground": forces.ground_balance, "work": forces.work}
 
 
 def check_text(forces: Forces) -> str:
@@ -367,6 +375,12 @@ def found_text(found: Sizing | None, *, law: bool = False) -> str:
             return say(
                 "by a series through all rows, peaks between them; what the rows may miss is {tail:.0e} of "
                 "the peak",
+                tail=found.tail,
+            )
+        case "refined":
+            return say(
+                "by polynomials over pieces of the cycle, the finer the sharper it is; what they may miss is "
+                "{tail:.0e} of the peak",
                 tail=found.tail,
             )
         case "pieces":

@@ -69,8 +69,8 @@ class Answers(ExtentAnswers, Protocol):
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) in the plane of a planar loop (..., 2), `None` for others."""
 
-    def loading(self, given: Mapping[str, Any]) -> Loading:
-        """What acts, with what is given in place of what the linkage has."""
+    def loading(self, circuit: Circuit, given: Mapping[str, Any]) -> Loading:
+        """What acts on one, with what is given in place of what the linkage has."""
 
     def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """On its rows, with what is given in place of what the linkage has."""
@@ -455,7 +455,7 @@ class Circuit(Printed, WithExtents):
         given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
         return self._answers.free_motion(
             self,
-            self._answers.loading(given),
+            self._answers.loading(self, given),
             duration,
             speed=speed,
             energy=energy,
@@ -493,7 +493,7 @@ class Circuit(Printed, WithExtents):
         Source: docs/theory_free.md, (11).
         """
         given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
-        return self._answers.equilibria(self, self._answers.loading(given), torque)
+        return self._answers.equilibria(self, self._answers.loading(self, given), torque)
 
     @ends_here
     def link_motion(self, link: int) -> LinkMotion:

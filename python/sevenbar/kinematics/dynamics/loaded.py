@@ -22,6 +22,7 @@ L = TypeVar("L", bound=Loop)
 def loaded(linkage: L, **acting: Any) -> L:
     """The linkage with what acts, as `loading_with` takes it, in the place of its own."""
     given = loading_with(linkage, **acting)
+    given.check_input(turns=linkage.turns(linkage.drive.joint))
     tables: dict[str, Any] = {}
     if linkage.description:
         forces = dict(linkage.description.get("forces", {}))

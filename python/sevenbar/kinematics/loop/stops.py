@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy.typing as npt
 
 from sevenbar.arrays import finite_array, finite_number, triple
+from sevenbar.curves.turn import is_beyond_a_turn
 from sevenbar.errors import RequestError, shown
 
 Three = tuple[float, float, float]
@@ -76,8 +77,7 @@ def check_range(key: str, low: float, high: float, *, turns: bool) -> tuple[floa
     ends = finite_number(key, low), finite_number(key, high)
     if not ends[0] < ends[1]:
         raise RequestError(f"{key}: the low end is not below the high end; give [low, high]")
-    # a few rounding errors beyond a turn are a turn
-    if turns and ends[1] - ends[0] > math.tau * (1 + 1e-12):
+    if turns and is_beyond_a_turn(*ends):
         degrees = math.degrees(ends[1] - ends[0])
         raise RequestError(f"{key}: {degrees:.6g} deg is more than a turn; a stop is within one")
     return ends

@@ -12,9 +12,9 @@ from sevenbar.arrays import finite_number
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.dynamics.link_bodies import refuse_no_link
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.joint_text import given_number
 from sevenbar.kinematics.loop.stops import Cone, Stops, check_range
 from sevenbar.kinematics.ranges.ball_angle import joint_at
+from sevenbar.text.given import given_number
 from sevenbar.text.units import ANGLES, as_written
 
 L = TypeVar("L", bound=Loop)
