@@ -26,7 +26,7 @@ GOES_ON = {
     "ends": "leaves the circuit, which ends",
     "driven": "with dampers or a motor",
     "meets stops": "meets its stops",
-    "on its stop": "comes to rest on a stop",
+    "on its stop": "rests on a stop",
 }
 
 #: Speeds below this part of the greatest [1], and angles [deg] and lengths below this part of a turn, or of
@@ -83,7 +83,7 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
 
 
 def _fastest(found: FreeMotion) -> float:
-    """A speed of the input beside which rounding is told: the greatest of the rows, and of the whole mass."""
+    """A speed of the input relative to which rounding is 0: the greatest of the rows, and of the whole mass."""
     known = np.abs(found.speed[np.isfinite(found.speed)])
     return float(known.max()) if known.size else 0.0
 
