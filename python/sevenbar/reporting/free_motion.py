@@ -83,7 +83,7 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
 
 
 def _fastest(found: FreeMotion) -> float:
-    """A speed of the input relative to which rounding is 0: the greatest of the rows, and of the whole mass."""
+    """A speed of the input relative to which rounding is 0: the greatest of the rows and the mean one."""
     known = np.abs(found.speed[np.isfinite(found.speed)])
     return float(known.max()) if known.size else 0.0
 
