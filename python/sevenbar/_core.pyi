@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 __all__ = [
     "AGREE",
+    "NO_SIZE",
     "Acting",
     "Carried",
     "CoreError",
@@ -15,7 +16,6 @@ __all__ = [
     "Loop",
     "LoopBatch",
     "LoopWord",
-    "NO_SIZE",
     "Numbers",
     "Product",
     "RawCircuit",
