@@ -215,7 +215,7 @@ def pin(kind, at, axis=(0, 0, 1)):
     return {"kind": kind, "at": list(at), **({"axis": list(axis)} if kind != "S" else {})}
 
 
-O, A, B, C = (0, 0, 0), (1, 0, 0), (4, 2.5, 0), (4, 0, 0)
+GROUND, A, B, C = (0, 0, 0), (1, 0, 0), (4, 2.5, 0), (4, 0, 0)
 SLIDER = (3, 0.5, 0)
 
 #: Lengths of the first three links and the ground, or of the two and the offset.
@@ -224,17 +224,20 @@ CRANKS = [1, math.hypot(2, 0.5), 0.5]
 
 #: Planar loops whose turns are joints of other kinds.
 WITH_BALLS = {
-    "RSSR": ([pin("R", O), pin("S", A), pin("S", B), pin("R", C)], BARS),
-    "RSSR, the rod slopes": ([pin("R", O), pin("S", A), pin("S", (4, 2.5, 1)), pin("R", (4, 0, 3))], BARS),
-    "RRSR": ([pin("R", O), pin("R", A), pin("S", B), pin("R", C)], BARS),
-    "RRRS": ([pin("R", O), pin("R", A), pin("R", B), pin("S", C)], BARS),
-    "RSCR": ([pin("R", O), pin("S", A), pin("C", B), pin("R", C)], BARS),
-    "RSSP": ([pin("R", O), pin("S", A), pin("S", SLIDER), pin("P", SLIDER, (1, 0, 0))], CRANKS),
+    "RSSR": ([pin("R", GROUND), pin("S", A), pin("S", B), pin("R", C)], BARS),
+    "RSSR, the rod slopes": (
+        [pin("R", GROUND), pin("S", A), pin("S", (4, 2.5, 1)), pin("R", (4, 0, 3))],
+        BARS,
+    ),
+    "RRSR": ([pin("R", GROUND), pin("R", A), pin("S", B), pin("R", C)], BARS),
+    "RRRS": ([pin("R", GROUND), pin("R", A), pin("R", B), pin("S", C)], BARS),
+    "RSCR": ([pin("R", GROUND), pin("S", A), pin("C", B), pin("R", C)], BARS),
+    "RSSP": ([pin("R", GROUND), pin("S", A), pin("S", SLIDER), pin("P", SLIDER, (1, 0, 0))], CRANKS),
     "RSSP, the rod slopes": (
-        [pin("R", O), pin("S", A), pin("S", (3, 0.5, 1)), pin("P", (3, 0.5, 1), (1, 0, 0))],
+        [pin("R", GROUND), pin("S", A), pin("S", (3, 0.5, 1)), pin("P", (3, 0.5, 1), (1, 0, 0))],
         CRANKS,
     ),
-    "RRSP": ([pin("R", O), pin("R", A), pin("S", SLIDER), pin("P", (7, 7, 7), (1, 0, 0))], CRANKS),
+    "RRSP": ([pin("R", GROUND), pin("R", A), pin("S", SLIDER), pin("P", (7, 7, 7), (1, 0, 0))], CRANKS),
 }
 
 

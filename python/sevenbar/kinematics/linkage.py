@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.loop.grashof import FourBar
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
+    from sevenbar.kinematics.loop.reason import Reason
     from sevenbar.kinematics.ranges.stopped import Cones, Radii, Ranges
     from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere
 
@@ -272,6 +273,12 @@ class Linkage(Solvable):
 
         first, second = self.end_columns(input, output)
         return four_bar_of(self, self.columns[first], self.columns[second])
+
+    def reason_of(self, motion: Motion) -> Reason | None:
+        """Why a motion of it has no circuit, or which link has no length; see `Motion.reason`."""
+        from sevenbar.kinematics.solvers.why_rigid import reason_of
+
+        return reason_of(motion)
 
     @property
     def idle(self) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -91,6 +92,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         "open_by": motion.search.open_by.tolist(),
         "agree": motion.agree,
         "near_motion": None if motion.near_motion is None else vars(motion.near_motion),
+        "reason": None if motion.reason is None else asdict(motion.reason),
         "circuits": [
             _circuit_dict(circuit)
             | (extents_dict(circuit, linkage) if with_extents else {})

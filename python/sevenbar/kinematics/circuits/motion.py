@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.loop.grashof import FourBar
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
+    from sevenbar.kinematics.loop.reason import Reason
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +109,10 @@ class Solvable(Loop, ABC):
     @abstractmethod
     def as_four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank."""
+
+    @abstractmethod
+    def reason_of(self, motion: Motion) -> Reason | None:
+        """Why a motion of it has no circuit, or which link has no length."""
 
     @abstractmethod
     def mobility(self, *, agree: float | None = None) -> Mobility:
@@ -237,6 +242,23 @@ class Motion(Drawable):
         if eased(agree).motion_type != widest.motion_type:
             agree = MOST_AGREE
         return NearMotion(widest.motion_type, miss, share, agree)
+
+    @cached_property
+    def reason(self) -> Reason | None:
+        """Why a rigid linkage does not move: joints off the plane or the point of the others, by how much.
+
+        Two neighbours that turn about one axis, so that the link between has no length, are named for every
+        linkage. `None` where no reason of these kinds is seen.
+
+        >>> import sevenbar as sb
+        >>> places = {"a": (0, 0, 0), "b": (40, 0, 0), "c": (120, 70, 0), "d": (90, 0, 0)}
+        >>> joints = [{"kind": "R", "name": n, "at": p, "axis": (0, 0, 1)} for n, p in places.items()]
+        >>> joints[2]["axis"] = (0, 0.02, 1)
+        >>> reason = sb.from_axes(joints).motion().reason
+        >>> reason.off[0].joint, round(math.degrees(reason.off[0].by), 3), reason.motion_type
+        ('c', 1.146, 'crank-rocker')
+        """
+        return self.linkage.reason_of(self)
 
     @property
     def four_bar(self) -> FourBar | None:

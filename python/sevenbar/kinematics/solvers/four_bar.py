@@ -12,8 +12,8 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.grashof import FourBar, four_bar_of_links, least, slider_crank_of_links
 from sevenbar.kinematics.loop.rigid import cross, inverse
-from sevenbar.kinematics.solvers.general import Expanded, expanded
-from sevenbar.kinematics.solvers.plane_and_sphere import in_plane, sphere_of
+from sevenbar.kinematics.solvers.general import Expanded, expanded, size_of
+from sevenbar.kinematics.solvers.plane_and_sphere import SAME, in_plane, sphere_of
 
 #: The links of a loop with four joints, where the first and the last are input and output.
 ROLES = ("input link", "coupler", "output link", "ground")
@@ -25,10 +25,9 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     """The four-bar or slider-crank that a loop is, driven by a column and read at another; `None` for others.
 
     A loop is one where four of its joints move in its plane, all turning or one sliding, or where it has four
-    axes through one point. Links are called by what
-    they do where input and output are at the ground, else by numbers.
+    axes through one point. With two of them on one axis, so that the link between has no length, it is none.
+    Links are called by what they do where input and output are at the ground, else by numbers.
 
-        >>> import sevenbar as sb
         >>> found = four_bar_of(sb.load("planar_4r"), "theta_1", "theta_4")
         >>> found.links
         {'input link': 40.0, 'coupler': 100.0, 'output link': 80.0, 'ground': 90.0}
@@ -57,13 +56,17 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     roles = _roles(names, input, output)
     if found is None:
         arcs = [math.atan2(math.hypot(*cross(m[:3, 2], _Z)), float(m[2, 2])) for m in between]
-        return four_bar_of_links("spherical", least(arcs), names, roles)
+        return None if min(arcs) <= SAME else four_bar_of_links("spherical", least(arcs), names, roles)
     normals = _normals(parts, moves, found.plane.normal)
     lengths = [math.hypot(*cross(n, m[:3, 3])) for n, m in zip(normals, between, strict=True)]
+    # two joints on one axis are one
+    shortest = SAME * size_of(loop)
     if "P" not in letters:
-        return four_bar_of_links("planar", lengths, names, roles)
+        return None if min(lengths) <= shortest else four_bar_of_links("planar", lengths, names, roles)
     slide = letters.index("P")
     a, b, c = ((slide + k) % 4 for k in (1, 2, 3))
+    if min(lengths[a], lengths[b]) <= shortest:
+        return None
     # from the pin on the slider to that on the other side of the slide, in the frame of the slide
     to_slide = inverse(between[c])
     apart = between[slide][:3, 3] - to_slide[:3, 3]

@@ -193,7 +193,7 @@ def sphere_of(loop: Loop) -> MotionSphere | None:
     turning = [i for i, letter in enumerate(parts.letters) if letter == "R"]
     balls = [i for i, letter in enumerate(parts.letters) if letter == "S"]
     near = SAME * size_of(loop)
-    centre = _meeting_point(places[turning], axes[turning])
+    centre = meeting_point(places[turning], axes[turning])
     if centre is None:
         return None
     off = np.linalg.norm(np.cross(places[turning] - centre, axes[turning]), axis=1)
@@ -215,7 +215,7 @@ def sphere_of(loop: Loop) -> MotionSphere | None:
     return MotionSphere(np.array(centre), float(drawn) if drawn > near else 1.0)
 
 
-def _meeting_point(places: Floats, axes: Floats) -> Floats | None:
+def meeting_point(places: Floats, axes: Floats) -> Floats | None:
     """Where the two most inclined of several lines (n, 3) come nearest; `None` where all are parallel."""
     pairs = list(combinations(range(len(axes)), 2))
     first, second = max(

@@ -16,6 +16,7 @@ from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Place
 from sevenbar.kinematics.ranges.reach import Reach, reaches, stopped_by, within
 from sevenbar.reporting.facts import meaning
+from sevenbar.reporting.reason_text import reason_text
 from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
 
@@ -80,7 +81,8 @@ class Session:
         self.motion = motion
         self.problem = ""
         if not motion.circuits:
-            self.problem = f"{motion.motion_type}: {meaning(motion) or 'it closes along no circuit'}"
+            why = "; ".join(filter(None, (meaning(motion), reason_text(motion))))
+            self.problem = f"{motion.motion_type}: {why or 'it closes along no circuit'}"
         elif any(np.isnan(circuit.input).any() for circuit in motion):
             self.problem = "its dimensions differ so much in size that its motion is lost in rounding"
         else:

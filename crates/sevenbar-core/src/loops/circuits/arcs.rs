@@ -17,6 +17,9 @@ const MOST_ROUNDS: usize = 32;
 const TRIED: f64 = 1e-3;
 const MOST_FAILED: usize = 16;
 
+/// After so many poses on motions along which a constraint is met twice over the others are taken to be on such motions, too.
+const MOST_ON_DOUBLE: usize = 4;
+
 /// Norm of the screws' inverse from which a place may lie beside a change point.
 const NARROW: f64 = 1e4;
 
@@ -41,6 +44,8 @@ pub(crate) struct Arcs {
     failed: Vec<Configuration>,
     /// How many of the points the arcs end at, where they come by.
     respected: usize,
+    /// Poses on motions along which a constraint is met twice over.
+    on_double: usize,
     /// The most freedoms with which the loop moves out of a pose that was looked at.
     pub finite: usize,
 }
@@ -79,7 +84,10 @@ impl Arcs {
             return Some(known);
         }
         let tried = |at: &Configuration| length(&chain.difference(at, pose)) < TRIED;
-        if self.failed.len() >= MOST_FAILED || self.failed.iter().any(tried) {
+        if self.failed.len() >= MOST_FAILED
+            || self.on_double >= MOST_ON_DOUBLE
+            || self.failed.iter().any(tried)
+        {
             return None;
         }
         let Some(found) = change_points::change_point(chain, pose, wished, stuck) else {
@@ -89,8 +97,9 @@ impl Arcs {
             return None;
         };
         self.finite = self.finite.max(found.finite);
-        // on a surface every pose is like this one
-        if found.finite > 1 && found.rays.is_empty() {
+        self.on_double += usize::from(found.is_on_double);
+        // on a surface every pose is like this one, and on a motion along which a constraint is met twice over
+        if (found.finite > 1 || found.is_on_double) && found.rays.is_empty() {
             return None;
         }
         if let Some(known) = self.at(chain, &found.at) {

@@ -84,6 +84,13 @@ const LEAST_FALL: f64 = 0.042;
 /// On a sphere, a singular value below this times the radius and the greatest singular value counts as zero.
 const NO_FREEDOM: f64 = 1e-4;
 
+/// Ways out whose directions have a greater cosine, either way, are along one line; on a surface directions are tried all round.
+const ONE_LINE: f64 = 0.95;
+
+/// So many on one line are no surface, on which each direction leads to a pose of its own: of the directions on a circle these are
+/// an eighth of a turn.
+const ENOUGH_ON_LINE: usize = 6;
+
 /// A way out of a pose.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ray {
@@ -106,6 +113,9 @@ pub(crate) struct ChangePoint {
     pub cut: f64,
     /// The greatest mobility of the motions out of it: 0 if it is isolated, 2 or more if it lies on a surface.
     pub finite: usize,
+    /// Whether it lies on a motion all of whose poses have as many free directions to first order, and more than one: a constraint is
+    /// met twice over along it.
+    pub is_on_double: bool,
 }
 
 /// The change point at or near a pose, if there is one, judged by the wished columns; `stuck` says that a walk could not go on there.
@@ -122,7 +132,14 @@ pub(super) fn change_point(
         return None;
     }
     let cut = CUT.max(CUT_TIMES * place.passing());
-    let mut found = ChangePoint { at: place.at, rays: Vec::new(), partner: Vec::new(), cut, finite: 0 };
+    let mut found = ChangePoint {
+        at: place.at,
+        rays: Vec::new(),
+        partner: Vec::new(),
+        cut,
+        finite: 0,
+        is_on_double: false,
+    };
     let least = LEAST_RADIUS * cut;
     let mut radii: Vec<f64> = RADII.into_iter().filter(|&r| r > least).collect();
     if radii.is_empty() {
@@ -134,6 +151,7 @@ pub(super) fn change_point(
     for radius in radii {
         let (ways, finite) = ways_out(chain, &place, radius);
         found.finite = finite;
+        found.is_on_double = ways.is_empty() && finite == 1;
         let rays: Vec<Ray> = ways
             .iter()
             .filter_map(|at| ray(chain, &place, at, radius))
@@ -173,6 +191,8 @@ fn opens_with_distance(chain: &Chain, place: &Place, at: &Configuration, radius:
 fn ways_out(chain: &Chain, place: &Place, radius: f64) -> (Vec<Configuration>, usize) {
     let mut found: Vec<Configuration> = Vec::new();
     let mut finite = 0;
+    let mut line: Option<Columns> = None;
+    let mut on_line = 0;
     for (tried, direction) in directions(place).into_iter().enumerate() {
         if tried == MOST_IN_VAIN && found.is_empty() && finite == 0 {
             break;
@@ -191,13 +211,26 @@ fn ways_out(chain: &Chain, place: &Place, radius: f64) -> (Vec<Configuration>, u
             .filter(|&&v| v > NO_FREEDOM * radius * values[0])
             .count();
         let freedoms = chain.columns - rank;
+        if freedoms > 1 && freedoms == place.free.len() {
+            let way = chain.difference(&place.at, &at);
+            let along = |first: &Columns| dot(first, &way).abs() > ONE_LINE * length(first) * length(&way);
+            // a motion along which a constraint is met twice over has as many free directions, and goes one way only
+            if line.as_ref().is_none_or(along) {
+                line = line.or(Some(way));
+                finite = finite.max(1);
+                on_line += 1;
+                if on_line == ENOUGH_ON_LINE && found.is_empty() {
+                    break;
+                }
+                continue;
+            }
+            // one surface accounts for all of them
+            finite = finite.max(freedoms);
+            break;
+        }
         finite = finite.max(freedoms);
         if freedoms == 1 {
             found.push(at);
-        }
-        // one surface accounts for all free directions
-        if freedoms > 1 && freedoms == place.free.len() {
-            break;
         }
     }
     (found, finite)
