@@ -20,7 +20,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.text.amounts import value_of
 from sevenbar.text.expression import cosd, sind
-from sevenbar.text.units import as_written
+from sevenbar.text.units import LENGTHS, as_written
 
 #: A length or an angle as a caller gives it: a number, or a text with a unit.
 Given = float | str
@@ -395,9 +395,13 @@ def sarrus(
     others = head_of(name, length_unit, speed)
     legs = []
     for which, leg in (("first", first), ("second", second)):
-        if len(leg) != 3 or any(len(place) != 2 for place in leg):
-            raise RequestError(f"{which}: {shown(leg)} is no leg; give three places (distance, height)")
-        legs.append([[_number(which, value, "length", others) for value in place] for place in leg])
+        try:
+            ends = [_several(which, place, 2) for place in _several(which, leg, 3)]
+        except RequestError:
+            raise RequestError(
+                f"{which}: {shown(leg)} is no leg; give three places (distance, height)"
+            ) from None
+        legs.append([[_number(which, value, "length", others) for value in place] for place in ends])
     one, other = legs
     names = ("crank", "knee_1", "platform_1", "platform_2", "knee_2", "rocker")
     places = [[0.0, y, z] for y, z in one] + [[x, 0.0, z] for x, z in reversed(other)]
@@ -415,8 +419,11 @@ def _number(name: str, value: Given, kind: Any, others: Mapping[str, Any]) -> fl
     if not isinstance(value, str):
         return finite_number(name, value)
     try:
-        return value_of(value, kind, length_unit=str(others.get("length_unit", "mm")))
-    except (RequestError, KeyError) as error:
+        # one that is no unit is refused by the description
+        unit = others.get("length_unit")
+        known = isinstance(unit, str) and unit in LENGTHS
+        return value_of(value, kind, length_unit=str(unit) if known else "mm")
+    except RequestError as error:
         raise RequestError(f"{name}: {error}") from None
 
 
@@ -440,8 +447,9 @@ def _angle(name: str, value: Given) -> float:
     return as_written(math.degrees(radians))
 
 
-def _several(name: str, values: Sequence[Given], count: int) -> list[Given]:
-    found = [] if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) else list(values)
+def _several(name: str, values: Any, count: int) -> list[Any]:
+    several = values.ndim > 0 if isinstance(values, np.ndarray) else isinstance(values, Sequence)
+    found = list(values) if several and not isinstance(values, str) else []
     if len(found) != count:
         raise RequestError(f"{name}: {shown(values)} does not fit; give {count} numbers")
     return found

@@ -13,7 +13,15 @@ from typing import TYPE_CHECKING, Any
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
-from sevenbar.errors import DescriptionError, SevenbarError, ends_here, read_start, shown
+from sevenbar.errors import (
+    DescriptionError,
+    SevenbarError,
+    check_kind,
+    ends_here,
+    given_path,
+    read_start,
+    shown,
+)
 from sevenbar.kinematics.linkage import Linkage
 
 if TYPE_CHECKING:
@@ -44,7 +52,7 @@ def load(source: str | os.PathLike[str], *, agree: float | None = None) -> Linka
         >>> sb.load("rssr").kind
         'RSSR'
     """
-    path = Path(source)
+    path = given_path("source", source)
     if _in_gallery(source):
         return loads(text(str(source)), str(source)).agreeing(agree)
     content = _read(path)
@@ -66,7 +74,7 @@ def toml_text(source: str | os.PathLike[str]) -> str:
 
 def note_of(source: str | os.PathLike[str]) -> str:
     """How a table was read, in a sentence; empty for other files, and for one that is wrong."""
-    path = Path(source)
+    path = given_path("source", source)
     # of the gallery or not, what is no file is no table
     if not path.is_file():
         return ""
@@ -90,6 +98,8 @@ def loads(content: str, source: str = "text") -> Linkage:
     >>> sb.loads(gallery.text("bennett")).name
     'Bennett linkage'
     """
+    check_kind("content", content, str, "a text; give that of a TOML file, or load(path)")
+    check_kind("source", source, str, "a name; give a text")
     return checked(toml_tables(content, source), source)
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import ends_here, of_extra
+from sevenbar.errors import check_kind, ends_here, given_path, of_extra
 from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
+from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.law import Law
 from sevenbar.text.table import TextTable, read_table
 
@@ -49,8 +49,9 @@ def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | Non
         >>> law.q.round(6).tolist()
         [0.0, 0.785398]
     """
+    check_kind("linkage", linkage, Loop, "a linkage; give one, as load(..) has it")
     column = linkage.input_column(input)
-    table = read_table(Path(path), "an input law")
+    table = read_table(given_path("path", path), "an input law")
     if len(table.rows) > MOST_SAMPLES:
         raise table.wrong(f"has more than {MOST_SAMPLES} rows; give every tenth of them, say")
     places = _places(table, linkage, column)

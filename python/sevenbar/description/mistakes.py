@@ -74,7 +74,7 @@ class FileForms:
         """What is wrong with the key that decides what a table is."""
         known = self.kinds[head]
         given = table.get("kind") if isinstance(table, Mapping) else None
-        what = "is missing; " if given is None else f"{shown(given)} is none; {suggestion(str(given), known)}"
+        what = "is missing; " if given is None else f"{shown(given)} is none; {suggestion(given, known)}"
         return f"{what}give one of {', '.join(known)}"
 
     def _home(self, key: str) -> str:

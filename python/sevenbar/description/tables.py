@@ -19,7 +19,7 @@ from sevenbar.description.table_reader import (
     described,
     described_frame,
 )
-from sevenbar.errors import DescriptionError, shown
+from sevenbar.errors import DescriptionError, given_path, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.grid import grid_of_sheet, grid_of_text
 from sevenbar.text.table import read_bytes, text_of_bytes
@@ -46,7 +46,7 @@ def from_table(
         'double-crank'
     """
     if isinstance(source, str | os.PathLike):
-        path, place = Path(source), str(source)
+        path, place = given_path("source", source), str(source)
         found = description_of_bytes(read_bytes(path, "a linkage"), str(path))
     else:
         found, place = described_frame(source), "table"

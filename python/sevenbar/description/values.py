@@ -167,7 +167,7 @@ def one_of(what: str, known: Mapping[str, object] | tuple[str, ...]) -> tuple[An
         if what == "unit":
             raise refuse(unknown_unit(value, known))
         meant = meant_kind(value) if what == "joint kind" else ""
-        near = f"did you mean '{meant}'? " if meant in known else suggestion(str(value), known)
+        near = f"did you mean '{meant}'? " if meant in known else suggestion(value, known)
         raise refuse(f"{shown(value)} is not a {what}; {near}allowed: {', '.join(known)}")
 
     return BeforeValidator(choose), WithJsonSchema({"enum": list(known)})

@@ -43,10 +43,10 @@ class Body:
 
     def __post_init__(self) -> None:
         mass = finite_number("mass", self.mass)
-        if mass < 0 or (mass == 0 and self.solid != "drawn"):
-            raise RequestError(f"mass: {shown(self.mass)} is not a mass; give kilograms > 0")
         if self.solid is not None:
             check_word("solid", self.solid, SOLIDS)
+        if mass < 0 or (mass == 0 and self.solid != "drawn"):
+            raise RequestError(f"mass: {shown(self.mass)} is not a mass; give kilograms > 0")
         object.__setattr__(self, "mass", mass)
         made = self.solid in ("rod", "drawn")
         if made and (self.centre is not None or self.inertia is not None):

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Booleans, Floats, Integers, Words
-from sevenbar.errors import RequestError, ends_here
+from sevenbar.arrays import Booleans, Floats, Integers, ReadOnly, Words
+from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.closing import Closing, closing
 from sevenbar.forces.loading import Loading
@@ -30,7 +30,7 @@ OPEN = 1e-8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Reaction(Printed):
+class Reaction(ReadOnly, Printed):
     """What the link before a joint puts on the link after it, row by row; the last joint's is the ground.
 
     `joint` and `kind` are its name and kind (R, S ..). `force` (n, 3) [N] and `moment` (n, 3) [N m] about
@@ -68,7 +68,7 @@ class Reaction(Printed):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Forces(Drawable):
+class Forces(ReadOnly, Drawable):
     """What the input has to give, and what the joints bear, on the n rows of a circuit.
 
     `input` [rad, or length], `time` [s], `speed` [rad/s, or length/s], `status` and `branch` are those of the
@@ -135,6 +135,14 @@ class Forces(Drawable):
     def on(self, rows: Rows) -> Forces:
         """The same on some rows, as `forces.on(forces.branch == 1)`: a mask, numbers of rows or a slice."""
         arrays = ("input", "time", "speed", "status", "branch", "torque", "power", "kinetic", "potential")
+        try:
+            ways = np.ndim(self.input[rows])
+        except (IndexError, ValueError, TypeError):
+            ways = 0
+        if ways != 1:
+            raise RequestError(
+                f"rows: {shown(rows)} chooses no rows; give a mask, numbers of rows or a slice"
+            )
         chosen: dict[str, Any] = {
             name: getattr(self, name)[rows] for name in (*arrays, "supplied", "shaking")
         }

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, is_number, spread_array, whole_number
-from sevenbar.errors import NotCoveredError, RequestError, check_word, ends_here, shown
+from sevenbar.errors import NotCoveredError, RequestError, check_kind, check_word, ends_here, shown
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.modes import Modes, Output
@@ -169,7 +168,8 @@ class Linkage(Solvable):
         order = whole_number("order", order, 0, 3, "offered")
         law = None
         constant = 1.0
-        plain = speed is None or isinstance(speed, (float, int, str)) or np.ndim(speed) == 0
+        several = isinstance(speed, Sized) and not isinstance(speed, str)
+        plain = not several or getattr(speed, "ndim", 1) == 0
         if plain and acceleration is None and jerk is None:
             constant = self._speed(speed, column)
         else:
@@ -355,7 +355,7 @@ class Linkage(Solvable):
             >>> [(circuit.motion_type, circuit.turns) for circuit in motion]
             [('crank-rocker', 1), ('double-rocker', 0), ('crank-rocker', 1)]
         """
-        column, output_column, samples, rate = self._asked(samples, input, output, speed)
+        column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
         agreeing = self.agreeing(agree)
         if self._has_closed_form(method):
             found = self._closed_form.motion(column, samples, rate, law)
@@ -390,7 +390,7 @@ class Linkage(Solvable):
             >>> linkage.circuit(linkage.assembly_modes(0.3).q[2]).motion_type
             'double-crank'
         """
-        column, output_column, samples, rate = self._asked(samples, input, output, speed)
+        column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
         values = pose_numbers("pose", pose, self)
         if values.size != len(self.columns):
             raise RequestError(
@@ -401,9 +401,13 @@ class Linkage(Solvable):
         return self.agreeing(agree)._general.circuit(values, column, output_column, samples, rate, law)
 
     def _asked(
-        self, samples: int, input: str | None, output: str | None, speed: float | str | None
+        self, samples: int, input: str | None, output: str | None, speed: float | str | None, law: Law | None
     ) -> tuple[int, int, int, float]:
-        """Columns of input and output, a count, and the speed, once checked."""
+        """Columns of input and output, a count, and the speed, once checked, as the law is."""
+        if law is not None:
+            from sevenbar.kinematics.loop.law import Law
+
+            check_kind("law", law, Law, "a law; make one with sevenbar.Law.of, or load_law")
         column, output_column = self.end_columns(input, output)
         return column, output_column, sample_count("samples", samples), self._speed(speed, column)
 

@@ -313,7 +313,7 @@ def _measure(given: object) -> Measure:
         return Measure(name, "linkage", "ratio", given, about)
     known = [*_NAMED, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
     raise RequestError(
-        f"measure: {shown(given)} is not a measure; {suggestion(str(given), known)}"
+        f"measure: {shown(given)} is not a measure; {suggestion(given, known)}"
         f"give some of {', '.join(known)}, or a function of the Motion"
     )
 

@@ -54,6 +54,6 @@ def flaw(content: bytes, mark: str, part: int, linkages: range) -> str:
 
 
 def checksum(description: Mapping[str, Any]) -> str:
-    """The checksum of a description but for its own."""
+    """The checksum of a description without its own."""
     text = json.dumps({key: value for key, value in description.items() if key != OWN}, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()

@@ -44,9 +44,7 @@ def as_written(value: float) -> float:
 def unknown_unit(given: object, known: Iterable[str]) -> str:
     """The message for a unit that does not exist."""
     known = list(known)
-    return (
-        f"{shown(given)} is not a unit known here; {suggestion(str(given), known)}allowed: {', '.join(known)}"
-    )
+    return f"{shown(given)} is not a unit known here; {suggestion(given, known)}allowed: {', '.join(known)}"
 
 
 def turning_speed(value: object) -> float:

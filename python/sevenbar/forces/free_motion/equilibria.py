@@ -17,7 +17,7 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, ReadOnly
 from sevenbar.curves.along import Along, zero_between
 from sevenbar.forces.free_motion.course import MASS, SAME, EnergyCourse
 from sevenbar.text.printing import Printed
@@ -29,7 +29,7 @@ Kind = Literal["stable", "unstable", "flat", "edge", "on its stop"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Equilibrium(Printed):
+class Equilibrium(ReadOnly, Printed):
     """A place where the linkage can rest.
 
     `input` [rad, or length]; `q` (columns,) all joint values; `kind` is "stable", "unstable", "flat"

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Floats, ReadOnly, finite_array
 from sevenbar.errors import RequestError, ends_here
 from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.text.printing import Drawable
@@ -51,7 +51,7 @@ class FreeStates:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FreeMotion(Drawable):
+class FreeMotion(ReadOnly, Drawable):
     """How a linkage moves by itself from a start, row by row in time.
 
     `time` (n,) [s]; `q`, `dq`, `ddq`, `dddq` (n, columns) [rad, or length, and derivatives by s], unwrapped;
@@ -124,7 +124,7 @@ class FreeMotion(Drawable):
 
         Raises `RequestError` for a time before the start, or after the end of what was solved.
         """
-        asked = finite_array("times", times)
+        asked = finite_array("times", times).copy()
         if asked.size and asked.min() < 0:
             raise RequestError(f"times: {asked.min():g} lies before the start; give times from 0 on")
         knows_all = self.kind in ("rotation", "oscillation", "rest", "asymptotic", "on its stop")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Integers, Words, counted, triple, whole_number
+from sevenbar.arrays import Floats, Integers, ReadOnly, Words, counted, triple, whole_number
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
 from sevenbar.kinematics.circuits.with_extents import ExtentAnswers, WithExtents
@@ -95,7 +95,7 @@ def _given(**acting: object) -> dict[str, object]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Circuit(Printed, WithExtents):
+class Circuit(ReadOnly, Printed, WithExtents):
     """One connected motion, row by row along it.
 
     `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n,
@@ -225,7 +225,10 @@ class Circuit(Printed, WithExtents):
 
         Source: docs/theory_measures.md, (4) to (6).
         """
-        return self._answers.transmission_angle(self)
+        angle = self._answers.transmission_angle(self)
+        if angle is not None:
+            angle.setflags(write=False)
+        return angle
 
     @property
     def mechanical_advantage(self) -> Floats:

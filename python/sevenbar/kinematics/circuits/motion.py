@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, whole_number, within_turn
-from sevenbar.errors import RequestError, of_extra
+from sevenbar.arrays import Floats, ReadOnly, whole_number, within_turn
+from sevenbar.errors import RequestError, of_extra, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.search import NearMotion, Search
 from sevenbar.kinematics.circuits.table import circuit_columns
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class ChangePoint:
+class ChangePoint(ReadOnly):
     """A pose from which the loop can go on in more than one way, or that stands alone.
 
     `q` (columns,) are its joint values [rad in (-pi, pi], or length], `input` that of the input; `circuits`
@@ -159,7 +159,7 @@ class Solvable(Loop, ABC):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Motion(Drawable):
+class Motion(ReadOnly, Drawable):
     """The circuits of a linkage over the whole input range."""
 
     linkage: Solvable
@@ -288,7 +288,7 @@ class Motion(Drawable):
             return self.circuits[index]
         except IndexError:
             count = len(self.circuits)
-            raise IndexError(f"motion: no circuit {index}; it has {count}, counted from 0") from None
+            raise IndexError(f"motion: no circuit {shown(index)}; it has {count}, counted from 0") from None
 
     def __bool__(self) -> bool:
         """A motion without circuits is a result as well."""

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import truth
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.columns import joint_columns, point_column
 from sevenbar.kinematics.loop.geometry import Loop
@@ -15,7 +16,7 @@ from sevenbar.text.units import LENGTHS
 
 def circuit_columns(circuit: Circuit, linkage: Loop, *, si: bool) -> dict[str, npt.NDArray[Any]]:
     """Every row of a circuit by column: degrees and the linkage's unit of length, or radians and metres."""
-    count = len(circuit.time)
+    count, si = len(circuit.time), truth("si", si)
     length, angle = ("m", "rad") if si else (linkage.length_unit, "deg")
     scale = LENGTHS[linkage.length_unit] if si else 1.0
     columns: dict[str, npt.NDArray[Any]] = {

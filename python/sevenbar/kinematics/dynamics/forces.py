@@ -17,7 +17,7 @@ from functools import cached_property, partial
 import numpy as np
 
 import sevenbar._core as _core
-from sevenbar.arrays import Booleans, Floats
+from sevenbar.arrays import Booleans, Floats, truth
 from sevenbar.errors import RequestError
 from sevenbar.forces.acting import Load, Spring, Three
 from sevenbar.forces.bodies import Body
@@ -183,7 +183,7 @@ def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -
     poses = _poses(solver, circuit)
     poses[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
     speeds = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
-    if at_rest:
+    if truth("at_rest", at_rest):
         # rows without rates stay without
         speeds = np.where(np.isfinite(speeds), 0.0, np.nan)
     torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, poses, speeds)

@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Words, finite_array, finite_number, whole_number
+from sevenbar.arrays import Floats, Words, finite_array, finite_number, truth, whole_number
 from sevenbar.errors import RequestError, shown
 from sevenbar.forces.free_motion.conservative import BALANCED
 from sevenbar.forces.free_motion.course import DAMPING, INPUT, MASS, MASSLESS_WAY, EnergyCourse
@@ -43,6 +43,9 @@ Torque = float | tuple[npt.ArrayLike, npt.ArrayLike] | Callable[[float], float]
 
 #: Damping below this part of the mass in a second is none.
 UNDAMPED = 1e-15
+
+#: Farthest start [rad]: the rounding of a greater angle is more than 1e-7.
+FARTHEST = 1e9
 
 #: A start is a dead centre of the input where that moves by less than this along the circuit.
 AT_DEAD_CENTRE = 1e-9
@@ -109,6 +112,8 @@ class FreeCourse:
         if value is None:
             raise RequestError("start: is missing; give the input at which the pass `branch` is entered")
         number = joint_number("start", value, self.linkage, self.path.input)
+        if self.turns and abs(number) > FARTHEST:
+            raise RequestError(f"start: {number:.6g} rad is lost in its turns; give an angle of fewer")
         places = self.path.places(number, turns=self.turns)
         if not places.size:
             raise RequestError(f"start: the circuit has no pose at {self.shown(number)}; {self._inputs}")
@@ -557,6 +562,7 @@ def _as_law(found: FreeMotion) -> Law:
 
 def _as_table(linkage: Solvable, found: FreeMotion, si: bool) -> dict[str, npt.NDArray[Any]]:
     """Columns by names that end in their units."""
+    si = truth("si", si)
     length, angle = ("m", "rad") if si else (found.length_unit, "deg")
     scale = LENGTHS[found.length_unit] if si else 1.0
     rates = (found.q, found.dq, found.ddq)

@@ -57,8 +57,8 @@ def loading_with(
     given = Loading(
         own.gravity if gravity is None else triple("gravity", gravity),
         own.bodies if bodies is None else bodies,  # type: ignore[arg-type]
-        own.loads if loads is None else tuple(loads),
-        own.springs if springs is None else tuple(springs),
+        own.loads if loads is None else loads,  # type: ignore[arg-type]
+        own.springs if springs is None else springs,  # type: ignore[arg-type]
     )
     for link in given.bodies:
         refuse_no_link("bodies", link, linkage)
