@@ -31,7 +31,7 @@ TRIED, TAKEN = 8, 3
 #: squares are more than so many times those of the designs that are kept.
 ONE, HOPELESS = 1e-3, 2.0
 
-#: Looks that miss a room by more are taken last; those whose costs, rooms and numbers differ by less are one.
+#: First ones that miss a room by more are taken last; those whose costs, rooms and numbers differ by less are one.
 MISSED, SAME = -0.01, 1e-7
 
 #: A cost below which a task is met exactly: no other start can be better.
@@ -190,7 +190,7 @@ def _search(
 
 
 def _unlike(model: TaskModel, tried: Sequence[Solved]) -> list[Solved]:
-    """First looks without those that came to the same: the same numbers, costs and rooms."""
+    """Without those that lead to the same: the same numbers, costs and rooms."""
     kept: list[Solved] = []
     for look in tried:
         ways = [look.cost, look.room, *look.seed.values / model.loop.scales]

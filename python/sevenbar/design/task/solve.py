@@ -25,6 +25,7 @@ from sevenbar.design.task.optimum import (
     Conditions,
     conditions,
     cost_of,
+    heights,
     lack_of,
     multipliers,
     rooms_of,
@@ -250,14 +251,14 @@ def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: fl
 
 
 def _lowered(problem: TaskProblem) -> Floats:
-    def heights(z: Floats) -> MinimaxValues | None:
+    def valued(z: Floats) -> MinimaxValues | None:
         here = problem.at(z)
         return None if here is None else MinimaxValues(*heights(problem, here), *rooms_of(problem, z, here))
 
     start, worth = problem.within(problem.start), WORTH[problem.model.task.goal]
     if _exactly(problem.model):
-        return lowered(heights, start, worth=worth, mended=lambda z: _kept(problem, z))
-    return lowered(heights, start, worth=worth)
+        return lowered(valued, start, worth=worth, mended=lambda z: _kept(problem, z))
+    return lowered(valued, start, worth=worth)
 
 
 def _exactly(model: TaskModel) -> bool:

@@ -19,7 +19,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.numbers.gradients import MeasureSlopes, nearest, poses_at
 from sevenbar.kinematics.numbers.sensitivity import Numbers
-from sevenbar.kinematics.numbers.word import Carried, Product
+from sevenbar.kinematics.numbers.word import Carried
 from sevenbar.kinematics.solvers.general import expanded
 from sevenbar.kinematics.transmission.angle import Coupling, coupling_of, sine_and_cosine, ways
 from sevenbar.kinematics.transmission.axes import COMPLEX_STEP, Axes
@@ -54,11 +54,7 @@ class AxisPoints:
         own = tuple(dict.fromkeys((coupling.at, *coupling.free, coupling.output, coupling.input)))
         if "H" in {parts.letters[part] for part in own}:
             return None
-        points = []
-        for part in own:
-            column = parts.columns[part]
-            count = next(k for k, step in enumerate(numbers.word.steps, 1) if column in step.columns)
-            points += [Carried(count, Product(), None, (0.0, 0.0, end)) for end in (0.0, numbers.size)]
+        points = [point for part in own for point in numbers.word.axis(parts.columns[part], numbers.size)]
         none = np.empty((len(parts.letters), 0, 3))
         return AxisPoints(coupling, Axes(parts, none, none), own, tuple(points), numbers.size)
 
