@@ -316,7 +316,7 @@ WRONG = {
     "most of no want": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'most'\nwant = 3\nmost = 1\n", "task.toml: must[1].want: 3 is not a want; give its place, 1 to 1"),
     "most of a figure": ("planar.toml", FREE + "[[want]]\nkind = 'figure'\nname = 'swing'\nvalue = 60\n[[must]]\nkind = 'most'\nwant = 1\nmost = 1\n", "task.toml: must[1].want: is a figure; bound it by a must"),
     "most below 0": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'most'\nwant = 1\nmost = '-1mm'\n", "task.toml: must[1].most: -0.025 is no bound; give a number > 0"),
-    "transmission of a planar 4R": ("planar.toml", FREE + PATH + "[limits]\ntransmission = 30\n", "task.toml: limits.transmission: its angle is that of an RSSR"),
+    "transmission of a Bennett": ("bennett", '[free]\nlength_1 = "40:60"\n' + FUNCTION + "[limits]\ntransmission = 30\n", "task.toml: limits.transmission: no transmission angle is defined from theta_1 to theta_4"),
     "a transmission angle of 100 deg": ("rssr", '[free]\nL1 = "200:300"\n' + FUNCTION + "[limits]\ntransmission = 100\n", "task.toml: limits.transmission: 100 deg is no limit"),
     "unknown motion type": ("planar.toml", FREE + PATH + "[limits]\nmotion_type = 'crank'\n", "task.toml: limits.motion_type: 'crank' is not a motion type; allowed: crank-rocker"),
     "size turned round": ("planar.toml", FREE + PATH + "[limits]\nsize = '90:10'\n", "task.toml: limits.size: 90:10 is no range of lengths"),
@@ -346,12 +346,11 @@ def test_each_mistake_has_its_place_and_what_to_do(tmp_path, case):
 def test_all_mistakes_come_at_once(tmp_path):
     found = message(
         tmp_path,
-        '[free]\nlength_1 = "90:80"\n' + PATH.replace('"P"', '"Q"') + "[limits]\ntransmission = 30\n",
+        '[free]\nlength_1 = "90:80"\n' + PATH.replace('"P"', '"Q"'),
     )
     assert [line.split(": ")[1] for line in found.splitlines()] == [
         "free.length_1",
         "want[1].point",
-        "limits.transmission",
     ]
 
 

@@ -26,7 +26,13 @@ class TaskGroup(typer.core.TyperGroup):
 
 
 def task(
-    file: Annotated[Path, typer.Argument(metavar="TASK", help="A task file (TOML).")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="TASK",
+            help="A task file (TOML); [limits] transmission holds for any loop that has the angle.",
+        ),
+    ],
     designs: options.Designs = 5,
     starts: options.Starts = 256,
     seed: options.Seed = 0,

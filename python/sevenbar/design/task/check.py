@@ -85,6 +85,8 @@ class TaskDesign:
     placing: Placing
     values: Floats
     solution: Solved
+    #: The least transmission angle of the whole circuit [rad]; `None` where the loop has none.
+    transmission: float | None = None
 
     @property
     def draft(self) -> Draft:
@@ -128,8 +130,19 @@ def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
         )
         for one, w in zip(model.wanted, ways, strict=True)
     )
-    cost, optimality, seed = solution.cost, solution.optimality, solution.seed
-    return TaskDesign(candidate, cost, optimality, met, figures, room, seed.placing, seed.values, solution)
+    extremes = motion.circuits[candidate.circuit].transmission
+    return TaskDesign(
+        candidate,
+        solution.cost,
+        solution.optimality,
+        met,
+        figures,
+        room,
+        solution.seed.placing,
+        solution.seed.values,
+        solution,
+        None if extremes is None else extremes.lowest,
+    )
 
 
 def _opened(model: TaskModel, solution: Solved, draft: Draft) -> tuple[Linkage, list[list[_Way]]]:

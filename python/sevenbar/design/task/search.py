@@ -31,6 +31,9 @@ TRIED, TAKEN = 8, 3
 #: squares are more than so many times those of the designs that are kept.
 ONE, HOPELESS = 1e-3, 2.0
 
+#: First ones that miss a room by more are taken last; those whose costs, rooms and numbers differ by less are one.
+MISSED, SAME = -0.01, 1e-7
+
 #: A cost below which a task is met exactly: no other start can be better.
 EXACT = 1e-11
 
@@ -67,6 +70,8 @@ class DesignsFound:
     refusals: tuple[Refusal, ...]
     starts: int
     unfinished: str
+    #: Starts that ended since they had measured all the motions that one may.
+    ended_early: int = 0
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
@@ -141,7 +146,9 @@ def designed(
         begun = seeds(model, starts, seed, course.step, [np.asarray(v, dtype=float) for v in given])
         _search(model, begun, count, course, kept, refusals)
     best = distinct(kept, scale_free=False, count=count)
-    return DesignsFound(task, named(task, best), tuple(refusals), len(begun), course.unfinished)
+    return DesignsFound(
+        task, named(task, best), tuple(refusals), len(begun), course.unfinished, model.effort.ended
+    )
 
 
 def _search(
@@ -165,8 +172,15 @@ def _search(
         course.step(f"nearest: {nearest:.3g}" if look else "")
         if _worst(kept, count) < EXACT:
             return
-    tried.sort(key=lambda look: (look.room < -0.01, look.cost))
+    tried.sort(key=lambda look: (look.hopeless, look.room < MISSED, look.cost))
+    tried = _unlike(model, tried)
+    # starts in a row of a task with measures that led to nothing new
+    idle, known = 0, (0, math.inf)
     for i, look in enumerate(tried):
+        now = len(distinct(kept, scale_free=False)), kept[0].cost if kept else math.inf
+        idle, known = (idle + 1, known) if now[0] <= known[0] and not now[1] < known[1] else (0, now)
+        if idle > TAKEN * count and model.searched.names:
+            break
         if len(distinct(kept, scale_free=False)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
             break
         _take(model, look, count, kept, refusals)
@@ -174,6 +188,17 @@ def _search(
         several = len(model.task.wants) > 1 and bool(kept)
         best = f"best: {kept[0].cost:.3g}" if several else least_error([one.candidate for one in kept])
         course.step(best, done=int(course.done < course.total))
+
+
+def _unlike(model: TaskModel, tried: Sequence[Solved]) -> list[Solved]:
+    """Without those that lead to the same: the same numbers, costs and rooms."""
+    kept: list[Solved] = []
+    for look in tried:
+        ways = [look.cost, look.room, *look.seed.values / model.loop.scales]
+        known = ([one.cost, one.room, *one.seed.values / model.loop.scales] for one in kept)
+        if not any(np.allclose(ways, other, rtol=SAME, atol=SAME) for other in known):
+            kept.append(look)
+    return kept
 
 
 def _worst(kept: Sequence[TaskDesign], count: int) -> float:

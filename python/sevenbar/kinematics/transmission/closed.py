@@ -65,6 +65,39 @@ def closed_extremes(coupling: Coupling, axes: Axes, circuit: Circuit, row: int) 
     return _ends([(0.0, x) for x in ends] + [one for one in _stationary(course, low) if low < one[1] < high])
 
 
+def turns_in_line(coupling: Coupling, letters: str) -> bool:
+    """Whether a coupling is that of a four-bar or a slider-crank with an input that may turn."""
+    own = "".join(letters[i] for i in (coupling.input, coupling.free[0], coupling.at))
+    return coupling.kind != "ball" and own == "RRR" and letters[coupling.output] in "RP"
+
+
+def turning_cosines(coupling: Coupling, axes: Axes) -> Floats | None:
+    """The cosines (2,) of the angle where the input is in line with the ground, by the axes of a pose.
+
+    For a slide as the output where it is square to that. Beyond 1 the input does not turn so far. Analytic in
+    the axes, real or complex. `None` for other loops, and for a slide as the input.
+    """
+    letters, pin, near, output = axes.parts.letters, coupling.at, coupling.free[0], coupling.output
+    if not turns_in_line(coupling, letters):
+        return None
+    around = (coupling.input, near, pin, output)
+    if coupling.normal is None:
+        own = [axes.directions[i, 0] for i in around]
+        pairs = list(zip(own, [*own[1:], own[0]], strict=True))
+        cosines = [(u * v).sum() for u, v in pairs]
+        sines = [np.sqrt((w * w).sum()) for w in (np.cross(u, v) for u, v in pairs)]
+        apart = [cosines[0] * cosines[3] + way * sines[0] * sines[3] for way in (1, -1)]
+        return np.array([(x - cosines[1] * cosines[2]) / (sines[1] * sines[2]) for x in apart])
+    normal = axes.directions[coupling.input, 0]
+    places = [axes.places[i, 0] for i in around]
+    flat = [place - (place * normal).sum() * normal for place in places]
+    a, b, c, d = (np.sqrt(((v - u) ** 2).sum()) for u, v in zip(flat, [*flat[1:], flat[0]], strict=True))
+    if letters[output] == "P":
+        offset = ((flat[2] - flat[0]) * np.cross(normal, axes.directions[output, 0])).sum()
+        return np.array([(offset + way * a) / b for way in (-1, 1)])
+    return np.array([(b * b + c * c - (d + way * a) ** 2) / (2 * b * c) for way in (-1, 1)])
+
+
 def _round(course: Course, start: float, turns: int) -> Extremes:
     """Those of an input that turns fully, at inputs of its turns from the start on."""
     ends = _ends(_stationary(course, start))

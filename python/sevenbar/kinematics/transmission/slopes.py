@@ -19,10 +19,11 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.numbers.gradients import MeasureSlopes, nearest, poses_at
 from sevenbar.kinematics.numbers.sensitivity import Numbers
-from sevenbar.kinematics.numbers.word import Carried, Product
+from sevenbar.kinematics.numbers.word import Carried
 from sevenbar.kinematics.solvers.general import expanded
 from sevenbar.kinematics.transmission.angle import Coupling, coupling_of, sine_and_cosine, ways
 from sevenbar.kinematics.transmission.axes import COMPLEX_STEP, Axes
+from sevenbar.kinematics.transmission.closed import turning_cosines, turns_in_line
 
 #: 1 - sin of a transmission angle of 90 degrees, and the angle of one of 0: there it has a kink, or is kept.
 RIGHT_ANGLE, DEAD = 1e-12, 1e-7
@@ -53,11 +54,7 @@ class AxisPoints:
         own = tuple(dict.fromkeys((coupling.at, *coupling.free, coupling.output, coupling.input)))
         if "H" in {parts.letters[part] for part in own}:
             return None
-        points = []
-        for part in own:
-            column = parts.columns[part]
-            count = next(k for k, step in enumerate(numbers.word.steps, 1) if column in step.columns)
-            points += [Carried(count, Product(), None, (0.0, 0.0, end)) for end in (0.0, numbers.size)]
+        points = [point for part in own for point in numbers.word.axis(parts.columns[part], numbers.size)]
         none = np.empty((len(parts.letters), 0, 3))
         return AxisPoints(coupling, Axes(parts, none, none), own, tuple(points), numbers.size)
 
@@ -80,20 +77,51 @@ class AxisPoints:
             s, c = np.abs(sine) / whole, np.abs(cosine) / whole
         return s, c, c[:, None] * turned, -s[:, None] * turned
 
+    @property
+    def in_line(self) -> bool:
+        """Whether `turning` has it."""
+        return turns_in_line(self.coupling, self.axes.parts.letters)
+
+    def turning(self, places: Floats, by: Floats) -> tuple[Floats, Floats] | None:
+        """The two angles [rad] (2,) at which that of an input that turns fully is extreme, and slopes (2, k).
+
+        By the points of a pose. Where the input does not turn they go on below zero, as cosines do beyond 1.
+        `None` for loops that have them in no closed form.
+        """
+        cosines = turning_cosines(self.coupling, self._axes(places))
+        if cosines is None:
+            return None
+        stepped = [
+            turning_cosines(self.coupling, self._axes(places + 1j * COMPLEX_STEP * own))
+            for own in np.moveaxis(by, -1, 0)
+        ]
+        slopes = np.array(stepped).reshape(-1, 2).T.imag / COMPLEX_STEP
+        sizes = np.abs(cosines)
+        inside = np.clip(sizes, 0.0, 1.0)
+        sines = np.maximum(np.sqrt(1 - inside**2), DEAD)
+        falls = -np.sign(cosines)[:, None] * slopes
+        angles = np.where(sizes < 1, np.arccos(inside), 1 - sizes)
+        return angles, np.where((sizes < 1)[:, None], falls / sines[:, None], falls)
+
     def _made(self, places: Floats) -> tuple[Floats, Floats]:
         """Sine and cosine times |u| |w| at places (n, points, 3), real or complex."""
+        axes = self._axes(places)
+        if self.coupling.normal is None:
+            return sine_and_cosine(self.coupling, *ways(self.coupling, axes))
+        letters = self.axes.parts.letters
+        turning = next((part for part in self.parts if letters[part] == "R"), None)
+        normal = self.coupling.normal if turning is None else axes.directions[turning]
+        return sine_and_cosine(self.coupling, *ways(self.coupling, axes, normal))
+
+    def _axes(self, places: Floats) -> Axes:
+        """The axes of the coupling's joints by places (n, points, 3); others are zero."""
         letters = self.axes.parts.letters
         shape = (len(letters), len(places), 3)
         feet, directions = np.zeros((2, *shape), dtype=places.dtype)
         for k, part in enumerate(self.parts):
             feet[part] = places[:, 2 * k]
             directions[part] = (places[:, 2 * k + 1] - places[:, 2 * k]) / self.size
-        axes = Axes(self.axes.parts, directions, feet)
-        if self.coupling.normal is None:
-            return sine_and_cosine(self.coupling, *ways(self.coupling, axes))
-        turning = next((part for part in self.parts if letters[part] == "R"), None)
-        normal = self.coupling.normal if turning is None else directions[turning]
-        return sine_and_cosine(self.coupling, *ways(self.coupling, axes, normal))
+        return Axes(self.axes.parts, directions, feet)
 
 
 def transmission_slopes(numbers: Numbers, circuit: Circuit) -> tuple[MeasureSlopes, ...]:
