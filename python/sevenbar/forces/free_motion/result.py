@@ -59,7 +59,7 @@ class FreeMotion(Drawable):
     `kind`: "rotation" and "oscillation" repeat themselves with `period` [s]; "rest"; "asymptotic" comes ever
     nearer to an unstable equilibrium; "passing" repeats nothing within the duration; "ends" leaves an open
     circuit, rows after that are NaN; "driven" has dampers or a motor; "meets stops" is thrown back by stops
-    of the linkage, or leaves them again; "on its stop" comes to rest there, `rest` says where. `impacts` are
+    of the linkage, or leaves them again; "on its stop" ends at rest there, `rest` says where. `impacts` are
     the stops that are met, where nothing is lost those of the first period. `turning` are the points where
     it turns back, found, not sampled. `energy_error` is the greatest change of energy over the rows that
     nothing explains, as a part of the greatest kinetic energy: NaN for what has dampers or a motor, which has

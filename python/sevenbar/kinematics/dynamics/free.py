@@ -191,7 +191,7 @@ class FreeCourse:
 
     @cached_property
     def home(self) -> float:
-        """Where it starts if nothing else is said: the drawn pose, else the first row, within the stops."""
+        """Where it starts by default: the drawn pose, else the first row, within the stops."""
         numbers, circuit = self.solver.numbers, self.circuit
         if not self._found:
             raise RequestError(
