@@ -18,7 +18,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.dynamics.forces import ForceSolver, PosedRows, forces_on
 from sevenbar.kinematics.paths.circuit_path import CircuitPath
 from sevenbar.kinematics.paths.covered_path import closed_on, covered_path
-from sevenbar.kinematics.paths.stretch import Stretch, used_stretch
+from sevenbar.kinematics.paths.stretch import Stretch, laps_by_range, used_stretch
 
 #: At an end where the input moves by less than this [rad, or shares of the size] it is at a dead centre.
 AT_DEAD_CENTRE = 1e-7
@@ -104,13 +104,16 @@ class _Part:
 
     @cached_property
     def _input(self) -> Floats:
-        """The input at these places, on the lap of the circuit's rows."""
+        """The input at these places, on the lap of its range, else of the circuit's rows."""
         values = self._inputs_at(self._places)[0]
         if not self.solver.linkage.turns(self.path.input):
             return values
         known = self.circuit.input[np.isfinite(self.circuit.input)]
-        low = min(values[0], values[-1])
-        return np.asarray(values - math.tau * math.floor((low - known.min()) / math.tau + SAME))
+        middle = (values[0] + values[-1]) / 2
+        values = values - math.tau * math.floor((middle - known.min()) / math.tau + SAME)
+        start, end = float(values[0]), float(values[-1])
+        turns = laps_by_range(self.solver.linkage, self.path.input, self.stretch, start, end)
+        return np.asarray(values + math.tau * turns)
 
     @cached_property
     def _turns_back(self) -> bool:
