@@ -60,12 +60,14 @@ def test_the_hood_is_held_open_by_its_stop_and_says_with_what_moment() -> None:
     found = circuit.free_motion("2s", start="65deg")
     assert (found.kind, found.rest.stop) == ("on its stop", "range of g1")
     assert abs(found.rest.holding) == pytest.approx(27.8998621747, rel=1e-9)
-    assert np.all(found.input == found.input[0]) and not found.ddq.any()
+    assert np.all(found.input == found.input[0])
+    assert not found.ddq.any()
     fall = circuit.free_motion("10s")
     # let go in the drawn pose it opens by itself
     assert fall.input[0] == pytest.approx(0, abs=1e-12)
     assert fall.input[-1] == pytest.approx(math.radians(65), abs=1e-12)
-    assert fall.input.max() < math.radians(65) + 1e-12 and fall.input.min() > -1e-12
+    assert fall.input.max() < math.radians(65) + 1e-12
+    assert fall.input.min() > -1e-12
     assert fall.energy_error < 1e-12
     assert {place.kind for place in circuit.equilibria()} == {"on its stop"}
 
@@ -111,7 +113,8 @@ def test_a_pendulum_falls_to_its_stop_and_rebounds_by_the_part_of_its_speed() ->
         assert found.energy_error < 1e-10
         if part == 0.0:
             # at the bottom nothing presses it on: it rests there in its own equilibrium
-            assert len(found.impacts) == 1 and not found.speed[-1]
+            assert len(found.impacts) == 1
+            assert not found.speed[-1]
         else:
             second = found.impacts[1]
             assert second.speed == pytest.approx(part * first.speed, rel=1e-9)
@@ -154,7 +157,8 @@ def test_a_damped_wheel_meets_its_stop_by_the_closed_form(part: float) -> None:
     assert found.impacts[0].speed == pytest.approx(1 - way * rate, rel=1e-9)
     back = part * (1 - way * rate) / rate
     assert found.input[-1] == pytest.approx(way - back, abs=1e-3)
-    assert math.isnan(found.energy_error) and found.difference < 1e-9
+    assert math.isnan(found.energy_error)
+    assert found.difference < 1e-9
 
 
 def test_a_motor_that_turns_round_takes_it_off_the_stop_when_its_torque_does() -> None:
@@ -164,7 +168,8 @@ def test_a_motor_that_turns_round_takes_it_off_the_stop_when_its_torque_does() -
     found = circuit.free_motion("3.5 s", start=0.0, torque_by_time=table, bodies=WHEEL, samples=36)
     expected = np.where(found.time > 2, (found.time - 2) ** 3 / 12.0, 0.0)
     assert found.input == pytest.approx(expected, abs=1e-9)
-    assert found.kind == "meets stops" and found.rest is None
+    assert found.kind == "meets stops"
+    assert found.rest is None
     held = circuit.free_motion("3 s", start=0.0, torque_by_time=([0, 1], [-1, -2]), bodies=WHEEL)
     assert (held.kind, held.rest.holding, held.rest.holding_unit) == (
         "on its stop",
@@ -191,7 +196,8 @@ def test_the_seam_of_a_circuit_is_no_stop() -> None:
     circuit = wheel(-30, 40)
     spring = sb.Spring(joint=circuit.columns[0], stiffness=3.0)
     found = circuit.free_motion("5 s", start="-20deg", bodies=WHEEL, springs=[spring])
-    assert found.kind == "oscillation" and not found.impacts
+    assert found.kind == "oscillation"
+    assert not found.impacts
     assert found.period == pytest.approx(math.tau * math.sqrt(2.0 / 3.0), rel=1e-9)
     assert np.degrees([one.input for one in found.turning]) == pytest.approx([-20, 20])
     turned = circuit.free_motion("5 s", start="340deg", bodies=WHEEL, springs=[spring])
@@ -224,7 +230,8 @@ def test_a_stop_on_another_joint_holds_with_its_own_moment() -> None:
     circuit = linkage.stopped(ranges={rocker: stop}).motion(samples=36).circuits[0]
     acting: dict[str, Any] = {"bodies": {2: sb.Body(1.0, solid="rod")}, "gravity": (0, -9.81, 0)}
     held = [place for place in circuit.equilibria(**acting) if place.stop]
-    assert held and all(place.stop == f"range of {rocker}" for place in held)
+    assert held
+    assert all(place.stop == f"range of {rocker}" for place in held)
     step = 1e-5
     for place in held:
         ends = [

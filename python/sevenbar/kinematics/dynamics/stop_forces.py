@@ -63,9 +63,10 @@ class _Part:
         part = Part(start, end, self.stretch.first_stop, self.stretch.last_stop)
         if self._turns_back:
             # without bound there, and the rows say so
-            return replace(whole.on(self._rows), part=part)
+            return replace(whole.on(self._rows), part=part, between=None, _parts=None)
         if self._passes_change_point:
-            return replace(whole.on(self._rows), part=part, through_change_points=True)
+            own = whole.on(self._rows)
+            return replace(own, part=part, between=None, _parts=None, through_change_points=True)
         low, high = sorted((start, end))
         inside = np.unique(self._unwrapped(self.circuit.input[self._rows]))
         near = SAME * (high - low)
