@@ -148,7 +148,7 @@ def test_a_damped_wheel_meets_its_stop_by_the_closed_form(part: float) -> None:
     joint = circuit.columns[0]
     spring = sb.Spring(joint=joint, damping=0.5)
     found = circuit.free_motion(
-        "30 s", start=0.0, speed=1.0, restitution=part, bodies=WHEEL, springs=[spring], samples=50
+        "80 s", start=0.0, speed=1.0, restitution=part, bodies=WHEEL, springs=[spring], samples=50
     )
     # J w' = -c w: the way is J w / c (1 - e^-ct/J)
     rate, way = 0.5 / 2.0, math.radians(60)

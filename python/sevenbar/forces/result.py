@@ -258,14 +258,14 @@ class Forces(Drawable):
                 "evens it; leave it out"
             )
         period = self._way
-        passes = len(np.unique(self.branch))
+        passes = 1 if self.part is not None else len(np.unique(self.branch))
         if period is None and passes > 1 and np.isfinite(self.torque).all():
             raise RequestError(
                 "sizing: the rows are passes one after the other; give one, as in "
                 "forces.on(forces.branch == 0).sizing()"
             )
         breaks = self._breaks
-        if self.part is not None and self.through_change_points:
+        if self.part is not None and self.between is None:
             return None
         if self.through_change_points and len(breaks):
             return None

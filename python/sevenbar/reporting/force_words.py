@@ -190,10 +190,11 @@ def no_peak(forces: Forces) -> str:
             "no peak: loads that set in or end are not sized on a circuit that passes change points; "
             "see the rows"
         )
-    if not lost.any():
+    turns_back = forces.part is not None and forces.between is None
+    if not (lost.any() or turns_back):
         return ""
     dead = np.unique(forces.status[lost])
-    if "dead-centre" in dead:
+    if "dead-centre" in dead or turns_back:
         return say(
             "no peak: the {quantity} grows without bound at the dead centres of {joint}; "
             "drive it by a law that stays off them, or another joint",

@@ -136,7 +136,7 @@ class _Part:
         """Inputs on the lap of the stretch."""
         if not self.solver.linkage.turns(self.path.input):
             return inputs
-        low = min(self._input[0], self._input[-1]) - SAME
+        low = float(self._input.min()) - SAME
         return np.asarray(low + (inputs - low) % math.tau)
 
     def _place(self, inputs: Floats) -> Floats:
@@ -190,7 +190,8 @@ class _Part:
         inputs = self._unwrapped(circuit.input[within])
         low, high = sorted((self._input[0], self._input[-1]))
         if self._turns_back:
-            low, high = float(self._input.min()), float(self._input.max())
+            # dead centres with it
+            low, high = float(self._input.min()) - SAME, float(self._input.max()) + SAME
             nearest = np.array([np.abs(self._off(self._on_path, pose)).argmin() for pose in own])
             off = self._off(self._on_path[nearest], own)
             near = off < 2 * float(np.diff(self._places).max())

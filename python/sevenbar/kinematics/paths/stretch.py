@@ -69,14 +69,17 @@ def laps_by_range(linkage: Solvable, column: int, one: Stretch, start: float, en
     given = linkage.stops.ranges.get(name)
     if given is None or not linkage.turns(column):
         return 0
-    turns = [
+    turns: list[float] = [
         (limit - value) / math.tau
         for value, stop in ((start, one.first_stop), (end, one.last_stop))
         if f"{RANGE_OF}{name}" in stop.split(", ")
         for limit in given
     ]
+    if not turns:
+        return 0
     # of both limits the one that is met
-    return round(min(turns, key=lambda turn: abs(turn - round(turn)))) if turns else 0
+    off = [abs(turn - round(turn)) for turn in turns]
+    return round(turns[off.index(min(off))])
 
 
 def place_of(path: CircuitPath, numbers: Numbers, q: Floats, *, turns: bool) -> tuple[float, float]:
