@@ -274,11 +274,12 @@ KINDS: dict[str, Callable[..., Figure]] = {
 def figure_of_kind(forces: Forces, kind: str, options: dict[str, Any]) -> Figure:
     """The figure of a kind; raises `RequestError` for another."""
     check_word("kind", kind, KINDS, "a figure of forces")
-    return KINDS[kind](forces, **options)
+    return KINDS[kind](forces.within_stops or forces, **options)
 
 
 def small(forces: Forces) -> Figure | None:
     """A small picture of the torque, for notebooks."""
+    forces = forces.within_stops or forces
     if not np.isfinite(forces.torque).any():
         return None
     with styled():
@@ -293,6 +294,9 @@ def small(forces: Forces) -> Figure | None:
 
 def sizing_of(forces: Forces) -> Sizing | None:
     """The sizing of rows that have one: not of several passes one after the other."""
+    own = forces.within_stops
+    if own is not forces:
+        return None if own is None else own.sizing()
     if forces.period is None and len(np.unique(forces.branch)) > 1:
         return None
     return forces.sizing()

@@ -18,12 +18,16 @@ from sevenbar.forces.closing import Closing, closing
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.sizing import WITHHELD, Sizing, sizing
 from sevenbar.text.printing import Drawable, Printed
+from sevenbar.text.units import LENGTHS
 
 #: Which rows are meant: a mask, their numbers or a slice.
 Rows = Booleans | npt.NDArray[np.integer[Any]] | slice
 
 #: The components of a reaction, in the frame of its joint, whose z is the joint's axis.
 COMPONENTS = ("Mx", "My", "Mz", "Fx", "Fy", "Fz")
+
+#: An input nearer to an end of a part than this share of it is the end.
+AT_END = 1e-9
 
 #: A component is open if a wrench that nothing determines has more than this part of its length in it.
 OPEN = 1e-8
@@ -65,6 +69,24 @@ class Reaction(ReadOnly, Printed):
         """The same on some rows: a mask, numbers of rows or a slice."""
         arrays = ("force", "moment", "at", "axes", "known", "known_values")
         return replace(self, **{name: getattr(self, name)[rows] for name in arrays})
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a circuit between stops: from an input to an input [rad, or length], and what ends it."""
+
+    start: float
+    end: float
+    first_stop: str
+    last_stop: str
+
+    def moves(self, input: float, driver: str) -> bool:
+        """Whether an input is an end of it at which another stop than the range of the driver is met."""
+        near = AT_END * abs(self.end - self.start)
+        return any(
+            abs(input - end) <= near and stop not in ("", f"range of {driver}")
+            for end, stop in ((self.start, self.first_stop), (self.end, self.last_stop))
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -114,6 +136,40 @@ class Forces(ReadOnly, Drawable):
     through_change_points: bool = False
     #: The same at any inputs (m,) of the cycle, where it is periodic.
     between: Callable[[Floats], Forces] | None = field(default=None, repr=False)
+    #: The part between stops that the rows are: from stop to stop, both ends among them.
+    part: Part | None = None
+    #: The same on the parts between stops, and the number of that on which the linkage is used; where it has
+    #: stops and they end the circuit.
+    _parts: Callable[[], tuple[tuple[Forces, ...], int] | None] | None = field(default=None, repr=False)
+
+    @cached_property
+    def _found_parts(self) -> tuple[tuple[Forces, ...], int] | None:
+        return None if self._parts is None else self._parts()
+
+    @property
+    def parts(self) -> tuple[Forces, ...]:
+        """The forces on each part of the circuit between its stops, on these passes: rows from stop to stop.
+
+        These forces alone where no stop ends the circuit; none where it has no pose within them.
+        """
+        if self._found_parts is None:
+            return (self,)
+        passes = np.unique(self.branch)
+        return tuple(one for one in self._found_parts[0] if np.isin(one.branch, passes).all())
+
+    @property
+    def within_stops(self) -> Forces | None:
+        """The forces on the part between stops on which the linkage is used; `None` where there is none.
+
+        That of the drawn pose, else of the first row, else the first. Of rows that no stop ends these forces.
+        """
+        if self._found_parts is None:
+            return self
+        every, used = self._found_parts
+        parts = self.parts
+        if every and any(one is every[used] for one in parts):
+            return every[used]
+        return parts[0] if parts else None
 
     @property
     def unit(self) -> str:
@@ -121,9 +177,34 @@ class Forces(ReadOnly, Drawable):
         return "N" if self.slides else "N m"
 
     @property
+    def metre(self) -> float:
+        """What a unit of the input's way is in metres where it slides, else 1."""
+        return LENGTHS[self.length_unit] if self.slides else 1.0
+
+    @property
     def period(self) -> float | None:
         """The way of the input [rad] round a periodic cycle, negative where it falls from row to row."""
         return float(self.input[1] - self.input[0]) * len(self.input) if self.periodic else None
+
+    @property
+    def _way(self) -> float | None:
+        """The way of the input [rad, or length] along a periodic cycle, or from stop to stop."""
+        if self.part is None or self.between is None:
+            return self.period
+        return self.part.end - self.part.start
+
+    @property
+    def _breaks(self) -> tuple[float, ...]:
+        """Inputs [rad, or length] between which all is smooth: of a part its beginning is one."""
+        if self.part is None:
+            turns = 0 if self.period is None else round(abs(self.period) / math.tau)
+            return self.loading.breaks(turns=turns)
+        low, high = sorted((self.part.start, self.part.end))
+        corners = self.loading.breaks(turns=1)
+        if not self.slides:
+            laps = range(math.ceil((high - low) / math.tau) + 1)
+            corners = tuple(low + (x - low) % math.tau + math.tau * k for x in corners for k in laps)
+        return (self.part.start, *(x for x in corners if low < x < high))
 
     @property
     def even_speed(self) -> float:
@@ -148,6 +229,10 @@ class Forces(ReadOnly, Drawable):
         }
         if len(chosen["input"]) != len(self.input):
             chosen["periodic"] = False
+            passes = np.isin(self.branch, chosen["branch"])
+            if len(chosen["input"]) != passes.sum():
+                # rows that were chosen, not passes with their stops
+                chosen |= {"_parts": None, "part": None}
         return replace(
             self,
             reactions={name: reaction.on(rows) for name, reaction in self.reactions.items()},
@@ -174,27 +259,39 @@ class Forces(ReadOnly, Drawable):
 
         Source: docs/theory_forces.md, (10) to (16).
         """
-        period = self.period
-        passes = len(np.unique(self.branch))
+        own = self.within_stops
+        if own is not self:
+            return None if own is None else own.sizing(unevenness=unevenness)
+        if self.part is not None and unevenness is not None:
+            raise RequestError(
+                "unevenness: stops end the motion, so that the input does not go round and no flywheel "
+                "evens it; leave it out"
+            )
+        period = self._way
+        passes = 1 if self.part is not None else len(np.unique(self.branch))
         if period is None and passes > 1 and np.isfinite(self.torque).all():
             raise RequestError(
                 "sizing: the rows are passes one after the other; give one, as in "
                 "forces.on(forces.branch == 0).sizing()"
             )
-        breaks = () if period is None else self.loading.breaks(turns=round(abs(period) / math.tau))
+        breaks = self._breaks
+        if self.part is not None and self.between is None:
+            return None
         if self.through_change_points and len(breaks):
             return None
         found = sizing(
             self,
             period=period,
-            speed=self.even_speed if period is not None else None,
+            speed=self.even_speed * self.metre if period is not None else None,
             evaluate=None if self.through_change_points else self.between,
             breaks=breaks,
             gaps=self.status == "change-point" if self.through_change_points else None,
             unevenness=unevenness,
         )
-        withheld = found is not None and max(found.tail, self.unclosed) > WITHHELD
-        return None if withheld else found
+        if found is None or max(found.tail, self.unclosed) > WITHHELD:
+            return None
+        # between stops force by length unit, in joule
+        return found if self.part is None else replace(found, fluctuation=self.metre * found.fluctuation)
 
     @property
     def balance(self) -> float | None:

@@ -23,7 +23,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Curve, Peak, mean
 from sevenbar.curves.cycle_series import CycleSeries
-from sevenbar.curves.pieces import cycle_curve
+from sevenbar.curves.pieces import cycle_curve, pieces
 from sevenbar.curves.timed_rows import TimedRows
 from sevenbar.forces.sizing import WITHHELD
 from sevenbar.text.printing import Printed
@@ -59,22 +59,25 @@ def shaking_of(
     period: float | None,
     time: Floats,
     evaluate: Callable[[Floats], Floats] | None = None,
+    ends: tuple[float, float] | None = None,
 ) -> Shaking:
     """The shaking of rows (n, 6) at `input` (n,) [rad, or length] and `time` (n,) [s].
 
     `period` is the way of the input round a closed cycle at constant speed; `None` for a law's rows. With
     `evaluate`, which gives rows (m, 6) at inputs (m,) of such a cycle, rows are added until peaks and mean
-    values do not depend on them.
+    values do not depend on them; in its place `ends` are the inputs of both stops of a part.
     """
     sizes = np.array([np.abs(wrench[:, part]).max(initial=0.0) for part in (MOMENT, FORCE)])
     # moments and forces as parts of their greatest, so that rounding is one size in all
     units = np.repeat(np.where(sizes > 0, sizes, 1.0), 3)
     both: Curve
     orders = np.zeros((0, 6))
-    if period is None:
+    ask = None if evaluate is None else lambda inputs: np.asarray(evaluate(inputs) / units)
+    if ends is not None and ask is not None:
+        both = pieces(ask, wrench / units, ends[0], ends[1] - ends[0], (ends[0],))
+    elif period is None:
         both = TimedRows(wrench / units, input, time)
     else:
-        ask = None if evaluate is None else lambda inputs: np.asarray(evaluate(inputs) / units)
         both = cycle_curve(ask, wrench / units, float(input[0]), period)
         waves = (
             both if isinstance(both, CycleSeries) else CycleSeries(wrench / units, float(input[0]), period)
@@ -92,14 +95,19 @@ def shaking_of(
 def shaking_along(forces: Forces) -> Shaking | None:
     """The shaking of the rows of forces, of a cycle between them, too.
 
-    `None` where a row has none, or too much of it may be missed between the rows.
+    Between stops that of the part on which the linkage is used. `None` where a row has none, or too much of
+    it may be missed between the rows.
     """
+    own = forces.within_stops
+    if own is not forces:
+        return None if own is None else shaking_along(own)
     if not len(forces.input) or not np.isfinite(forces.shaking).all():
         return None
     between = None if forces.through_change_points else forces.between
     evaluate = None if between is None else lambda inputs: between(inputs).shaking
+    ends = None if forces.part is None or between is None else (forces.part.start, forces.part.end)
     period, time = forces.period, forces.time
-    found = shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate)
+    found = shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate, ends=ends)
     return None if max(found.tail, forces.unclosed) > WITHHELD else found
 
 

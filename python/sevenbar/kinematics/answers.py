@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -142,11 +143,31 @@ class LinkageAnswers:
 
         if given:
             solver = ForceSolver(self.linkage, self.loading(circuit, given), circuit.input_column)
-            return forces_of(solver, circuit, at_rest=at_rest)
-        if circuit.input_column not in self._solvers:
+        elif (kept := self._solvers.get(circuit.input_column)) is not None:
+            solver = kept
+        else:
             solver = ForceSolver(self.linkage, self.loading(circuit, given), circuit.input_column)
             self._solvers[circuit.input_column] = solver
-        return forces_of(self._solvers[circuit.input_column], circuit, at_rest=at_rest)
+        found = forces_of(solver, circuit, at_rest=at_rest)
+        if not self.linkage.stops.stops or math.isnan(circuit.speed):
+            # a law, and a free motion, have their own rows
+            return found
+        return replace(found, _parts=cache(partial(self._parts, solver, circuit, found, at_rest)))
+
+    def _parts(
+        self, solver: ForceSolver, circuit: Circuit, whole: Forces, at_rest: bool
+    ) -> tuple[tuple[Forces, ...], int] | None:
+        """The forces between stops, and which part is used; `None` where no stop ends the circuit."""
+        from sevenbar.kinematics.dynamics.stop_forces import parts_of
+        from sevenbar.kinematics.paths.circuit_path import NotFollowedError
+
+        try:
+            found = self._stretches(circuit)
+        except NotFollowedError:
+            return None
+        if found is None or any(one.is_whole for one in found):
+            return None
+        return parts_of(solver, circuit, found, whole, at_rest=at_rest)
 
     def loading(self, circuit: Circuit, given: Mapping[str, Any]) -> Loading:
         """What acts on the linkage, with what is given in place of what it has; its loads go by the input."""

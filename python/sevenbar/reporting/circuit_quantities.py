@@ -169,6 +169,8 @@ class _Texts:
     def peak_torque(self, circuit: Circuit) -> Texts:
         """The greatest torque or force of the input."""
         peaks = self.peaks(circuit)
+        if peaks is None and self.motion.linkage.stops.stops and not circuit.allowed.spans:
+            return (say("none"),)
         if peaks is None:
             return ("-" if circuit.goes_round else say("no bound at limits"),)
         return (f"{number(peaks.torque.value)} @ {self.place(peaks.torque.input, whole=True)}",)

@@ -19,9 +19,11 @@ from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 @text_of.register(Forces)
 def _(forces: Forces) -> str:
+    forces = forces.within_stops or forces
     place = force_words.Places(forces)
     mass = sum(body.mass for body in forces.bodies.values())
     facts = [("acts", force_words.acting_text(forces.loading)), ("mass", f"{mass:.6g} kg" if mass else "")]
+    facts += force_words.part_facts(forces)
     lost = int((~np.isfinite(forces.torque)).sum())
     peak = ""
     if lost < len(forces.torque):

@@ -151,8 +151,39 @@ def acting_facts(forces: Forces, sliding: Sequence[str]) -> list[tuple[str, str]
     return [*lines, (say("gravity"), pull)]
 
 
+def part_facts(forces: Forces, others: Sequence[Forces] = ()) -> list[tuple[str, str]]:
+    """The part between stops that the rows are, and the other ones with their peaks."""
+    if forces.part is None:
+        return []
+    facts = [(say("within the stops"), part_text(forces))]
+    for one in others:
+        found = one.sizing()
+        peak = no_peak(one) if found is None else Places(one).at(found.peak_torque, one.unit)
+        text = say("{part}, pass {number}: {peak}", part=part_text(one), number=int(one.branch[0]), peak=peak)
+        facts.append((say("another part"), text))
+    return facts
+
+
+def part_text(forces: Forces) -> str:
+    """A part between stops: "crank from 0.000° to 65.000° (range of crank)"."""
+    part, place = forces.part, Places(forces)
+    assert part is not None
+    by = say("; ").join(dict.fromkeys(retold(stop) for stop in (part.first_stop, part.last_stop) if stop))
+    return say(
+        "{joint} from {low} to {high} ({stop})",
+        joint=forces.driver, low=place(part.start), high=place(part.end), stop=by,
+    )  # fmt: skip
+
+
 def no_peak(forces: Forces) -> str:
     """Why no peaks are found; empty where there are."""
+    own = forces.within_stops
+    if own is None:
+        return say("no peak: no pose of this circuit is within the stops")
+    if own is not forces:
+        return no_peak(own)
+    if forces.part is not None and forces.through_change_points:
+        return say("no peak: what passes change points from stop to stop is not sized; see the rows")
     lost = ~np.isfinite(forces.torque)
     if forces.through_change_points and forces.periodic and forces.loading.breaks(turns=1):
         return say(
@@ -171,10 +202,11 @@ def no_peak(forces: Forces) -> str:
             "of it may be missed",
             quantity=say(quantity(forces)),
         )
-    if not lost.any():
+    turns_back = forces.part is not None and forces.between is None
+    if not (lost.any() or turns_back):
         return ""
     dead = np.unique(forces.status[lost])
-    if "dead-centre" in dead:
+    if "dead-centre" in dead or turns_back:
         return say(
             "no peak: the {quantity} grows without bound at the dead centres of {joint}; "
             "drive it by a law that stays off them, or another joint",
@@ -223,7 +255,8 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     average = _mean_power(forces, found)
     mean = say("mean {power} W", power=number(average))
     facts.append(("", say("{mean}: the linkage drives its input", mean=mean) if average < 0 else mean))
-    steady = say("torque") if forces.periodic else say("power")
+    # from stop to stop as round a cycle
+    steady = say("torque") if forces.periodic or forces.part is not None else say("power")
     energy = say(
         "fluctuates by {energy} J about a drive of constant {steady}: fastest at {fastest}, "
         "slowest at {slowest}",
@@ -243,9 +276,10 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
 
 def _mean_power(forces: Forces, found: Sizing) -> float:
     """The mean power [W] by time, 0 where it is rounding."""
-    if forces.periodic:
+    if forces.periodic or forces.part is not None:
         # at one speed that of the mean torque, which sees change points and jumps between the rows
-        mean, most = forces.even_speed * found.mean_torque, abs(forces.even_speed * found.peak_torque.value)
+        speed = forces.even_speed * forces.metre
+        mean, most = speed * found.mean_torque, abs(speed * found.peak_torque.value)
     else:
         mean, most = float(shares_of(forces.time) @ forces.power), float(np.abs(forces.power).max())
     return 0.0 if abs(mean) < 1e-12 * most else mean
@@ -366,8 +400,8 @@ def check_text(forces: Forces) -> str:
     return say("{checks} of the peak", checks=say(", ").join(made)) if made else ""
 
 
-def found_text(found: Sizing | None, *, law: bool = False) -> str:
-    """How peaks were found; `law`: the rows are those of one."""
+def found_text(found: Sizing | None, *, law: bool = False, part: bool = False) -> str:
+    """How peaks were found; `law`: the rows are those of one; `part`: from stop to stop."""
     if found is None:
         return ""
     match found.found:
@@ -383,6 +417,8 @@ def found_text(found: Sizing | None, *, law: bool = False) -> str:
                 "{tail:.0e} of the peak",
                 tail=found.tail,
             )
+        case "pieces" if part:
+            return say("from stop to stop, peaks within, at the stops, and where loads set in or end")
         case "pieces":
             return say("between the inputs at which loads set in or end, peaks within and at them")
         case _ if law:

@@ -14,6 +14,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.curves.curve import Peak
+from sevenbar.errors import RequestError
 from sevenbar.forces.counterweights import Balance
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking, shaking_along
@@ -42,15 +43,27 @@ class CircuitForces:
     sizing: Sizing | None
     shaking: Shaking | None
     balance: Balance | None = None
+    #: The forces on the other parts between stops.
+    others: tuple[Forces, ...] = ()
 
     @classmethod
     def of(
         cls, motion: Motion, circuit: Circuit, forces: Forces, *, unevenness: float | None = None
     ) -> CircuitForces:
-        """With the sizing for an unevenness."""
-        found = forces.sizing(unevenness=unevenness)
-        shakes = forces.bodies and not forces.at_rest
-        return cls(motion, circuit, forces, found, shaking_along(forces) if shakes else None)
+        """With the sizing for an unevenness, on the part between stops on which the linkage is used.
+
+        Raises `RequestError` where no pose is within the stops.
+        """
+        own = forces.within_stops
+        if own is None:
+            raise RequestError(
+                f"circuit: no pose of circuit {circuit.index} is within the stops of the linkage; take "
+                "another circuit, or leave a [[stop]] out"
+            )
+        found = own.sizing(unevenness=unevenness)
+        shakes = own.bodies and not own.at_rest
+        others = tuple(one for one in forces.parts if one is not own)
+        return cls(motion, circuit, own, found, shaking_along(own) if shakes else None, others=others)
 
 
 def forces_report(
@@ -115,12 +128,14 @@ def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     forces, linkage = found.forces, found.motion.linkage
     sliding = [column for column in linkage.columns if not linkage.turns(column)]
     facts = [(say("circuit"), drive_fact(found)), *force_words.acting_facts(forces, sliding)]
+    facts += force_words.part_facts(forces, found.others)
     facts += force_words.drive_facts(forces, found.sizing)
     facts += force_words.shaking_facts(forces, found.shaking)
     facts += force_words.spin_facts(forces)
     facts += force_words.open_facts(forces)
     facts += force_words.unbounded_facts(forces, found.sizing)
-    facts.append((say("found"), force_words.found_text(found.sizing, law=found.motion.law is not None)))
+    how = {"law": found.motion.law is not None, "part": forces.part is not None}
+    facts.append((say("found"), force_words.found_text(found.sizing, **how)))
     facts.append((say("checks"), force_words.check_text(forces)))
     facts.append((say("rows"), f"{len(forces.status)}: {rows_text(forces.status)}"))
     return [(label, said) for label, said in facts if said]
@@ -273,6 +288,7 @@ def as_dict(found: CircuitForces) -> dict[str, Any]:
             "at_rest": forces.at_rest,
         },
         "circuit": found.circuit.index,
+        "within_stops": None if forces.part is None else vars(forces.part),
         "rows": len(forces.status),
         "acting": _acting(forces),
         **numbers(found),

@@ -26,7 +26,7 @@ GOES_ON = {
     "ends": "leaves the circuit, which ends",
     "driven": "with dampers or a motor",
     "meets stops": "meets its stops",
-    "on its stop": "rests on a stop",
+    "on its stop": "ends at rest on a stop",
 }
 
 #: Speeds below this part of the greatest [1], and angles [deg] and lengths below this part of a turn, or of
@@ -38,7 +38,7 @@ MOST_MET = 4
 
 
 def _angle(value: float, *, turns: bool, unit: str, scale: float = 0.0) -> str:
-    """A value with its unit; what is rounding beside a `scale` is 0."""
+    """A value with its unit; what is rounding compared with a `scale` is 0."""
     value = 0.0 if abs(value) <= ROUNDING * scale else value
     return f"{math.degrees(value):.9g} deg" if turns else f"{value:.9g} {unit}"
 
@@ -83,7 +83,7 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
 
 
 def _fastest(found: FreeMotion) -> float:
-    """A speed of the input relative to which rounding is 0: the greatest of the rows and the mean one."""
+    """The greatest speed of the input on the rows, compared with which others may be rounding."""
     known = np.abs(found.speed[np.isfinite(found.speed)])
     return float(known.max()) if known.size else 0.0
 
@@ -120,7 +120,7 @@ def _stop_facts(
 
 
 def holding_text(place: Equilibrium) -> str:
-    """What a stop gives at rest; "-" where its joint stands still there."""
+    """What a stop gives at rest; "-" where its joint does not move there."""
     if not math.isfinite(place.holding):
         return "-"
     return f"{abs(place.holding):.4g} {place.holding_unit}"

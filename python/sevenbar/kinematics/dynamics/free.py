@@ -34,7 +34,13 @@ from sevenbar.kinematics.loop.joint_text import joint_number, joint_speed
 from sevenbar.kinematics.loop.law import Law
 from sevenbar.kinematics.paths.circuit_path import HAS, CircuitPath
 from sevenbar.kinematics.paths.covered_path import covered_path
-from sevenbar.kinematics.paths.stretch import Stretch, first_place, stopped_column, used_stretch
+from sevenbar.kinematics.paths.stretch import (
+    Stretch,
+    first_place,
+    laps_by_range,
+    stopped_column,
+    used_stretch,
+)
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.units import LENGTHS
 
@@ -217,6 +223,17 @@ class FreeCourse:
                 return replace(one, begin=one.begin + off, end=one.end + off)
         return None
 
+    def laid(self, one: Stretch) -> Stretch:
+        """A stretch on the lap of the range that ends it, of where it is at home, or of the rows."""
+        gain, length = float(self.path.gain[self.path.input]), self.path.length
+        if not gain:
+            return one
+        own = one.held(self.home, self.path)
+        off = self.on_rows_lap(one.begin) - one.begin if own is None else self.home - own
+        first, last = self._input(one.begin + off), self._input(one.end + off)
+        off += laps_by_range(self.linkage, self.path.input, one, first, last) * math.tau / gain * length
+        return replace(one, begin=one.begin + off, end=one.end + off)
+
     def cut(self, energy: EnergyCourse, one: Stretch) -> tuple[EnergyCourse, float]:
         """The course on a stretch, and where on the path it begins; the whole one where no stop ends it."""
         if one.is_whole:
@@ -304,8 +321,7 @@ def equilibria_of(
         )
     found: list[Equilibrium] = []
     for one in stretches:
-        off = course.on_rows_lap(one.begin) - one.begin
-        own, begin = course.cut(energy, replace(one, begin=one.begin + off, end=one.end + off))
+        own, begin = course.cut(energy, course.laid(one))
         inner = [_equilibrium(course, own, *each, begin=begin) for each in resting_places(own)]
         first, last = (
             [_on_stop(course, own, begin, place, stop, None, 0.0)]

@@ -60,6 +60,28 @@ def stopped_column(stop: str) -> str | None:
     return names[0].removeprefix(RANGE_OF) if names else None
 
 
+def laps_by_range(linkage: Solvable, column: int, one: Stretch, start: float, end: float) -> int:
+    """By how many whole turns the inputs of a stretch are moved, so that they are as its range has them.
+
+    That of the input's `column`; 0 for one that slides, and where other stops end the stretch.
+    """
+    name = linkage.columns[column]
+    given = linkage.stops.ranges.get(name)
+    if given is None or not linkage.turns(column):
+        return 0
+    turns: list[float] = [
+        (limit - value) / math.tau
+        for value, stop in ((start, one.first_stop), (end, one.last_stop))
+        if f"{RANGE_OF}{name}" in stop.split(", ")
+        for limit in given
+    ]
+    if not turns:
+        return 0
+    # of both limits the one that is met
+    off = [abs(turn - round(turn)) for turn in turns]
+    return round(turns[off.index(min(off))])
+
+
 def place_of(path: CircuitPath, numbers: Numbers, q: Floats, *, turns: bool) -> tuple[float, float]:
     """The place of a pose (columns,) of the word, and how far [rad, or shares of the size] it is off.
 
