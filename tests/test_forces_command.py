@@ -177,6 +177,11 @@ def test_a_file_without_masses_gets_an_example(tmp_path: Path) -> None:
         (("--branch", "1"), "--branch: 1 is not a pass of circuit 0; give 0"),
         (("--joint", "cranck", "--out", "forces"), "--joint: no joint 'cranck'"),
         (("--unevenness", "0"), "unevenness: 0.0 is not an unevenness; give a part of the mean speed > 0"),
+        (
+            ("--unevenness", "3"),
+            "unevenness: 3.0 is not an unevenness; give a part of the mean speed > 0 and up to 2",
+        ),
+        (("--counterweights", "1,1"), "--counterweights: '1' is given twice; leave one out"),
         (("--unevenness", "0.1", "--speed", "0"), "--unevenness: at rest nothing fluctuates"),
         (("--unevenness", "1%"), "--unevenness: '1%' is not a number; give one, as in 0.01"),
         (("--agree", "little"), "--agree: 'little' is not a number; give one, as in 1e-5"),
@@ -380,3 +385,26 @@ def test_a_start_without_a_unit_is_in_degrees(tmp_path: Path) -> None:
     assert plain.returncode == 0, plain.stderr
     assert plain.stdout == degrees.stdout
     assert "--from: 'wide' is no value of theta_1, which turns; give" in mistake(*free, "wide")
+
+
+def test_a_sizing_prints_units_and_places_as_the_report_does() -> None:
+    circuit = sb.load("rssr_press").motion(samples=90).circuits[0]
+    forces = circuit.forces()
+    found = forces.sizing()
+    assert found is not None
+    text = str(found)
+    assert re.search(r"peak torque +-?[\d.]+ N m @ [\d.]+°", text)
+    assert re.search(r"rms, mean +[\d.]+ N m, -?[\d.]+ N m", text)
+    assert re.search(r"peak power +[\d.]+ W @ [\d.]+°", text)
+    assert re.search(r"radial +peak [\d.]+ N @ [\d.]+°", str(found.bearings["crank"]))
+
+
+def test_a_cone_takes_a_text_with_its_unit_wherever_it_is_given() -> None:
+    assert sb.Cone("45 deg") == sb.Cone(math.pi / 4)
+    rssr = sb.load("rssr")
+    assert (
+        rssr.stopped(cones={"ball_a": sb.Cone("45 deg")}).stops
+        == rssr.stopped(cones={"ball_a": "45 deg"}).stops
+    )
+    with pytest.raises(sb.errors.RequestError, match="cone: '45' is not a number with a unit that fits"):
+        sb.Cone("45")

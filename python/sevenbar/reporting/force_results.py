@@ -13,7 +13,7 @@ from sevenbar.forces.result import COMPONENTS, Forces, Reaction
 from sevenbar.forces.shaking import Shaking
 from sevenbar.forces.sizing import Bearing, Burden, Sizing
 from sevenbar.reporting import force_words
-from sevenbar.reporting.shown import number, rows_text
+from sevenbar.reporting.shown import Shown, number, rows_text
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 
@@ -81,8 +81,10 @@ def _(reaction: Reaction) -> str:
 
 @text_of.register(Sizing)
 def _(found: Sizing) -> str:
-    def at(peak: Peak | None) -> str:
-        return "" if peak is None else f"{number(peak.value)} at {peak.input:.6g}"
+    def at(peak: Peak | None, unit: str) -> str:
+        return "" if peak is None else f"{number(peak.value)} {unit} @ {place(peak.input)}"
+
+    place = Shown(found.input_unit)
 
     most, in_plane = (
         [
@@ -98,10 +100,13 @@ def _(found: Sizing) -> str:
     return lines(
         "Sizing of a drive",
         [
-            ("peak torque", at(found.peak_torque)),
-            ("rms, mean", f"{number(found.rms_torque)}, {number(found.mean_torque)}"),
-            ("peak power", f"{at(found.peak_power)} W"),
-            ("braking power", at(found.braking_power) + " W" * (found.braking_power is not None)),
+            ("peak force" if found.unit == "N" else "peak torque", at(found.peak_torque, found.unit)),
+            (
+                "rms, mean",
+                f"{number(found.rms_torque)} {found.unit}, {number(found.mean_torque)} {found.unit}",
+            ),
+            ("peak power", at(found.peak_power, "W")),
+            ("braking power", at(found.braking_power, "W")),
             ("fluctuation", f"{number(found.fluctuation)} J"),
             ("flywheel", flywheel),
             ("peak forces", ", ".join(most)),
@@ -114,10 +119,11 @@ def _(found: Sizing) -> str:
 @text_of.register(Bearing)
 def _(bearing: Bearing) -> str:
     facts = []
+    place = Shown(bearing.input_unit)
     for part, unit in force_words.LISTED.items():
         burden: Burden = getattr(bearing, part)
         if math.isfinite(burden.peak.value):
-            peak = f"peak {number(burden.peak.value)} {unit} at {burden.peak.input:.6g}"
+            peak = f"peak {number(burden.peak.value)} {unit} @ {place(burden.peak.input)}"
             facts.append((part.replace("_", " "), f"{peak}, cubic mean {number(burden.mean_cube)} {unit}"))
         elif part != "in_plane":
             facts.append((part, force_words.OPEN))
@@ -127,8 +133,9 @@ def _(bearing: Bearing) -> str:
 @text_of.register(Shaking)
 def _(found: Shaking) -> str:
     both = (("force", found.force, found.rms_force, "N"), ("moment", found.moment, found.rms_moment, "N m"))
+    place = Shown(found.input_unit)
     facts = [
-        (word, f"peak {number(peak.value)} {unit} at {peak.input:.6g}, rms {number(rms)} {unit}")
+        (word, f"peak {number(peak.value)} {unit} @ {place(peak.input)}, rms {number(rms)} {unit}")
         for word, peak, rms, unit in both
     ]
     return lines("Shaking", facts)

@@ -12,6 +12,7 @@ from sevenbar.curves.curve import Peak
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body
+from sevenbar.forces.heard import heard
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking
@@ -205,10 +206,10 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     if found is None:
         return [(what, no_peak(forces))]
     place = Places(forces)
-    # a mean that is rounding is 0
-    average = found.mean_torque
-    average = 0.0 if abs(average) < 1e-12 * abs(found.peak_torque.value) else average
-    rms, mean = f"{number(found.rms_torque)} {unit}", f"{number(average)} {unit}"
+    if not found.peak_torque.value:
+        idle = [(what, f"0 {unit}"), *([] if forces.at_rest else [(say("power"), "0 W")])]
+        return [*idle, *_flywheel_facts(found)]
+    rms, mean = f"{number(found.rms_torque)} {unit}", f"{number(found.mean_torque)} {unit}"
     facts = [
         (what, say("peak {value}", value=place.at(found.peak_torque, unit))),
         ("", say("rms {rms}, mean {mean}", rms=rms, mean=mean)),
@@ -230,15 +231,19 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
         energy=number(found.fluctuation), steady=steady, fastest=place(found.fastest),
         slowest=place(found.slowest),
     )  # fmt: skip
-    facts.append((say("energy"), energy))
-    if found.flywheel is not None:
-        inertia = number(found.flywheel)
-        wheel = say(
-            "{inertia} kg m^2 at the input for an unevenness of {unevenness:g}",
-            inertia=inertia, unevenness=found.unevenness,
-        )  # fmt: skip
-        facts.append((say("flywheel"), wheel))
-    return facts
+    if found.fluctuation:
+        facts.append((say("energy"), energy))
+    return facts + _flywheel_facts(found)
+
+
+def _flywheel_facts(found: Sizing) -> list[tuple[str, str]]:
+    if found.flywheel is None:
+        return []
+    wheel = say(
+        "{inertia} kg m^2 at the input for an unevenness of {unevenness:g}",
+        inertia=number(found.flywheel), unevenness=found.unevenness,
+    )  # fmt: skip
+    return [(say("flywheel"), wheel)]
 
 
 def _mean_power(forces: Forces, found: Sizing) -> float:
@@ -248,7 +253,7 @@ def _mean_power(forces: Forces, found: Sizing) -> float:
         mean, most = forces.even_speed * found.mean_torque, abs(forces.even_speed * found.peak_torque.value)
     else:
         mean, most = float(shares_of(forces.time) @ forces.power), float(np.abs(forces.power).max())
-    return 0.0 if abs(mean) < 1e-12 * most else mean
+    return heard(mean, most)
 
 
 def spin_facts(forces: Forces) -> list[tuple[str, str]]:

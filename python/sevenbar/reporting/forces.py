@@ -153,6 +153,9 @@ def text(found: CircuitForces) -> RenderableType:
     return page(found.motion.linkage.heading, facts, *tables)
 
 
+#: What a sizing has that the JSON has elsewhere.
+IN_UNITS = ("bearings", "unit", "input_unit")
+
 #: The head of the column of whole forces.
 WHOLE = "force\n[N]"
 
@@ -288,7 +291,7 @@ def numbers(found: CircuitForces) -> dict[str, Any]:
     forces, sizing, shaken = found.forces, found.sizing, found.shaking
     drive = None
     if sizing is not None:
-        drive = {name: value for name, value in vars(sizing).items() if name != "bearings"}
+        drive = {name: value for name, value in vars(sizing).items() if name not in IN_UNITS}
         drive |= {name: _plain(drive[name]) for name in ("peak_torque", "peak_power", "braking_power")}
     joints = {}
     for name, reaction in forces.reactions.items():

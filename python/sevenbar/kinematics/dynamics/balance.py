@@ -35,6 +35,9 @@ def balance_of(
 
     Raises `RequestError` for a link that does not exist, and where a row has no shaking.
     """
+    twice = [link for i, link in enumerate(links) if link in list(links)[:i]]
+    if twice:
+        raise RequestError(f"links: {twice[0]} is given twice; leave one out")
     mounts = [mount_of(linkage, circuit, link) for link in links]
     rows = np.concatenate(
         [forces.shaking, *(mount.unit.reshape(len(forces.time), -1) for mount in mounts)], axis=1
