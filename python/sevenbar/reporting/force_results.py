@@ -59,7 +59,7 @@ def _of_joint(reaction: Reaction, scale: dict[str, float], *, bounded: bool) -> 
             if size > force_words.ROUNDING * scale[word]:
                 part = "" if known.shape[1] == 3 else " of what is known"
                 said.append(f"{word}{part} up to {number(size)} {unit}")
-    return ", ".join(said + ([f"{' '.join(lost)} open"] if lost else []))
+    return ", ".join(said + ([f"{' '.join(lost)} not determined"] if lost else []))
 
 
 @text_of.register(Reaction)
@@ -72,9 +72,9 @@ def _(reaction: Reaction) -> str:
             ends = (
                 f"{number(float(known.min()))} to {number(float(known.max()))} {unit}" if known.size else ""
             )
-            facts.append((name, ends or force_words.OPEN))
+            facts.append((name, ends or "not determined"))
     if not reaction.determinate.all():
-        facts.append(("", "what is open is not determined by equilibrium of rigid bodies"))
+        facts.append(("", "equilibrium of rigid bodies leaves the others to elasticity"))
     rows = f"{len(reaction.force)} rows, in its own frame, of the link before on the link after"
     return lines(f"Reaction in {reaction.joint}: {rows}", facts)
 
@@ -126,7 +126,7 @@ def _(bearing: Bearing) -> str:
             peak = f"peak {number(burden.peak.value)} {unit} @ {place(burden.peak.input)}"
             facts.append((part.replace("_", " "), f"{peak}, cubic mean {number(burden.mean_cube)} {unit}"))
         elif part != "in_plane":
-            facts.append((part, force_words.OPEN))
+            facts.append((part, "not determined"))
     return lines("Loads of a bearing", facts)
 
 

@@ -26,8 +26,8 @@ ROUNDING = 1e-9
 #: The parts of a bearing's load that are listed, with their units.
 LISTED = {"force": "N", "radial": "N", "axial": "N", "tilting": "N m", "turning": "N m", "in_plane": "N"}
 
-#: What a cell says of a part that rigid bodies leave open.
-OPEN = "open"
+#: What a cell has for a part that equilibrium of rigid bodies does not determine.
+OPEN = "-"
 
 #: What a file without anything that acts lacks, with a place for a word of the file.
 NOTHING_ACTS = """\
@@ -213,6 +213,7 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     facts = [
         (what, say("peak {value}", value=place.at(found.peak_torque, unit))),
         ("", say("rms {rms}, mean {mean}", rms=rms, mean=mean)),
+        ("", sign_text(forces)),
     ]
     if forces.at_rest:
         return facts
@@ -234,6 +235,13 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     if found.fluctuation:
         facts.append((say("energy"), energy))
     return facts + _flywheel_facts(found)
+
+
+def sign_text(forces: Forces) -> str:
+    """Which way a positive torque, or force, of the input turns it."""
+    if forces.slides:
+        return say("positive: pushes {joint} as its way counts", joint=forces.driver)
+    return say("positive: turns {joint} as its angle counts", joint=forces.driver)
 
 
 def _flywheel_facts(found: Sizing) -> list[tuple[str, str]]:
@@ -293,7 +301,7 @@ def open_facts(forces: Forces) -> list[tuple[str, str]]:
     ]
     what = say("; ").join(map(retold, forces.indeterminate))
     together = say(
-        "rigid bodies leave open {what}, which all joints bear together: {components}",
+        "{components}; the joints share {what}, and rigid bodies do not say how",
         what=what, components=say("; ").join(listed),
     )  # fmt: skip
     facts = [
@@ -301,7 +309,9 @@ def open_facts(forces: Forces) -> list[tuple[str, str]]:
         ("", say("these depend on clearances and elasticity; one joint with more freedom determines them")),
     ]
     if alone := known_alone(forces):
-        facts.append(("", say("known alone, greatest of the rows: {forces}", forces=say(", ").join(alone))))
+        facts.append(
+            ("", say("across its axis a joint has one known force: {forces}", forces=say(", ").join(alone)))
+        )
     return facts
 
 
@@ -330,8 +340,9 @@ def known_alone(forces: Forces) -> list[str]:
         x, y = reaction.determinate[3:5]
         if x != y:
             which = 0 if x else 1
-            size = f"{COMPONENTS[3 + which]} {number(greatest(reaction.force[:, which]))} N"
-            found.append(say("{force} of {joint}", force=size, joint=name))
+            size = f"{number(greatest(reaction.force[:, which]))} N"
+            known = COMPONENTS[3 + which]
+            found.append(say("{force} of {joint}, up to {size}", force=known, joint=name, size=size))
     return found
 
 
