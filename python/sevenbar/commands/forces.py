@@ -95,7 +95,7 @@ def forces(
         raise RequestError(
             "--unevenness: a flywheel is found for a constant speed; give --speed in place of --law"
         )
-    links = [_link(name) for name in options.words(counterweights, "--counterweights")]
+    links = [_link(name) for name in options.words(counterweights, "--counterweights", twice=False)]
     if radius is not None and not links:
         raise RequestError("--radius: it is that of counterweights; give --counterweights, as in 1,3")
     if links and (at_rest or law is not None):

@@ -137,13 +137,16 @@ OutFigures = Annotated[
 ]
 
 
-def words(given: list[str] | None, option: str = "") -> list[str]:
+def words(given: list[str] | None, option: str = "", *, twice: bool = True) -> list[str]:
     """The words of an option that is repeated, or has several parted by commas; each once.
 
-    Raises `RequestError` for an `option` that is given without any.
+    Raises `RequestError` for an `option` that is given without any, and unless one may come `twice` for that.
     """
     parts = [part.strip() for word in given or () for part in word.split(",")]
     found = list(dict.fromkeys(part for part in parts if part))
+    if not twice and len(found) < len([part for part in parts if part]):
+        several = next(part for part in found if parts.count(part) > 1)
+        raise RequestError(f"{option}: {shown(several)} is given twice; leave one out")
     if given and option and not found:
         raise RequestError(f"{option}: is empty; give what it lists, or leave it out")
     return found

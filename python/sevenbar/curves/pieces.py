@@ -206,12 +206,16 @@ def pieces(
     found.sort(key=lambda piece: piece[0])
     starts, ends = (origin + period * np.array([piece[i] for piece in found]) for i in (0, 1))
     jumps = starts[np.isin([piece[0] for piece in found], marks[:-1])] if shares.size else np.empty(0)
-    made = Pieces(rows, starts, ends, np.stack([piece[2] for piece in found]), jumps)
-    places = np.arange(len(rows)) / len(rows)
-    # at a break a row has one of two values
-    apart = np.abs((places[:, None] - shares + 0.5) % 1.0 - 0.5).min(axis=1, initial=1.0) > SAME
-    off = np.abs(made.at(first + period * places) - rows)[apart].max(initial=0.0) / (scale or 1.0)
-    return replace(made, off=float(off))
+    return Pieces(rows, starts, ends, np.stack([piece[2] for piece in found]), jumps)
+
+
+def smooth_pieces(evaluate: Callable[[Floats], Floats], rows: Floats, first: float, period: float) -> Pieces:
+    """A quantity without jumps along the cycle, compared with its rows (n,) or (n, k) at equal steps."""
+    made = pieces(evaluate, rows, first, period)
+    inputs = first + period * np.arange(len(rows)) / len(rows)
+    scale = max(made.scale, float(np.abs(rows).max()))
+    off = float(np.abs(made.at(np.asarray(inputs)) - rows).max()) / scale if scale else 0.0
+    return replace(made, off=off)
 
 
 def cycle_curve(
@@ -221,5 +225,5 @@ def cycle_curve(
     series = cycle_series(evaluate, rows, first, period)
     if evaluate is None or series.tail <= ENOUGH:
         return series
-    finer = pieces(evaluate, rows, first, period)
+    finer = smooth_pieces(evaluate, rows, first, period)
     return finer if finer.tail < series.tail else series

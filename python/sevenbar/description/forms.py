@@ -297,6 +297,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     context = context_of(raw, source)
     raw = with_numbers(raw, context)
     form, more = loop_alone(raw, context), dict[str, Any]()
+    whole: LinkageForm | None = None
     if form is None:
         # few files have more, or are wrong
         from sevenbar.description.schema import check
@@ -311,12 +312,18 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
         linkage = _from_drawing(form, form.joint, source)
     else:
         linkage = _from_rows(form, form.link or (), source)
-    return replace(
+    made = replace(
         linkage,
         points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
         description=raw,
         **more,
     )
+    if whole is not None and whole.body:
+        from sevenbar.description.loads import planar_flaws
+
+        if problems := planar_flaws(whole.body, made, whole.forces.mass_unit):
+            raise DescriptionError(problems, source)
+    return made
 
 
 def _loading(form: LinkageForm) -> Loading:

@@ -21,6 +21,7 @@ from sevenbar.drawing.force_panels import (
     curve,
     digits,
     first_dot,
+    force_unit,
     greatest_of,
     hodograph,
     input_axis,
@@ -177,12 +178,15 @@ def bearings(
         )
     with styled(style):
         page = joint_panels(len(chosen), ax, figsize, style, square=True)
+        unit, size = force_unit(*(reaction.force[:, :2] for reaction in chosen))
         for axes, reaction in zip(page.axes, chosen, strict=True):
-            hodograph(axes, forces, reaction.force[:, :2], WHOLE)
+            hodograph(axes, forces, reaction.force[:, :2] / size, WHOLE)
             axes.set_title(shown_name(reaction.joint, 28))
-            axes.set_xlabel("Fx [N]")
-            axes.set_ylabel("Fy [N]")
-        heading = title_of_forces(forces, say("forces square to the joints' axes"))
+            axes.set_xlabel(f"Fx [{unit}]")
+            axes.set_ylabel(f"Fy [{unit}]")
+        heading = title_of_forces(
+            forces, say("forces square to the joints' axes, x and y of the link before each joint")
+        )
         page.finish(title, heading, [first_dot(forces, WHOLE)] if legend else [])
     return page.figure
 

@@ -14,7 +14,7 @@ from numpy.polynomial import chebyshev
 from sevenbar.arrays import Floats
 from sevenbar.curves.curve import mean
 from sevenbar.curves.cycle_series import ENOUGH, CycleSeries
-from sevenbar.curves.pieces import pieces
+from sevenbar.curves.pieces import smooth_pieces
 from sevenbar.curves.stationary import nodes
 
 
@@ -32,15 +32,18 @@ def closing(
     *,
     first: float,
     period: float,
+    least: float = 0.0,
     evaluate: Callable[[Floats], Floats] | None = None,
 ) -> Closing:
     """How well what is given over a cycle is the slope of the energy by the input x.
 
     Rows (n,) are the energy E [J] and what is given in `total` [J by the input], of which `drive` is the peak
-    of the drive's part. Where the rows are too few, `evaluate` gives both (m, 2) at any inputs (m,), and the
-    slope is that of pieces.
+    of the drive's part. A slope of `least` is rounding. Where the rows are too few, `evaluate` gives both
+    (m, 2) at any inputs (m,), and the slope is that of pieces.
     """
     slope = CycleSeries(energy, first, period).finer(1, 1)
+    if max(float(np.abs(slope).max()), drive) <= least:
+        return Closing(0.0, 0.0)
     found = _closing(slope, total, drive, float(np.mean(total)))
     if evaluate is None or max(found) <= ENOUGH:
         return found
@@ -48,7 +51,7 @@ def closing(
     # the slope is as large as what is given
     units = np.array([np.abs(energy).max(), max(np.abs(total).max(), np.abs(slope).max())])
     units[units == 0] = 1.0
-    own = pieces(lambda inputs: evaluate(inputs) / units, rows / units, first, period)
+    own = smooth_pieces(lambda inputs: evaluate(inputs) / units, rows / units, first, period)
     if own.tail > found.power:
         return found
     half = (own.ends - own.starts) / 2

@@ -15,6 +15,7 @@ from sevenbar.arrays import Booleans, Floats, Integers, ReadOnly, Words
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.closing import Closing, closing
+from sevenbar.forces.heard import ROUNDING
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.sizing import WITHHELD, Sizing, sizing
 from sevenbar.text.printing import Drawable, Printed
@@ -31,6 +32,10 @@ AT_END = 1e-9
 
 #: A component is open if a wrench that nothing determines has more than this part of its length in it.
 OPEN = 1e-8
+
+
+#: A torque below this part of what acts has lost so many digits that power need not close.
+LITTLE = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,16 +59,29 @@ class Reaction(ReadOnly, Printed):
     determinate: Booleans
     known: Floats
     known_values: Floats
+    #: By which moments are divided in `known` [m].
+    size: float = 1.0
 
     @property
     def force_in_report(self) -> Floats:
-        """The force (n, 3) [N] in the report frame; NaN unless all three components are determinate."""
-        return np.asarray(np.einsum("nij,nj->ni", self.axes, self.force))
+        """The force (n, 3) [N] in the report frame; NaN in components that equilibrium leaves open."""
+        return self._in_report(slice(3, 6))
 
     @property
     def moment_in_report(self) -> Floats:
-        """The moment (n, 3) [N m] in the report frame; NaN unless all three components are determinate."""
-        return np.asarray(np.einsum("nij,nj->ni", self.axes, self.moment))
+        """The moment (n, 3) [N m] in the report frame; NaN in components that equilibrium leaves open."""
+        return self.size * self._in_report(slice(0, 3))
+
+    def _in_report(self, part: slice) -> Floats:
+        """Moment or force along the axes of the report frame, moments by the size [N]."""
+        # each axis as a combination of the six components: what the known ones do not reach is open
+        ways = np.zeros((len(self.axes), 3, 6))
+        ways[:, :, part] = self.axes
+        shares = ways @ np.swapaxes(self.known, 1, 2)
+        left = np.linalg.norm(ways - shares @ self.known, axis=2)
+        values = np.einsum("nik,nk->ni", shares, self.known_values)
+        rest = np.where(np.isfinite(left), left, 0.0).max(axis=0, initial=0.0)
+        return np.asarray(np.where(rest < OPEN, values, np.nan))
 
     def on(self, rows: Rows) -> Reaction:
         """The same on some rows: a mask, numbers of rows or a slice."""
@@ -130,6 +148,8 @@ class Forces(ReadOnly, Drawable):
     #: The joint that drives, and the linkage.
     driver: str
     heading: str
+    #: How large what acts is [N m, of an input that slides N]: below 1e-12 of it a torque is rounding, and 0.
+    pull: float = 0.0
     #: Whether the linkage is held still on every row: statics, without inertia and damping.
     at_rest: bool = False
     #: Whether the circuit passes change points, where torque and reactions have no values of their own.
@@ -290,6 +310,7 @@ class Forces(ReadOnly, Drawable):
         )
         if found is None or max(found.tail, self.unclosed) > WITHHELD:
             return None
+        found = found.in_units(self.unit, self.length_unit if self.slides else "rad")
         # between stops force by length unit, in joule
         return found if self.part is None else replace(found, fluctuation=self.metre * found.fluctuation)
 
@@ -315,7 +336,9 @@ class Forces(ReadOnly, Drawable):
 
     @property
     def unclosed(self) -> float:
-        """The greater of `balance` and `work`; 0 where there is none."""
+        """The greater of `balance` and `work`; 0 where there is none, or torque is next to nothing."""
+        if float(np.abs(self.torque).max(initial=0.0)) < LITTLE * self.pull:
+            return 0.0
         return max(self.balance or 0.0, self.work or 0.0)
 
     @cached_property
@@ -342,6 +365,7 @@ class Forces(ReadOnly, Drawable):
             drive / abs(rate),
             first=float(self.input[0]),
             period=period,
+            least=ROUNDING * (self.pull + float(np.abs(energy).max())),
             evaluate=None if between is None else lambda inputs: rows(between(inputs)),
         )
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,6 +50,7 @@ class Shaking(Printed):
     rms_moment: float
     orders: Floats
     tail: float = math.nan
+    input_unit: str = "rad"
 
 
 def shaking_of(
@@ -108,7 +109,9 @@ def shaking_along(forces: Forces) -> Shaking | None:
     ends = None if forces.part is None or between is None else (forces.part.start, forces.part.end)
     period, time = forces.period, forces.time
     found = shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate, ends=ends)
-    return None if max(found.tail, forces.unclosed) > WITHHELD else found
+    if max(found.tail, forces.unclosed) > WITHHELD:
+        return None
+    return replace(found, input_unit=forces.length_unit if forces.slides else "rad")
 
 
 def _root(square: float) -> float:

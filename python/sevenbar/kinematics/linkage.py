@@ -239,6 +239,11 @@ class Linkage(Solvable):
         """Whether it can only move in its plane."""
         return self.plane is not None
 
+    @property
+    def normal(self) -> Floats | None:
+        """The direction (3,) across its plane, in the report frame; `None` of a loop that is not planar."""
+        return None if self.plane is None else self.plane.normal
+
     @cached_property
     def sphere(self) -> MotionSphere | None:
         """The centre of a spherical loop, and a radius to draw it with; `None` for any other.

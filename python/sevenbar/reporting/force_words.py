@@ -12,6 +12,7 @@ from sevenbar.curves.curve import Peak
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body
+from sevenbar.forces.heard import heard
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking
@@ -25,8 +26,8 @@ ROUNDING = 1e-9
 #: The parts of a bearing's load that are listed, with their units.
 LISTED = {"force": "N", "radial": "N", "axial": "N", "tilting": "N m", "turning": "N m", "in_plane": "N"}
 
-#: What a cell says of a part that rigid bodies leave open.
-OPEN = "open"
+#: What a cell has for a part that equilibrium of rigid bodies does not determine.
+OPEN = "-"
 
 #: What a file without anything that acts lacks, with a place for a word of the file.
 NOTHING_ACTS = """\
@@ -237,13 +238,14 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     if found is None:
         return [(what, no_peak(forces))]
     place = Places(forces)
-    # a mean that is rounding is 0
-    average = found.mean_torque
-    average = 0.0 if abs(average) < 1e-12 * abs(found.peak_torque.value) else average
-    rms, mean = f"{number(found.rms_torque)} {unit}", f"{number(average)} {unit}"
+    if not found.peak_torque.value:
+        idle = [(what, f"0 {unit}"), *([] if forces.at_rest else [(say("power"), "0 W")])]
+        return [*idle, *_flywheel_facts(found)]
+    rms, mean = f"{number(found.rms_torque)} {unit}", f"{number(found.mean_torque)} {unit}"
     facts = [
         (what, say("peak {value}", value=place.at(found.peak_torque, unit))),
         ("", say("rms {rms}, mean {mean}", rms=rms, mean=mean)),
+        ("", sign_text(forces)),
     ]
     if forces.at_rest:
         return facts
@@ -263,15 +265,26 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
         energy=number(found.fluctuation), steady=steady, fastest=place(found.fastest),
         slowest=place(found.slowest),
     )  # fmt: skip
-    facts.append((say("energy"), energy))
-    if found.flywheel is not None:
-        inertia = number(found.flywheel)
-        wheel = say(
-            "{inertia} kg m^2 at the input for an unevenness of {unevenness:g}",
-            inertia=inertia, unevenness=found.unevenness,
-        )  # fmt: skip
-        facts.append((say("flywheel"), wheel))
-    return facts
+    if found.fluctuation:
+        facts.append((say("energy"), energy))
+    return facts + _flywheel_facts(found)
+
+
+def sign_text(forces: Forces) -> str:
+    """Which way a positive torque, or force, of the input turns it."""
+    if forces.slides:
+        return say("positive: pushes {joint} as its way counts", joint=forces.driver)
+    return say("positive: turns {joint} as its angle counts", joint=forces.driver)
+
+
+def _flywheel_facts(found: Sizing) -> list[tuple[str, str]]:
+    if found.flywheel is None:
+        return []
+    wheel = say(
+        "{inertia} kg m^2 at the input for an unevenness of {unevenness:g}",
+        inertia=number(found.flywheel), unevenness=found.unevenness,
+    )  # fmt: skip
+    return [(say("flywheel"), wheel)]
 
 
 def _mean_power(forces: Forces, found: Sizing) -> float:
@@ -282,7 +295,7 @@ def _mean_power(forces: Forces, found: Sizing) -> float:
         mean, most = speed * found.mean_torque, abs(speed * found.peak_torque.value)
     else:
         mean, most = float(shares_of(forces.time) @ forces.power), float(np.abs(forces.power).max())
-    return 0.0 if abs(mean) < 1e-12 * most else mean
+    return heard(mean, most)
 
 
 def spin_facts(forces: Forces) -> list[tuple[str, str]]:
@@ -322,7 +335,7 @@ def open_facts(forces: Forces) -> list[tuple[str, str]]:
     ]
     what = say("; ").join(map(retold, forces.indeterminate))
     together = say(
-        "rigid bodies leave open {what}, which all joints bear together: {components}",
+        "{components}; the joints share {what}, and rigid bodies do not say how",
         what=what, components=say("; ").join(listed),
     )  # fmt: skip
     facts = [
@@ -330,7 +343,9 @@ def open_facts(forces: Forces) -> list[tuple[str, str]]:
         ("", say("these depend on clearances and elasticity; one joint with more freedom determines them")),
     ]
     if alone := known_alone(forces):
-        facts.append(("", say("known alone, greatest of the rows: {forces}", forces=say(", ").join(alone))))
+        facts.append(
+            ("", say("across its axis a joint has one known force: {forces}", forces=say(", ").join(alone)))
+        )
     return facts
 
 
@@ -359,8 +374,9 @@ def known_alone(forces: Forces) -> list[str]:
         x, y = reaction.determinate[3:5]
         if x != y:
             which = 0 if x else 1
-            size = f"{COMPONENTS[3 + which]} {number(greatest(reaction.force[:, which]))} N"
-            found.append(say("{force} of {joint}", force=size, joint=name))
+            size = f"{number(greatest(reaction.force[:, which]))} N"
+            known = COMPONENTS[3 + which]
+            found.append(say("{force} of {joint}, up to {size}", force=known, joint=name, size=size))
     return found
 
 

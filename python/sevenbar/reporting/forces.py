@@ -157,16 +157,22 @@ def text(found: CircuitForces) -> RenderableType:
         planar = found.motion.linkage.is_planar
         head, rows = bearing_rows(forces, found.sizing, planar=planar)
         without = {
-            say(IN_PLANE): say("; in plane: the force in the plane of motion, the whole is open"),
-            say(KNOWN): say("; known: the force without the component that is open"),
+            say(IN_PLANE): say("; in plane: the force in the plane of motion"),
+            say(KNOWN): say("; known: the force without the component that is not determined"),
         }.get(head[1], "")
         meaning = say(
-            "peaks of what the link before puts on the link after; radial square to the joint's "
-            "axis, axial along it, tilting moment square to it, turning about it"
+            "peaks of what the link before puts on the link after, the ground before the first joint and "
+            "after the last; radial square to the joint's axis, axial along it, tilting moment square to it, "
+            "turning about it"
         )
+        cells = {cell for row in rows for cell in row}
+        without += say("; -: not determined") if force_words.OPEN in cells else ""
         tables.append(Group(number_table(head, rows), Text(meaning + without, style="dim")))
     return page(found.motion.linkage.heading, facts, *tables)
 
+
+#: What a sizing has that the JSON has elsewhere.
+IN_UNITS = ("bearings", "unit", "input_unit")
 
 #: The head of the column of whole forces.
 WHOLE = "force\n[N]"
@@ -203,7 +209,7 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
             (row, i): float(cells[i])
             for row, cells in enumerate(rows)
             for i in columns
-            if cells[i] not in (say(force_words.OPEN), "")
+            if cells[i] not in (force_words.OPEN, "")
         }
         for (row, i), size in sizes.items():
             # what is left of rounding
@@ -213,7 +219,7 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
 
 
 def _peak(burden: Burden) -> str:
-    return number(burden.peak.value) if math.isfinite(burden.peak.value) else say(force_words.OPEN)
+    return number(burden.peak.value) if math.isfinite(burden.peak.value) else force_words.OPEN
 
 
 def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
@@ -304,7 +310,7 @@ def numbers(found: CircuitForces) -> dict[str, Any]:
     forces, sizing, shaken = found.forces, found.sizing, found.shaking
     drive = None
     if sizing is not None:
-        drive = {name: value for name, value in vars(sizing).items() if name != "bearings"}
+        drive = {name: value for name, value in vars(sizing).items() if name not in IN_UNITS}
         drive |= {name: _plain(drive[name]) for name in ("peak_torque", "peak_power", "braking_power")}
     joints = {}
     for name, reaction in forces.reactions.items():

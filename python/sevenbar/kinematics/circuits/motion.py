@@ -106,6 +106,11 @@ class Solvable(Loop, ABC):
     def is_planar(self) -> bool:
         """Whether it can only move in a plane."""
 
+    @property
+    @abstractmethod
+    def normal(self) -> Floats | None:
+        """The direction (3,) across its plane, in the report frame; `None` of a loop that is not planar."""
+
     @abstractmethod
     def as_four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank."""

@@ -39,6 +39,9 @@ def balance_of(
         links = list(links)
     except TypeError:
         raise RequestError(f"links: {shown(links)} is no list of links; give one, as in [2, 4]") from None
+    twice = [link for i, link in enumerate(links) if link in links[:i]]
+    if twice:
+        raise RequestError(f"links: {twice[0]} is given twice; leave one out")
     mounts = [mount_of(linkage, circuit, link) for link in links]
     rows = np.concatenate(
         [forces.shaking, *(mount.unit.reshape(len(forces.time), -1) for mount in mounts)], axis=1

@@ -21,6 +21,7 @@ from sevenbar.arrays import Booleans, Floats, Integers, Words, truth
 from sevenbar.errors import RequestError
 from sevenbar.forces.acting import Load, Spring, Three
 from sevenbar.forces.bodies import Body
+from sevenbar.forces.heard import without_rounding
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -221,7 +222,10 @@ def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest
         # not the rounding of a linkage that takes nothing; rows without values keep none
         torque, wrenches, shaking = 0.0 * torque, 0.0 * wrenches, 0.0 * shaking
     slides = not linkage.turns(circuit.input_column)
-    torque = torque * (size if slides else size**2)
+    pull, inertia = _acting_forces(solver, energies * size**2, shaking[:, 3:] * size)
+    torque = without_rounding(torque[:, None], pull / size)[:, 0] * (size if slides else size**2)
+    wrenches = without_rounding(wrenches, pull / size)
+    shaking = without_rounding(shaking, inertia / size)
     speed = speeds[:, 0]
     energies = energies * size**2
     reactions = _reactions(solver, wrenches, seats, free)
@@ -248,7 +252,25 @@ def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest
         driver=linkage.columns[circuit.input_column],
         heading=linkage.heading,
         at_rest=at_rest,
+        pull=pull * (1.0 if slides else size),
     )
+
+
+def _acting_forces(solver: ForceSolver, energies: Floats, shaking: Floats) -> tuple[float, float]:
+    """How large the forces are [N] that act on the links, of all kinds and of inertia; torques by the size.
+
+    From energies (n, 3) [J, and W] and the shaking force (n, 3) [N].
+    """
+    loading, size = solver.loading, solver.size
+    kinetic, potential = (
+        np.abs(energies[:, i][np.isfinite(energies[:, i])]).max(initial=0.0) for i in (0, 1)
+    )
+    shaken = np.abs(shaking[np.isfinite(shaking)]).max(initial=0.0)
+    inertia = float(2 * kinetic / size + shaken)
+    weight = sum(body.mass for body in solver.bodies.values()) * float(np.linalg.norm(loading.gravity))
+    loads = [np.linalg.norm(load.force) + np.linalg.norm(load.torque) / size for load in loading.loads]
+    springs = float(potential) / size if loading.springs else 0.0
+    return float(weight + sum(loads) + springs) + inertia, inertia
 
 
 def _nothing_pulls(solver: ForceSolver, speeds: Floats, kinetic: Floats, shaking: Floats) -> bool:
@@ -310,6 +332,7 @@ def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Float
             determinate=determinate,
             known=known,
             known_values=np.einsum("nkj,nj->nk", known, wrench) if free.shape[1] else wrench,
+            size=size,
         )
     return found
 

@@ -86,7 +86,9 @@ def _body(link: int, body: Body, mass_unit: str, linkage: Loop) -> dict[str, Any
     if body.centre is not None:
         table["centre"] = list(body.centre)
     if body.tensor.any():
-        table["inertia"] = entries_of(body.tensor / (kilogram * metre**2))
+        unit = kilogram * metre**2
+        across = body.alone is not None and body.alone[1] is None
+        table["inertia"] = body.alone[0] / unit if body.alone and across else entries_of(body.tensor / unit)
     return table
 
 
