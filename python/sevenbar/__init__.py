@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Loading
     from sevenbar.kinematics.circuits.instant_centres import InstantCentre, InstantCentres
+    from sevenbar.kinematics.circuits.one_pose import OnePose
     from sevenbar.kinematics.loop.grashof import FourBar
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.screw_axes import ScrewAxes
@@ -81,6 +82,7 @@ __all__ = [
     "Motion",
     "MotionPlane",
     "MotionSphere",
+    "OnePose",
     "OpenRange",
     "Output",
     "PartAxis",
@@ -139,6 +141,7 @@ _NAMES_OF_MODULES = {
     "forces.free_motion.result": "FreeMotion",
     "forces.loading": "Loading",
     "kinematics.circuits.instant_centres": "InstantCentre InstantCentres",
+    "kinematics.circuits.one_pose": "OnePose",
     "kinematics.loop.grashof": "FourBar",
     "kinematics.loop.law": "Law",
     "kinematics.loop.screw_axes": "ScrewAxes",

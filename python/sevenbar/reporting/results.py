@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import sevenbar.reporting.pose_text  # noqa: F401  what a pose prints
 from sevenbar.arrays import Floats, Words
 from sevenbar.errors import check_word
 from sevenbar.kinematics.circuits.circuit import Circuit

@@ -164,6 +164,12 @@ class Loop(Drawable):
         """The G's of all links (n, 4, 4), the ground's last: `Z(q1) G1 .. Z(qn) Gn = 1`."""
         return np.concatenate([self.links, [inverse(self.ground) @ self.base]])
 
+    @property
+    def size(self) -> float:
+        """The size [length], as the core has it: all links' lengths, and pitches by radian."""
+        lengths = float(np.linalg.norm(self.transforms[:, :3, 3], axis=1).sum())
+        return lengths + sum(abs(joint.pitch) / math.tau for joint in self.joints) or 1.0
+
     @cached_property
     def kind(self) -> str:
         """The joints' letters in loop order."""
