@@ -266,3 +266,21 @@ def test_a_toggle_that_a_slide_drives_has_its_force_at_0(tmp_path):
     # virtual work: 2 x = 200 + s, so dy = -(x / y) dx, and half of the ram's way is the knee's
     expected = 100 * (100 / 30) / 2
     assert sorted(abs(pose["torque"]) for pose in found["poses"]) == pytest.approx([expected] * 2)
+
+
+def test_ranges_are_in_the_turn_of_modes():
+    motion = sb.four_bar(2, 1.5, 2, 3).motion()
+    assert math.degrees(motion[0].output_range[0]) == pytest.approx(-266.41667830)
+    for text in (sb.report.markdown(motion, ranges=True), repr(motion), repr(motion[0])):
+        assert "93.583° to 266.417°" in text
+        assert "-266" not in text
+    assert "| 0 | theta_4 | 93.583° @" in sb.report.markdown(motion, ranges=True)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "turn"), [(-266, -94, 360), (94, 266, 0), (-180, 180, 0), (330, 390, -360)]
+)
+def test_the_middle_of_a_range_lies_in_one_turn(low, high, turn):
+    from sevenbar.reporting.shown import turned
+
+    assert math.degrees(turned(math.radians(low), math.radians(high))) == pytest.approx(turn)

@@ -407,7 +407,7 @@ class Linkage(Solvable):
             >>> linkage = sb.load("rssr")
             >>> pose = linkage.at(linkage.assembly_modes("45 deg").q[0])
             >>> round(pose["rocker"], 6), round(float(pose.dq[-1]), 6), pose.points["A"].velocity.shape
-            (-0.117924, 6.905576, (1, 3))
+            (-0.117924, 0.690558, (1, 3))
         """
         from sevenbar.kinematics.circuits.poses_at import pose_near
 
