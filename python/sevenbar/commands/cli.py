@@ -126,6 +126,8 @@ def analyze(
     output: options.OutputJoint = None,
     speed: options.Speed = None,
     law: options.Law = None,
+    law_joint: options.LawJoint = None,
+    law_circuit: options.LawCircuit = None,
     agree: options.Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for report.md, report.json, motion.csv and the figures.")
@@ -167,7 +169,7 @@ def analyze(
     loaded = opened(linkage, agree)
     report = motion_report(formats)
     check_out(report, out, force=force)
-    read = law_of(law, loaded, input_joint)
+    read = law_of(law, loaded, input_joint, law_joint, law_circuit)
     moved = partial(loaded.motion, input=input_joint, output=output, speed=speed, law=read)
     if out is not None and read is None:
         confirm(table_ahead(moved, samples, "motion.csv"), yes=yes)

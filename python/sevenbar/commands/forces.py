@@ -47,6 +47,8 @@ def forces(
         ),
     ] = None,
     law: options.Law = None,
+    law_joint: options.LawJoint = None,
+    law_circuit: options.LawCircuit = None,
     unevenness: Annotated[
         float | None,
         options.number_option(
@@ -129,7 +131,7 @@ def forces(
         input=input_joint,
         # any speed does at rest, but its unit must be one
         speed=f"1 {unit}" if unit else None if at_rest else speed,
-        law=law_of(law, loaded, input_joint),
+        law=law_of(law, loaded, input_joint, law_joint, law_circuit),
         agree=agreed(agree),
     )
     chosen = chosen_circuit(motion, circuit)
