@@ -386,6 +386,8 @@ def main() -> NoReturn:
     with warnings.catch_warnings():
         warnings.showwarning = _tell_warning
         warnings.simplefilter("always", AngleUnitWarning)
+        # every figure would say it anew
+        warnings.simplefilter("once", MissingFontWarning)
         _run()
 
 
