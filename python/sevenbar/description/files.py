@@ -146,7 +146,7 @@ _OTHER_ENDINGS = {
 #: The same by the heads of their texts.
 _OTHER_HEADS = {b"<robot": "URDF", b"<sdf": "SDF", b"<mujoco": "MJCF", b"<?xml": "XML"}
 
-#: Bytes of a file in which its kind is looked for.
+#: Bytes of a file that give its kind.
 _HEAD = 2000
 
 #: What TOML's reader says of a place.
@@ -186,9 +186,9 @@ def _syntax_problem(error: ValueError, lines: list[str]) -> str:
     line = lines[int(match[2]) - 1]
     if reason.startswith(("cannot overwrite", "cannot declare")):
         head = re.fullmatch(r"\s*\[\s*(\w+)\s*\]\s*(#.*)?", line)
-        if head is not None and head[1] in LISTED:
-            return f"line {match[2]}: {shown(line.strip())} stands twice; write [[{head[1]}]] before each one"
-        return f"line {match[2]}: {shown(line.strip())} stands twice; leave one of them out"
+        listed = head is not None and head[1] in LISTED
+        remedy = f"write [[{head[1]}]] before each one" if head and listed else "leave one of them out"
+        return f"line {match[2]}: {shown(line.strip())} stands twice; {remedy}"
     remedy = next((hint for slip, hint in _SLIPS if re.fullmatch(slip, line)), example)
     return f"line {match[2]}: {shown(line.strip())} is not valid TOML: {reason}; {remedy}"
 

@@ -77,7 +77,7 @@ def load_law(
     t = numbers.pop("time")
     if linkage.turns(column):
         if "velocity" in numbers:
-            # which tells that a jump by a turn is none
+            # by which a jump of a turn is none
             numbers["value"] = np.unwrap(numbers["value"])
         _refuse_jumps(table, numbers, places["value"])
     _refuse_other_rates(table, t, numbers, places)
@@ -100,7 +100,7 @@ def _of_circuit(table: TextTable, circuit: int | None) -> TextTable:
         listed = ", ".join(map(str, known))
         raise table.wrong(f"{what} circuits {listed}; say which, as in --law-circuit {known[0]}")
     kept = np.flatnonzero(numbers == circuit)
-    rows, lines = (tuple(of[row] for row in kept) for of in (table.rows, table.lines))
+    rows, lines = tuple(table.rows[row] for row in kept), tuple(table.lines[row] for row in kept)
     return replace(table, rows=rows, lines=lines)
 
 

@@ -25,7 +25,7 @@ NOT_COVERED = {
     **dict.fromkeys(("contact", "collision"), "contact is not covered; stops say how far joints may go"),
 }
 
-#: The same for keys of a joint, which tell what it joins.
+#: The same for keys of a joint: what it joins.
 OF_JOINTS = dict.fromkeys(("links", "link", "parent", "child", "bodies", "body", "between"), _LOOPS)
 
 

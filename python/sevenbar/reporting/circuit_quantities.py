@@ -118,7 +118,7 @@ class _Texts:
         if words or extent is None:
             return words
         turn = turned(*extent) if circuit.output_turns else 0.0
-        low, high = self._rounded(*(end + turn for end in extent), circuit, 0)
+        low, high = self._rounded(extent[0] + turn, extent[1] + turn, circuit, 0)
         if low == high:
             return (say("at rest at {value}", value=self.result(low)),)
         return self.result(low), self.result(high)

@@ -12,13 +12,13 @@ from rich.text import Text
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.circuits.poses_at import SAME_POSE, PosesAt
-from sevenbar.reporting.facts import completeness_text
+from sevenbar.reporting.facts import completeness_text, idle_text
 from sevenbar.reporting.how_found import left_open
 from sevenbar.reporting.page import Facts
 from sevenbar.reporting.pose_text import driven_text, rates_sheets
 from sevenbar.reporting.shown import value_text
 from sevenbar.reporting.summary import GAP, Sheet, modes_sheets, summary
-from sevenbar.text.words import language, retold, say, spoken
+from sevenbar.text.words import language, say, spoken
 
 
 class _Page:
@@ -95,8 +95,7 @@ def modes_page(
             others = ", ".join(str(i) for i, pose in enumerate(own) if pose is None)
             yield Text(say("no motion leads through mode {modes}", modes=others))
         if linkage.idle:
-            idle = say("; ").join(map(retold, linkage.idle))
-            yield Text(say("{freedoms}, held by convention", freedoms=idle))
+            yield Text(idle_text(linkage.idle))
         for sheet in rates_sheets(linkage, [(str(i), pose) for i, pose in enumerate(own)], width):
             yield Text()
             yield _table(sheet)
