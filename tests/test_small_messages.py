@@ -83,3 +83,12 @@ def test_zero_needs_no_unit():
 def test_free_motion_of_nothing_shows_what_to_write():
     assert "[[body]]" in mistake("free", "rssr")
     assert mistake("simulate", "rssr", "--engine", "adams").endswith("as in --to adams")
+
+
+def test_a_planar_four_bar_has_its_lengths_and_other_loops_none():
+    assert sb.four_bar(2, 1, 2, 1).lengths == (2.0, 1.0, 2.0)
+    turned = sb.load("planar_4r")
+    bar = turned.as_four_bar().links
+    assert turned.lengths == (bar["input link"], bar["coupler"], bar["output link"])
+    with pytest.raises(sb.errors.NotCoveredError):
+        sb.load("seven_r").lengths  # noqa: B018

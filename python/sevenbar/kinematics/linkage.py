@@ -88,7 +88,15 @@ class Linkage(Solvable):
 
     @property
     def lengths(self) -> tuple[float, float, float]:
-        """Crank, coupler and rocker of an RSSR [length]."""
+        """Crank, coupler and rocker of an RSSR or of a planar four-bar [length].
+
+        >>> import sevenbar as sb
+        >>> sb.four_bar(40, 100, 80, 90).lengths
+        (40.0, 100.0, 80.0)
+        """
+        bar = None if self.kind == "RSSR" else self.as_four_bar()
+        if bar is not None and bar.kind == "planar" and "input link" in bar.links:
+            return bar.links["input link"], bar.links["coupler"], bar.links["output link"]
         return self._rssr("lengths").lengths
 
     @cached_property
