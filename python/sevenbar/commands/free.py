@@ -62,6 +62,7 @@ def free(
 ) -> None:
     """How the linkage moves by itself: falling, swinging, coasting, starting up; and where it can rest."""
     from sevenbar.drawing.animate import animate
+    from sevenbar.reporting.force_words import NOTHING_ACTS
     from sevenbar.reporting.free_motion import free_report
 
     report = free_report(options.figure_formats(figures, out))
@@ -72,6 +73,8 @@ def free(
     if film is not None:
         check_targets([film], force=force)
     loaded = sb.load(linkage, agree=agreed(agree))
+    if loaded.loading.is_empty:
+        raise RequestError(f"{linkage}: {NOTHING_ACTS.format(place='it')}")
     chosen = chosen_circuit(loaded.motion(input=input_joint), circuit)
     place = None if start is None else input_value("--from", start, loaded, input_joint)
     found = chosen.free_motion(

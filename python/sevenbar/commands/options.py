@@ -101,6 +101,16 @@ Law = Annotated[
         help="CSV file of an input law: time, value of the input, perhaps its rates; in place of --speed."
     ),
 ]
+LawJoint = Annotated[
+    str | None,
+    typer.Option("--law-joint", help="The joint whose columns are the law, where its table has several."),
+]
+LawCircuit = Annotated[
+    int | None,
+    typer.Option(
+        "--law-circuit", help="The circuit that is the law, where its table is a motion of several."
+    ),
+]
 PointName = Annotated[str | None, typer.Option("--point", help="A named point of the linkage.")]
 PointLink = Annotated[
     int | None, typer.Option("--link", help="The link of a point given by --at, counted from 1.")

@@ -8,12 +8,12 @@ digit. Lengths are in `length_unit`, or texts with a unit ("6 cm"); angles are i
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from sevenbar.arrays import finite_number
+from sevenbar.arrays import finite_number, whole_number
 from sevenbar.description.forms import from_description, head_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
@@ -24,6 +24,9 @@ from sevenbar.text.units import LENGTHS, as_written
 
 #: A length or an angle as a caller gives it: a number, or a text with a unit.
 Given = float | str
+
+#: Points by name: the link of each, and its place along the link and to its left [length].
+Points = Mapping[str, tuple[int, Sequence[Given]]]
 
 #: A sine below this is rounding: the angle is 0 or half a turn.
 NO_SINE = 1e-15
@@ -212,12 +215,14 @@ def four_bar(
     name: str = "Planar four-bar",
     length_unit: str = "mm",
     speed: float | str = 1.0,
+    points: Points | None = None,
 ) -> Linkage:
     """The planar four-bar, as a spatial loop of four parallel axes.
 
     It lies in the xy plane as in textbooks: the crank's pivot is the origin, the ground goes along +x to the
     rocker's pivot, and theta_1 of the crank and theta_4 of the rocker count counter-clockwise from +x. The
-    links are rows without twist, in this order. Raises `RequestError` where a length is not > 0.
+    links are rows without twist, in this order. `points` are named, each (link, (u, v)): u along the link
+    from its first joint, v to its left. Raises `RequestError` where a length is not > 0.
 
         >>> import numpy as np
         >>> import sevenbar as sb
@@ -233,7 +238,10 @@ def four_bar(
     others = head_of(name, length_unit, speed)
     given = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
     lengths = [_length(what, value, others) for what, value in given.items()]
-    return _rows([(length, 0.0) for length in lengths], {**others, "layout": "planar"})
+    named = [
+        {"name": of, "link": link, "at": [0.0, u, v]} for of, link, u, v in _in_links(points or {}, 3, others)
+    ]
+    return _rows([(length, 0.0) for length in lengths], {**others, "layout": "planar", "point": named})
 
 
 def spherical_four_bar(
@@ -270,6 +278,7 @@ def slider_crank(
     name: str = "Slider-crank",
     length_unit: str = "mm",
     speed: float | str = 1.0,
+    points: Points | None = None,
 ) -> Linkage:
     """The planar slider-crank in the xy plane: the crank turns about z, the slider moves along x.
 
@@ -277,6 +286,8 @@ def slider_crank(
 
     is the place of the pin on the slider, whose guide lies `offset` above the crank's pivot. Drawn with the
     crank along x, theta = 0; the slider's value is the change of x from there. The pin is the point `pin`.
+    Other `points` are named as those of `four_bar`, each (link, (u, v)): u along crank or rod from its first
+    joint, of the slider along x from the pin. `Circuit.point(link, at)` takes the coordinates of the drawing.
     Raises `RequestError` where the rod does not reach the guide.
 
         >>> import sevenbar as sb
@@ -300,8 +311,13 @@ def slider_crank(
         {"name": "wrist_pin", "kind": "R", "at": pin, "axis": up},
         {"name": "slider", "kind": "P", "at": pin, "axis": [1, 0, 0]},
     ]
-    points = [{"name": "pin", "link": 3, "at": pin}]
-    return _drawn(joints, points, others)
+    starts = ([0.0, 0.0], [arm, 0.0], pin[:2])
+    along = ((1.0, 0.0), ((pin[0] - arm) / length, pin[1] / length), (1.0, 0.0))
+    named = [{"name": "pin", "link": 3, "at": pin}]
+    for of, link, u, v in _in_links(points or {}, 3, others):
+        (x, y), (c, s) = starts[link - 1], along[link - 1]
+        named.append({"name": of, "link": link, "at": [x + u * c - v * s, y + u * s + v * c, 0.0]})
+    return _drawn(joints, named, others)
 
 
 def universal_joint(
@@ -472,6 +488,22 @@ def _proportional(a: float, name: str, alpha: float, beta: float) -> float:
             f"{name}: {alpha:g} deg: its sine is 0, so no other length follows; give another angle"
         )
     return a * float(sind(beta)) / sine
+
+
+def _in_links(
+    points: Points, links: int, others: Mapping[str, Any]
+) -> Iterator[tuple[str, int, float, float]]:
+    """The points of a planar linkage by name, link and place, once checked."""
+    for name, given in points.items():
+        if not isinstance(given, Sequence) or len(given) != 2 or not hasattr(given[1], "__len__"):
+            raise RequestError(
+                f"points.{name}: {shown(given)} is no point; give (link, (u, v)), as in (2, (50, 20))"
+            )
+        link = whole_number(f"points.{name}", given[0], 1, links, "a link")
+        if len(given[1]) != 2 or isinstance(given[1], str):
+            raise RequestError(f"points.{name}: {shown(given[1])} is no place in the plane; give (u, v)")
+        u, v = (_number(f"points.{name}", part, "length", others) for part in given[1])
+        yield name, link, u, v
 
 
 def _rows(

@@ -10,15 +10,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, finite_number
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.circuits.circuit import AT_REST, Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.circuits.table import circuit_columns, frame_of
 from sevenbar.kinematics.loop.geometry import Point
 
 # the engines are for those who ask
 if TYPE_CHECKING:
+    import pandas as pd
+
     from sevenbar.forces.counterweights import Balance
     from sevenbar.forces.free_motion.equilibria import Equilibrium
     from sevenbar.forces.free_motion.result import FreeMotion
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
     from sevenbar.forces.result import Forces
     from sevenbar.kinematics.circuits.circuit_values import Sensitivity
     from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
+    from sevenbar.kinematics.circuits.one_pose import OnePose
     from sevenbar.kinematics.dynamics.forces import ForceSolver
     from sevenbar.kinematics.loop.stops import Cone
     from sevenbar.kinematics.paths.stretch import Stretch
@@ -252,6 +256,34 @@ class LinkageAnswers:
         from sevenbar.kinematics.ranges.allowed import stretches
 
         return stretches(self.linkage, circuit)
+
+    def pose(
+        self,
+        circuit: Circuit,
+        value: float | str,
+        branch: int | None,
+        speed: float | str | None,
+        acceleration: float,
+    ) -> OnePose:
+        """At a value of the input."""
+        from sevenbar.kinematics.circuits.poses_at import pose_of
+        from sevenbar.kinematics.loop.joint_text import joint_number, joint_speed
+        from sevenbar.kinematics.transmission.axes import best_row
+
+        linkage, column, rows = self.linkage, circuit.input_column, circuit.fleeting()
+        known = best_row(rows)
+        if known is None:
+            raise RequestError("at: the circuit has no row with rates to begin from; give more samples")
+        return pose_of(
+            linkage, rows, joint_number("at", value, linkage, column), known,
+            branch=branch,
+            speed=None if speed is None else joint_speed(speed, linkage, column),
+            acceleration=finite_number("acceleration", acceleration),
+        )  # fmt: skip
+
+    def frame(self, circuit: Circuit) -> pd.DataFrame:
+        """Its rows as a pandas table."""
+        return frame_of(circuit_columns(circuit.fleeting(), self.linkage, si=False), self.linkage)
 
     def equilibria(self, circuit: Circuit, loading: Loading, torque: float) -> tuple[Equilibrium, ...]:
         """Where a circuit can rest."""

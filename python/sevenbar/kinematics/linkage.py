@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, is_number, spread_array, whole_number
+from sevenbar.arrays import Floats, finite_number, is_number, spread_array, whole_number
 from sevenbar.errors import NotCoveredError, RequestError, check_kind, check_word, ends_here, shown
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -22,6 +22,7 @@ from sevenbar.kinematics.solvers.general import AGREE, GeneralLoop
 if TYPE_CHECKING:
     from sevenbar.forces.acting import Load, Spring
     from sevenbar.forces.bodies import Body
+    from sevenbar.kinematics.circuits.one_pose import OnePose
     from sevenbar.kinematics.loop.grashof import FourBar
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
@@ -87,7 +88,15 @@ class Linkage(Solvable):
 
     @property
     def lengths(self) -> tuple[float, float, float]:
-        """Crank, coupler and rocker of an RSSR [length]."""
+        """Crank, coupler and rocker of an RSSR or of a planar four-bar [length].
+
+        >>> import sevenbar as sb
+        >>> sb.four_bar(40, 100, 80, 90).lengths
+        (40.0, 100.0, 80.0)
+        """
+        bar = None if self.kind == "RSSR" else self.as_four_bar()
+        if bar is not None and bar.kind == "planar" and "input link" in bar.links:
+            return bar.links["input link"], bar.links["coupler"], bar.links["output link"]
         return self._rssr("lengths").lengths
 
     @cached_property
@@ -396,14 +405,50 @@ class Linkage(Solvable):
             'double-crank'
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
+        values = self._pose(pose)
+        self._refuse_unheld()
+        return self.agreeing(agree)._general.circuit(values, column, output_column, samples, rate, law)
+
+    @ends_here
+    def at(
+        self,
+        pose: npt.ArrayLike,
+        *,
+        input: str | None = None,
+        speed: float | str | None = None,
+        acceleration: float = 0.0,
+    ) -> OnePose:
+        """One pose with what there is to know of it: rates, points, links, transmission, torque, reactions.
+
+        `pose` is as for `circuit`. The input has there this `speed` and `acceleration` [rad/s, rad/s^2, or
+        lengths]: the drive's speed, and none, where they are not given.
+
+            >>> import sevenbar as sb
+            >>> linkage = sb.load("rssr")
+            >>> pose = linkage.at(linkage.assembly_modes("45 deg").q[0])
+            >>> round(pose["rocker"], 6), round(float(pose.dq[-1]), 6), pose.points["A"].velocity.shape
+            (-0.117924, 0.690558, (1, 3))
+        """
+        from sevenbar.kinematics.circuits.poses_at import pose_near
+
+        column = self.input_column(input)
+        return pose_near(
+            self,
+            self._pose(pose),
+            input=input,
+            speed=self._speed(speed, column),
+            acceleration=finite_number("acceleration", acceleration),
+        )
+
+    def _pose(self, pose: npt.ArrayLike) -> Floats:
+        """The values of a pose, one for each column."""
         values = pose_numbers("pose", pose, self)
         if values.size != len(self.columns):
             raise RequestError(
                 f"pose: {values.size} values where the linkage has {len(self.columns)} columns; "
                 f"give one for each of {', '.join(self.columns)}"
             )
-        self._refuse_unheld()
-        return self.agreeing(agree)._general.circuit(values, column, output_column, samples, rate, law)
+        return values
 
     def _asked(
         self, samples: int, input: str | None, output: str | None, speed: float | str | None, law: Law | None

@@ -15,7 +15,7 @@ from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting.facts import turns_text
 from sevenbar.reporting.force_peaks import peaks_of
-from sevenbar.reporting.shown import REST, Shown, degrees, number, six_digits
+from sevenbar.reporting.shown import REST, Shown, degrees, number, six_digits, turned
 from sevenbar.text.words import say
 
 #: Dead centres listed in one cell; an output that rests has no end of them.
@@ -82,7 +82,11 @@ class _Texts:
         """Extremes without rounding: of a joint that rests, or follows evenly, both are one number."""
         if extremes is None:
             return None
-        low, high = self._rounded(extremes.lowest, extremes.highest, circuit, order)
+        low, high = extremes.lowest, extremes.highest
+        if order == 0 and circuit.output_turns:
+            turn = turned(low, high)
+            low, high = low + turn, high + turn
+        low, high = self._rounded(low, high, circuit, order)
         return replace(extremes, lowest=low, highest=high)
 
     def _rounded(self, low: float, high: float, circuit: Circuit, order: int) -> tuple[float, float]:
@@ -113,7 +117,8 @@ class _Texts:
         words = self._endless(circuit, extent, 1)
         if words or extent is None:
             return words
-        low, high = self._rounded(*extent, circuit, 0)
+        turn = turned(*extent) if circuit.output_turns else 0.0
+        low, high = self._rounded(extent[0] + turn, extent[1] + turn, circuit, 0)
         if low == high:
             return (say("at rest at {value}", value=self.result(low)),)
         return self.result(low), self.result(high)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from sevenbar.description.angle_doubts import angle_doubt
@@ -110,8 +110,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
         facts.append(("how found", how_found(motion)))
         facts.append(("mobility", _mobility(motion.mobility)))
     if motion.idle:
-        idle = say("; ").join(map(retold, motion.idle))
-        facts.append(("idle freedom", say("{freedoms}, held by convention", freedoms=idle)))
+        facts.append(("idle freedom", idle_text(motion.idle)))
     if motion.motion_type != "cannot-assemble":
         facts.append(("redundant", say("; ").join(map(retold, motion.redundant)) or say("no constraints")))
     if not linkage.loading.is_empty:
@@ -124,6 +123,11 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits:
         facts.append(("closure error", closure_text(motion, linkage.length_unit)))
     return facts
+
+
+def idle_text(idle: Sequence[str]) -> str:
+    """The freedoms that move no other link, and that they are held."""
+    return say("{freedoms}, held by convention", freedoms=say("; ").join(map(retold, idle)))
 
 
 def completeness_text(word: str, *, curve: bool = False, unfollowed: bool = False) -> str:

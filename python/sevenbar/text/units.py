@@ -18,6 +18,12 @@ ANGLES = {"rad": 1.0, "deg": math.pi / 180}
 #: Units of turning speed and their size in rad/s.
 TURNING_SPEEDS = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.tau / 60, "rev/s": math.tau}
 
+#: Other words for them.
+OTHER_SPEEDS = {
+    **dict.fromkeys(("hz", "1/s", "rps", "u/s"), "rev/s"),
+    **dict.fromkeys(("u/min", "1/min", "min-1", "tr/min", "rev/min"), "rpm"),
+}
+
 #: Units of time and their size in seconds.
 TIMES = {"s": 1.0, "ms": 1e-3, "min": 60.0}
 
@@ -44,7 +50,9 @@ def as_written(value: float) -> float:
 def unknown_unit(given: object, known: Iterable[str]) -> str:
     """The message for a unit that does not exist."""
     known = list(known)
-    return f"{shown(given)} is not a unit known here; {suggestion(given, known)}allowed: {', '.join(known)}"
+    meant = OTHER_SPEEDS.get(str(given).strip().lower())
+    near = f"did you mean '{meant}'? " if meant in known else suggestion(given, known)
+    return f"{shown(given)} is not a unit known here; {near}allowed: {', '.join(known)}"
 
 
 def turning_speed(value: object) -> float:

@@ -15,11 +15,14 @@ from sevenbar.arrays import Floats, Integers, ReadOnly, Words, counted, triple, 
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
 from sevenbar.kinematics.circuits.with_extents import ExtentAnswers, WithExtents
+from sevenbar.kinematics.loop.columns import column_named
 from sevenbar.kinematics.loop.rigid import placed, pose
 from sevenbar.text.printing import Printed
 
 # what a circuit gives when it is asked is imported by the answer, not with every circuit
 if TYPE_CHECKING:
+    import pandas as pd
+
     from sevenbar.forces.acting import Load, Spring
     from sevenbar.forces.bodies import Body
     from sevenbar.forces.counterweights import Balance
@@ -29,6 +32,7 @@ if TYPE_CHECKING:
     from sevenbar.forces.result import Forces
     from sevenbar.kinematics.circuits.instant_centres import InstantCentres
     from sevenbar.kinematics.circuits.link_motion import LinkMotion
+    from sevenbar.kinematics.circuits.one_pose import OnePose
     from sevenbar.kinematics.loop.geometry import Point
     from sevenbar.kinematics.loop.screw_axes import ScrewAxes, Twists
 
@@ -87,6 +91,19 @@ class Answers(ExtentAnswers, Protocol):
 
     def equilibria(self, circuit: Circuit, loading: Loading, torque: float) -> tuple[Equilibrium, ...]:
         """Where it can rest."""
+
+    def pose(
+        self,
+        circuit: Circuit,
+        value: float | str,
+        branch: int | None,
+        speed: float | str | None,
+        acceleration: float,
+    ) -> OnePose:
+        """At a value of the input."""
+
+    def frame(self, circuit: Circuit) -> pd.DataFrame:
+        """Its rows as a pandas table."""
 
 
 def _given(**acting: object) -> dict[str, object]:
@@ -273,6 +290,43 @@ class Circuit(ReadOnly, Printed, WithExtents):
     def fleeting(self) -> Circuit:
         """The circuit for one look at its rows: those of a long one are not kept with it."""
         return self
+
+    def __getitem__(self, name: str) -> Floats:
+        """A joint along the rows (n,) [rad, or length], by the name of its column: `circuit["theta_4"]`.
+
+        `KeyError` names the columns there are.
+        """
+        return self.q[:, column_named(self.columns, name)]
+
+    @ends_here
+    def at(
+        self,
+        value: float | str,
+        *,
+        branch: int | None = None,
+        speed: float | str | None = None,
+        acceleration: float = 0.0,
+    ) -> OnePose:
+        """The pose at a value of the input, as in "45 deg": rates, points, links, forces.
+
+        The input has there the `speed` of the circuit, or this one, and this `acceleration` [rad/s, rad/s^2,
+        or lengths]; where a law drives, the linkage's own speed. `branch` is the pass between dead centres of
+        the input where more than one of them has the value.
+
+            >>> import sevenbar as sb
+            >>> pose = sb.load("planar_4r").motion().circuits[0].at("45 deg")
+            >>> round(pose["theta_4"], 6), round(float(pose.dq[3]), 6)
+            (-2.418254, -0.081445)
+        """
+        return self._answers.pose(self, value, branch, speed, acceleration)
+
+    @ends_here
+    def to_frame(self) -> pd.DataFrame:
+        """Its rows as a pandas table (extra `[frame]`), with the columns of `Motion.to_frame`.
+
+        `attrs["units"]` has the unit of each column.
+        """
+        return self._answers.frame(self)
 
     @property
     def input(self) -> Floats:

@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, ReadOnly, whole_number, within_turn
-from sevenbar.errors import RequestError, of_extra, shown
+from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.search import NearMotion, Search
-from sevenbar.kinematics.circuits.table import circuit_columns
+from sevenbar.kinematics.circuits.table import circuit_columns, frame_of
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.printing import Drawable
 
@@ -324,10 +324,13 @@ class Motion(ReadOnly, Drawable):
             yield circuit_columns(circuit.fleeting(), self.linkage, si=si)
 
     def to_frame(self) -> pd.DataFrame:
-        """`columns` as a pandas table (extra `[frame]`)."""
-        with of_extra("frame", "to_frame needs pandas"):
-            import pandas as pd
-        return pd.DataFrame(self.columns())
+        """`columns` as a pandas table (extra `[frame]`); `attrs["units"]` has the unit of each column.
+
+        >>> import sevenbar as sb
+        >>> sb.load("planar_4r").motion(12).to_frame().attrs["units"]["theta_4_rad_s"]
+        'rad/s'
+        """
+        return frame_of(self.columns(), self.linkage)
 
 
 def chosen_circuit(motion: Motion, index: int) -> Circuit:

@@ -27,6 +27,9 @@ Form = Literal["rssr", "rows", "planar", "drawn"]
 #: A place in a description: keys of tables, and counts from 0 in lists.
 Place = tuple[str | int, ...]
 
+#: Lengths below this part of how far off they are drawn are the rounding of places, as for the core.
+NO_SIZE = 64 * float(np.finfo(float).eps)
+
 #: What a linkage is called that was made without a name.
 UNNAMED = "linkage"
 
@@ -165,6 +168,14 @@ class Loop(Drawable):
     def transforms(self) -> Floats:
         """The G's of all links (n, 4, 4), the ground's last: `Z(q1) G1 .. Z(qn) Gn = 1`."""
         return np.concatenate([self.links, [inverse(self.ground) @ self.base]])
+
+    @property
+    def size(self) -> float:
+        """The size [length], as the core has it: all links' lengths, and pitches by radian; 1 if none."""
+        lengths = float(np.linalg.norm(self.transforms[:, :3, 3], axis=1).sum())
+        size = lengths + sum(abs(joint.pitch) / math.tau for joint in self.joints)
+        reach = max(math.hypot(*frame[:3, 3]) for frame in (self.base, self.ground))
+        return size if size > NO_SIZE * reach else 1.0
 
     @cached_property
     def kind(self) -> str:

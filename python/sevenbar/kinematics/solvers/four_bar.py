@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.grashof import FourBar, four_bar_of_links, least, slider_crank_of_links
 from sevenbar.kinematics.loop.rigid import cross, inverse
-from sevenbar.kinematics.solvers.general import Expanded, expanded, size_of
+from sevenbar.kinematics.solvers.general import Expanded, expanded
 from sevenbar.kinematics.solvers.plane_and_sphere import SAME, in_plane, sphere_of
 
 #: The links of a loop with four joints, where the first and the last are input and output.
@@ -60,7 +60,7 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     normals = _normals(parts, moves, found.plane.normal)
     lengths = [math.hypot(*cross(n, m[:3, 3])) for n, m in zip(normals, between, strict=True)]
     # two joints on one axis are one
-    shortest = SAME * size_of(loop)
+    shortest = SAME * loop.size
     if "P" not in letters:
         return None if min(lengths) <= shortest else four_bar_of_links("planar", lengths, names, roles)
     slide = letters.index("P")

@@ -368,14 +368,6 @@ def expanded(linkage: Loop) -> Expanded:
     return Expanded(letters, advances, fixed[0], fixed[1:], ground, last, columns)
 
 
-def size_of(linkage: Loop) -> float:
-    """The size [length] of a loop, as the core has it: all links' lengths, and pitches by radian."""
-    lengths = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
-    size = lengths + sum(abs(joint.pitch) / math.tau for joint in linkage.joints)
-    reach = max(math.hypot(*frame[:3, 3]) for frame in (linkage.base, linkage.ground))
-    return size if size > _core.NO_SIZE * reach else 1.0
-
-
 def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
     """Limits of all circuits [rad in [0, 2 pi), or length], rising, equal ones once.
 

@@ -15,7 +15,7 @@ from sevenbar.arrays import Floats, ReadOnly, places_array, positive_length, tri
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rigid import cross, inverse, unit
-from sevenbar.kinematics.solvers.general import AGREE, expanded, size_of
+from sevenbar.kinematics.solvers.general import AGREE, expanded
 from sevenbar.text.printing import Printed
 
 #: How far axes may be from parallel [rad], or from one point and one height [share of the size]: as far as
@@ -168,7 +168,7 @@ def _in_plane(
         return False
     back = end[:3, :3].T @ normal
     off = math.hypot(*(back - normal)) if whole else max(abs(back[2]), abs(normal[2]))
-    level = out == 1 or bool(abs(end[:3, 3] @ normal) <= SAME * size_of(loop))
+    level = out == 1 or bool(abs(end[:3, 3] @ normal) <= SAME * loop.size)
     return len(balls) <= MOST_BALLS and out <= 1 and off <= SAME and level
 
 
@@ -200,7 +200,7 @@ def sphere_of(loop: Loop) -> MotionSphere | None:
     axes = np.stack([frame[:3, 2] for frame in frames])
     turning = [i for i, letter in enumerate(parts.letters) if letter == "R"]
     balls = [i for i, letter in enumerate(parts.letters) if letter == "S"]
-    near = SAME * size_of(loop)
+    near = SAME * loop.size
     centre = meeting_point(places[turning], axes[turning])
     if centre is None:
         return None

@@ -15,7 +15,6 @@ from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.loop.reason import OffJoint, Reason, What
 from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, turns_about, unit
 from sevenbar.kinematics.loop.stops import NO_STOPS
-from sevenbar.kinematics.solvers.general import size_of
 from sevenbar.kinematics.solvers.plane_and_sphere import SAME, meeting_point
 
 #: Joints of which more than one is off are meant to fit up to this angle [rad] of axes, and this share of the
@@ -110,7 +109,7 @@ def _drawn(motion: Motion) -> _Drawn | None:
 
 def _on_one_axis(drawn: _Drawn, one: int, other: int) -> bool:
     axis, apart = drawn.axes[one], drawn.places[other] - drawn.places[one]
-    near = SAME * size_of(drawn.loop)
+    near = SAME * drawn.loop.size
     return math.hypot(*cross(axis, drawn.axes[other])) <= SAME and math.hypot(*cross(axis, apart)) <= near
 
 
@@ -198,7 +197,7 @@ def _off_point(drawn: _Drawn) -> tuple[Reason, Solvable] | None:
     loop, axes, places = drawn.loop, drawn.axes, drawn.places
     if {joint.kind for joint in loop.joints} != {"R"}:
         return None
-    size = size_of(loop)
+    size = loop.size
     tried = []
     for pair in combinations(range(len(axes)), 2):
         centre = meeting_point(places[list(pair)], axes[list(pair)])
