@@ -15,6 +15,7 @@ from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
 from sevenbar.errors import DescriptionError, SevenbarError, ends_here, read_start, shown
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.paths import is_file
 
 if TYPE_CHECKING:
     from sevenbar.description.table_reader import TableDescription
@@ -68,7 +69,7 @@ def note_of(source: str | os.PathLike[str]) -> str:
     """How a table was read, in a sentence; empty for other files, and for one that is wrong."""
     path = Path(source)
     # of the gallery or not, what is no file is no table
-    if not path.is_file():
+    if not is_file(path):
         return ""
     content = _read(path)
     if not _is_table(content, path):

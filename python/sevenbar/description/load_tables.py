@@ -10,6 +10,7 @@ import numpy as np
 
 from sevenbar.description.written import entries
 from sevenbar.errors import RequestError, SevenbarError, TableError, shown
+from sevenbar.text.paths import is_file
 from sevenbar.text.units import ANGLES
 
 # most descriptions have none
@@ -43,7 +44,7 @@ def _with_rows(load: Any, context: Mapping[str, Any]) -> Any:
 def folder_of(source: str) -> Path:
     """The folder of a description's file; of a text without one the folder in which the program runs."""
     try:
-        return Path(source).parent if source and Path(source).is_file() else Path()
+        return Path(source).parent if source and is_file(source) else Path()
     except (OSError, ValueError):  # a name that no file can have
         return Path()
 

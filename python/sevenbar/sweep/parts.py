@@ -16,9 +16,13 @@ from sevenbar.errors import OutputError
 from sevenbar.sweep.held_folder import HeldFolder, other_maker
 from sevenbar.sweep.plan import FORMAT, SweepPlan
 from sevenbar.sweep.rows import MARK
+from sevenbar.text.paths import is_file
 
 #: The description's file.
 DESCRIPTION = "sweep.json"
+
+#: What a description must have to be read.
+NEEDED = frozenset({"made_by", "parts"})
 
 #: Digits of a part's number in its name, so that names sort in the order of the parts.
 DIGITS = 6
@@ -39,9 +43,9 @@ def read_description(folder: Path) -> dict[str, Any]:
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise OutputError(f"{path}: cannot be read: {reason}; give the folder of a sweep") from None
-    except ValueError:
+    except (ValueError, RecursionError):
         found = None
-    if not isinstance(found, dict) or found.get("format") != FORMAT or "made_by" not in found:
+    if not isinstance(found, dict) or found.get("format") != FORMAT or not found.keys() >= NEEDED:
         raise OutputError(f"{path}: is no description of a sweep of format {FORMAT}; give another folder")
     return found
 
@@ -54,7 +58,7 @@ def parts_there(folder: Path) -> list[int]:
 
 def is_finished(folder: Path) -> bool:
     """Whether a folder has all the parts of the sweep that it holds, if it holds one."""
-    if not (folder / DESCRIPTION).is_file():
+    if not is_file(folder / DESCRIPTION):
         return False
     return bool(len(parts_there(folder)) == read_description(folder)["parts"])
 
