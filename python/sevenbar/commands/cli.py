@@ -25,7 +25,7 @@ from sevenbar.commands.deliver import check_out, deliver, tell_written, write_fi
 from sevenbar.commands.given import check_law, film_of, input_value, law_of, look_of, opened, point_of
 from sevenbar.commands.output import safe_output
 from sevenbar.commands.progress import progress_bar
-from sevenbar.commands.signals import NOTHING, at_work, heed_signals, stopped
+from sevenbar.commands.signals import NOTHING, at_work, has_just_come, heed_signals, stopped
 from sevenbar.errors import (
     AngleUnitWarning,
     MissingFontWarning,
@@ -84,9 +84,11 @@ class _Commands(typer.core.TyperGroup):
         try:
             with at_work():
                 return super().invoke(ctx)
-        except KeyboardInterrupt:
-            typer.echo(f"sevenbar: {NOTHING}", err=True)
-            raise typer.Exit(stopped()) from None
+        except (KeyboardInterrupt, Exception) as error:
+            if isinstance(error, KeyboardInterrupt) or (_is_fault(error) and has_just_come()):
+                typer.echo(f"sevenbar: {NOTHING}", err=True)
+                raise typer.Exit(stopped()) from None
+            raise
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         from sevenbar.description.files import TABLE_ENDINGS
@@ -99,6 +101,11 @@ class _Commands(typer.core.TyperGroup):
                 f"{word}: is a linkage, where a command should stand; give: sevenbar analyze {word}"
             )
         return super().resolve_command(ctx, args)
+
+
+def _is_fault(error: Exception) -> bool:
+    """Whether an error is none that ends a command in good order."""
+    return not isinstance(error, SevenbarError | typer.Exit | typer.Abort) and not hasattr(error, "exit_code")
 
 
 app = typer.Typer(

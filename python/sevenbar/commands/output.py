@@ -21,7 +21,6 @@ PLAIN = {
     "‘": "'", "’": "'", "“": '"', "”": '"',
     "µ": "u", "μ": "u", "α": "alpha", "β": "beta", "γ": "gamma", "θ": "theta", "φ": "phi", "ω": "omega",
     "；": "; ", "，": ", ", "：": ": ", "（": " (", "）": ")", "。": ".", "、": ", ",
-    "╭": "+", "╮": "+", "╰": "+", "╯": "+", "╷": "|", "╵": "|", "╶": "-", "╴": "-", "╸": "-", "╺": "-",
     "•": "*",
 }  # fmt: skip
 
@@ -56,13 +55,8 @@ def plain_text(text: str) -> str:
 def _like(letter: str) -> str:
     name = unicodedata.name(letter, "")
     if name.startswith("BOX DRAWINGS"):
-        return (
-            "-"
-            if "HORIZONTAL" in name and "VERTICAL" not in name
-            else "|"
-            if "HORIZONTAL" not in name
-            else "+"
-        )
+        along = any(word in name for word in ("HORIZONTAL", "LEFT", "RIGHT"))
+        return "+" if " AND " in name else "-" if along else "|"
     bare = unicodedata.normalize("NFKD", letter).encode("ascii", "ignore").decode()
     return bare or "?"
 

@@ -71,6 +71,11 @@ def at_work() -> Iterator[None]:
         _heed.working = False
 
 
+def has_just_come() -> bool:
+    """Whether a signal came within the last second: what fails then may fail for it, as drawing in C does."""
+    return time.monotonic() - _heed.at < ECHO
+
+
 def stopped() -> int:
     """How a shell sees a command that a signal ended: 128 and its number, 130 for Ctrl+C."""
     return 128 + _heed.number

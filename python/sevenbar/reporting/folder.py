@@ -30,10 +30,22 @@ def check_targets(files: Iterable[Path], *, force: bool) -> None:
     """
     for file in files:
         _check_folder(file.parent)
+        _check_name(file)
         if is_folder(file):
             raise OutputError(f"{file}: is a folder where a file should go; give another path")
         if not force and is_there(file):
             raise OutputError(f"{file}: exists already; give another path, or --force to replace it")
+
+
+def _check_name(file: Path) -> None:
+    """Raises `OutputError` for a name that the system does not take, as one of 5,000 letters."""
+    try:
+        file.lstat()
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        pass
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise OutputError(f"{file}: cannot be written: {reason.lower()}; give another name") from None
 
 
 def _check_folder(folder: Path) -> None:

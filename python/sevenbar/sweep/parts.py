@@ -21,9 +21,6 @@ from sevenbar.text.paths import is_file
 #: The description's file.
 DESCRIPTION = "sweep.json"
 
-#: What a description must have to be read.
-NEEDED = frozenset({"made_by", "parts"})
-
 #: Digits of a part's number in its name, so that names sort in the order of the parts.
 DIGITS = 6
 
@@ -45,9 +42,17 @@ def read_description(folder: Path) -> dict[str, Any]:
         raise OutputError(f"{path}: cannot be read: {reason}; give the folder of a sweep") from None
     except (ValueError, RecursionError):
         found = None
-    if not isinstance(found, dict) or found.get("format") != FORMAT or not found.keys() >= NEEDED:
+    if not isinstance(found, dict) or not _is_description(found):
         raise OutputError(f"{path}: is no description of a sweep of format {FORMAT}; give another folder")
     return found
+
+
+def _is_description(found: Mapping[str, Any]) -> bool:
+    """Whether what a file holds has what is read of a description."""
+    kinds = {"made_by": list, "dimensions": list, "parts": int}
+    return found.get("format") == FORMAT and all(
+        isinstance(found.get(key), kind) for key, kind in kinds.items()
+    )
 
 
 def parts_there(folder: Path) -> list[int]:
