@@ -29,6 +29,7 @@ __all__ = [
     "Rssr",
     "RssrBatch",
     "Survey",
+    "WorkStop",
     "__version__",
     "classify_rssr",
     "driven",
@@ -54,6 +55,25 @@ __version__: str
 
 class CoreError(ValueError):
     """A request that the core cannot take."""
+
+@final
+class WorkStop:
+    """Stops the work of the core from another thread.
+
+    Within a `with` block of it the core's calls of this thread raise KeyboardInterrupt once `stop()` was
+    called.
+    """
+
+    def __new__(cls) -> WorkStop: ...
+    def stop(self) -> None:
+        """Ends what is at work, and all that follows."""
+
+    @property
+    def stopped(self) -> bool:
+        """Whether it was stopped."""
+
+    def __enter__(self) -> WorkStop: ...
+    def __exit__(self, kind: object, value: object, traceback: object) -> None: ...
 
 @final
 class Rssr:

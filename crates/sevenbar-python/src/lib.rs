@@ -9,6 +9,7 @@ mod rows;
 mod rssr;
 mod survey;
 mod values;
+mod working;
 
 use numpy::ndarray::Dimension;
 use numpy::{PyReadonlyArray, PyReadonlyArray2};
@@ -86,6 +87,8 @@ mod _core {
     use super::survey::{RawTally, Survey, survey_figures};
     #[pymodule_export]
     use super::values::{RawCircuit, RawCount, RawFound, RawMotion, RawSearch};
+    #[pymodule_export]
+    use super::working::WorkStop;
     #[pymodule_export]
     use super::{CoreError, simd_level};
 

@@ -23,8 +23,10 @@ from sevenbar.commands.command import Command
 from sevenbar.commands.consent import confirm, long_motion, table_ahead
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
 from sevenbar.commands.given import check_law, film_of, input_value, law_of, look_of, opened, point_of
+from sevenbar.commands.output import safe_output
 from sevenbar.commands.poses import rates_at
-from sevenbar.commands.progress import STOPPED, progress_bar
+from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.signals import NOTHING, at_work, has_just_come, heed_signals, stopped
 from sevenbar.errors import (
     AngleUnitWarning,
     MissingFontWarning,
@@ -81,10 +83,13 @@ class _Commands(typer.core.TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Runs the command; Ctrl+C outside of what has a bar of its own has written nothing."""
         try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt:
-            typer.echo("sevenbar: stopped; nothing is written", err=True)
-            raise typer.Exit(STOPPED) from None
+            with at_work():
+                return super().invoke(ctx)
+        except (KeyboardInterrupt, Exception) as error:
+            if isinstance(error, KeyboardInterrupt) or (_is_fault(error) and has_just_come()):
+                typer.echo(f"sevenbar: {NOTHING}", err=True)
+                raise typer.Exit(stopped()) from None
+            raise
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         from sevenbar.description.files import TABLE_ENDINGS
@@ -97,6 +102,11 @@ class _Commands(typer.core.TyperGroup):
                 f"{word}: is a linkage, where a command should stand; give: sevenbar analyze {word}"
             )
         return super().resolve_command(ctx, args)
+
+
+def _is_fault(error: Exception) -> bool:
+    """Whether an error is none that ends a command in good order."""
+    return not isinstance(error, SevenbarError | typer.Exit | typer.Abort) and not hasattr(error, "exit_code")
 
 
 app = typer.Typer(
@@ -383,6 +393,9 @@ def main() -> NoReturn:
     """The program: exit 0 well, 2 the caller's mistake, 1 our own fault."""
     # looking for plugins reads the metadata of every package that is installed
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    # no window is opened, whatever backend matplotlib is set to
+    os.environ["MPLBACKEND"] = "agg"
+    heed_signals()
     with warnings.catch_warnings():
         warnings.showwarning = _tell_warning
         warnings.simplefilter("always", AngleUnitWarning)
@@ -393,7 +406,8 @@ def main() -> NoReturn:
 
 def _run() -> NoReturn:
     try:
-        app(standalone_mode=True, prog_name="sevenbar")
+        with safe_output():
+            app(standalone_mode=True, prog_name="sevenbar")
     except SevenbarError as error:
         sys.stderr.write("".join(f"sevenbar: {line}\n" for line in str(error).splitlines()))
         sys.exit(2)

@@ -23,6 +23,7 @@ from sevenbar.errors import (
     shown,
 )
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.paths import is_file
 
 if TYPE_CHECKING:
     from sevenbar.description.table_reader import TableDescription
@@ -80,7 +81,7 @@ def note_of(source: str | os.PathLike[str]) -> str:
     """How a table was read, in a sentence; empty for other files, and for one that is wrong."""
     path = given_path("source", source)
     # of the gallery or not, what is no file is no table
-    if not path.is_file():
+    if not is_file(path):
         return ""
     content = _read(path)
     if not _is_table(content, path):

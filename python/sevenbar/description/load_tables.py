@@ -11,6 +11,7 @@ import numpy as np
 from sevenbar.description.named_files import file_below
 from sevenbar.description.written import entries
 from sevenbar.errors import DescriptionError, Problem, RequestError, SevenbarError, TableError, shown
+from sevenbar.text.paths import is_file
 from sevenbar.text.units import ANGLES
 
 # most descriptions have none
@@ -59,7 +60,7 @@ def refuse_tables(raw: Mapping[str, Any], source: str) -> None:
 def folder_of(source: str) -> Path:
     """The folder of a description's file; of a text without one the folder in which the program runs."""
     try:
-        return Path(source).parent if source and Path(source).is_file() else Path()
+        return Path(source).parent if source and is_file(source) else Path()
     except (OSError, ValueError):  # a name that no file can have
         return Path()
 

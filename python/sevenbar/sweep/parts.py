@@ -17,6 +17,7 @@ from sevenbar.errors import OutputError
 from sevenbar.sweep.checked import OWN, checksum, flaw
 from sevenbar.sweep.held_folder import HeldFolder, other_maker
 from sevenbar.sweep.plan import FORMAT, SweepPlan
+from sevenbar.text.paths import is_file
 
 #: The description's file.
 DESCRIPTION = "sweep.json"
@@ -45,7 +46,7 @@ def read_description(folder: Path) -> dict[str, Any]:
         raise OutputError(f"{path}: cannot be read: {reason}; give the folder of a sweep") from None
     except (ValueError, RecursionError):
         found = None
-    if not isinstance(found, dict) or "made_by" not in found:
+    if not isinstance(found, dict) or not isinstance(found.get("made_by"), list):
         raise OutputError(f"{path}: is no description of a sweep of format {FORMAT}; give another folder")
     if found.get("format") == WITHOUT_CHECKSUMS:
         raise OutputError(
@@ -84,7 +85,7 @@ def parts_there(folder: Path) -> list[int]:
 
 def is_finished(folder: Path) -> bool:
     """Whether a folder has all the parts of the sweep that it holds, if it holds one."""
-    if not (folder / DESCRIPTION).is_file():
+    if not is_file(folder / DESCRIPTION):
         return False
     return bool(len(parts_there(folder)) == read_description(folder)["parts"])
 

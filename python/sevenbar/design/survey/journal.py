@@ -85,7 +85,7 @@ class Journal(HeldFolder):
         try:
             there = json.loads(path.read_text(encoding="utf-8"))
             known = {key: there[key] for key in self._task.request()}
-        except (ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError, RecursionError):
             raise OutputError(f"{path}: is no description of a survey; give another folder") from None
         self._refuse_another(known)
         lines = self._whole_lines()
@@ -101,7 +101,7 @@ class Journal(HeldFolder):
                 tally = SurveyTally.of_dict(row["tally"])
                 if not 0 <= part < self._task.parts or tally.count != len(self._task.linkages(part)):
                     raise ValueError
-            except (ValueError, KeyError, TypeError, IndexError):
+            except (ValueError, KeyError, TypeError, IndexError, RecursionError):
                 raise OutputError(
                     f"{self.path / JOURNAL}: line {number} is no part of this survey, or damaged; "
                     "take the line out and give --resume"

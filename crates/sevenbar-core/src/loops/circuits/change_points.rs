@@ -16,6 +16,7 @@ use crate::loops::equation::rotations::squared_up;
 use crate::loops::mobility::singular_place::{LAST_STEP, MOST_STEPS, Place, STEADY, singular_place};
 use crate::loops::modes::polish::CLOSED;
 use crate::random::Random;
+use crate::stopping;
 
 /// Distance from the pose at which curves are cut [rad, or relative to the size]. Closer in, rounding turns their tangents by more than
 /// the curves bend.
@@ -241,6 +242,7 @@ fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> 
     let mut at = chain.moved(&place.at, &direction.map(|x| x * radius));
     let mut before = f64::INFINITY;
     for step in 0..MOST_STEPS {
+        stopping::piece();
         let placed = chain.place(&at);
         let off = chain.difference(&place.at, &at);
         let seen: Vec<f64> = place.free.iter().map(|f| dot(f, &off)).collect();

@@ -4,6 +4,7 @@ use super::curve::{self, Curve, End, Node, Stand};
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
 use crate::loops::equation::dense::{COLUMNS, Columns, dot, length};
 use crate::simd::{self, Kernel};
+use crate::stopping;
 use crate::vectors::{self, LANES, LaneKernel, Vector};
 
 /// Shorter steps mean a place where the curve is not smooth: a change point.
@@ -17,6 +18,9 @@ const MOST_NODES: usize = 100_000;
 
 /// The same of a piece between starts, which many walk at once; a longer one is left to the ordinary way.
 const MOST_PIECE_NODES: usize = 5_000;
+
+/// Most nodes of curves that are walked side by side, 260 MB; those that are still under way by then end there.
+const MOST_TOGETHER: usize = 600_000;
 
 /// Slides [share of the size] and screws [rad] are not followed farther than this.
 const FARTHEST: f64 = 50.0;
@@ -48,9 +52,12 @@ pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Cur
     curves
 }
 
-/// Whether a curve ended since it had too many nodes: it may have no end, as on a surface of poses.
-pub(super) fn is_endless(curve: &Curve) -> bool {
-    curve.nodes.len() >= MOST_NODES
+/// Whether a curve ended since there were too many nodes: it may have no end, as on a surface of poses, or be so long that rounding
+/// leads it on, as where lengths of one loop differ by many powers of ten.
+pub(super) fn is_endless(chain: &Chain, curve: &Curve) -> bool {
+    let ends = curve.ends().into_iter().zip(curve.why);
+    ends.into_iter()
+        .any(|(at, why)| why == End::Far && !is_far(chain, at))
 }
 
 /// A walk from an end, with the reason of that end.
@@ -94,7 +101,15 @@ fn walk_until(
 ) -> (Vec<Curve>, Vec<Option<usize>>) {
     let mut curves = vec![Curve { nodes: Vec::new(), why: [End::Far; 2] }; starts.len()];
     let mut reached = vec![None; starts.len()];
-    let walk = Walk { chain, starts, stops, any, curves: &mut curves, reached: &mut reached };
+    let walk = Walk {
+        chain,
+        starts,
+        stops,
+        any,
+        curves: &mut curves,
+        reached: &mut reached,
+        nodes: 0,
+    };
     match starts.len() {
         0 => {}
         // one curve has nothing beside it, and vector code would be slower
@@ -137,6 +152,8 @@ struct Walk<'a> {
     curves: &'a mut [Curve],
     /// The start to which each came.
     reached: &'a mut [Option<usize>],
+    /// How many nodes there are on all.
+    nodes: usize,
 }
 
 impl LaneKernel for Walk<'_> {
@@ -168,6 +185,7 @@ impl LaneKernel for Walk<'_> {
         let mut growth = [0.0; LANES];
         let mut step = curve::likely(self.chain, &here.node, V::load(&growth)).store();
         while walker.iter().any(|&w| w < count) {
+            stopping::piece();
             let tried = curve::step(self.chain, &here, V::load(&step));
             let (mut allowed, tube) = (tried.allowed.store(), tried.tube.store());
             growth = tried.growth.store();
@@ -228,6 +246,7 @@ impl Kernel for Walk<'_> {
         self.record(0, here.node);
         let mut step = curve::likely(self.chain, &here.node, 0.0);
         loop {
+            stopping::piece();
             let tried = curve::step(self.chain, &here, step);
             let allowed = tried.allowed >= 0.0 && tried.next.node.inverse_norm.is_finite();
             let end = if allowed {
@@ -326,6 +345,7 @@ impl Walk<'_> {
     fn record(&mut self, walker: usize, node: Node) {
         if let Some(curve) = self.curves.get_mut(walker) {
             curve.nodes.push(node);
+            self.nodes += 1;
         }
     }
 
@@ -366,6 +386,7 @@ impl Walk<'_> {
             return Some(End::Closed);
         }
         curve.nodes.push(next);
+        self.nodes += 1;
         let stopped = |s: &Stop| {
             let off = chain.difference(&next.at, &s.at);
             // one that it has just left lies behind
@@ -382,7 +403,7 @@ impl Walk<'_> {
             !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > farthest
         });
         let most = if self.any { MOST_PIECE_NODES } else { MOST_NODES };
-        (far || curve.nodes.len() > most).then_some(End::Far)
+        (far || curve.nodes.len() > most || self.nodes > MOST_TOGETHER).then_some(End::Far)
     }
 }
 

@@ -33,6 +33,7 @@ from sevenbar.errors import (
     suggestion,
 )
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.paths import is_file, is_folder, is_there
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,9 +60,9 @@ def task_file(path: str | os.PathLike[str], *, agree: float | None = None) -> Ta
     """The same with the task's name and source."""
     source = str(path)
     file = Path(path)
-    if file.is_dir():
+    if is_folder(file):
         raise DescriptionError.of_all(source, "is a folder; give the path of a task file (TOML) in it")
-    if not file.is_file():
+    if not is_file(file):
         raise DescriptionError.of_all(
             source, f"no such file; {near_files(file)}give the path of a task file (TOML)"
         )
@@ -159,9 +160,9 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
         path = file_below(folder, name, "rssr.toml")
     except RequestError as error:
         raise wrong(str(error)) from None
-    if not path.exists() and name in gallery_names():
+    if not is_there(path) and name in gallery_names():
         return Draft.of(toml_text(name), name, agree=agree)
-    if not path.is_file():
+    if not is_file(path):
         near = suggestion(name, gallery_names())
         raise wrong(
             f"{shown(name)}: no such file in the folder of this one, nor such a name in the gallery; {near}"
