@@ -253,7 +253,8 @@ class Motion(ReadOnly, Drawable):
         """Why a rigid linkage does not move: joints off the plane or the point of the others, by how much.
 
         Two neighbours that turn about one axis, so that the link between has no length, are named for every
-        linkage. `None` where no reason of these kinds is seen.
+        linkage. `None` where no reason of these kinds is seen; joints that are off are named of drawn loops
+        only, since rows tell no pose.
 
         >>> import sevenbar as sb
         >>> places = {"a": (0, 0, 0), "b": (40, 0, 0), "c": (120, 70, 0), "d": (90, 0, 0)}

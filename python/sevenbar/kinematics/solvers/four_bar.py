@@ -28,6 +28,7 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     axes through one point. With two of them on one axis, so that the link between has no length, it is none.
     Links are called by what they do where input and output are at the ground, else by numbers.
 
+        >>> import sevenbar as sb
         >>> found = four_bar_of(sb.load("planar_4r"), "theta_1", "theta_4")
         >>> found.links
         {'input link': 40.0, 'coupler': 100.0, 'output link': 80.0, 'ground': 90.0}

@@ -12,6 +12,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.forces.loading import UNLOADED
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
+from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.reason import OffJoint, Reason, What
 from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, turns_about, unit
 from sevenbar.kinematics.loop.stops import NO_STOPS
@@ -65,18 +66,16 @@ def reason_of(motion: Motion) -> Reason | None:
     """Why a motion has no circuit, or which link has no length; `None` where nothing of it is seen.
 
     The reasons are one joint, or some by little, that keep the others from moving in a plane or about a
-    point, and two neighbours that turn about one axis.
+    point, of drawn loops, since rows do not tell a pose; and two neighbours that turn about one axis.
     """
     loop = motion.linkage
-    drawn = _drawn(motion)
-    if drawn is None:
-        return None
     for i, name in enumerate(names := [joint.name for joint in loop.joints]):
         after = (i + 1) % len(names)
-        if loop.joints[i].kind == loop.joints[after].kind == "R" and _on_one_axis(drawn, i, after):
+        if loop.joints[i].kind == loop.joints[after].kind == "R" and _on_one_axis(loop, i):
             return Reason("one-axis", (name, names[after]))
-    if motion.motion_type != "rigid":
+    if motion.motion_type != "rigid" or loop.in_rows:
         return None
+    drawn = _drawn(loop)
     for found in (_off_plane(drawn), _off_point(drawn)):
         if found is None:
             continue
@@ -89,15 +88,9 @@ def reason_of(motion: Motion) -> Reason | None:
     return None
 
 
-def _drawn(motion: Motion) -> _Drawn | None:
-    """The loop in the drawn pose, or in one in which it closes; `None` where none is known."""
-    loop = motion.linkage
+def _drawn(loop: Solvable) -> _Drawn:
+    """The loop in the drawn pose, all joints at zero."""
     q = np.zeros((1, len(loop.columns)))
-    if loop.in_rows:
-        closed = [point.q for point in motion.change_points] + [circuit.q[0] for circuit in motion.circuits]
-        if not closed or not np.isfinite(closed[0]).all():
-            return None
-        q = closed[0][None]
     before, behind = [], []
     now = loop.base
     for i, (joint, own) in enumerate(zip(loop.joints, loop.places, strict=True)):
@@ -107,10 +100,10 @@ def _drawn(motion: Motion) -> _Drawn | None:
     return _Drawn(loop, np.stack(before), np.stack(behind))
 
 
-def _on_one_axis(drawn: _Drawn, one: int, other: int) -> bool:
-    axis, apart = drawn.axes[one], drawn.places[other] - drawn.places[one]
-    near = SAME * drawn.loop.size
-    return math.hypot(*cross(axis, drawn.axes[other])) <= SAME and math.hypot(*cross(axis, apart)) <= near
+def _on_one_axis(loop: Loop, link: int) -> bool:
+    """Whether the two joints of a link, counted from 0, turn about one axis."""
+    way = loop.transforms[link]
+    return math.hypot(*way[:2, 2]) <= SAME and math.hypot(*way[:2, 3]) <= SAME * loop.size
 
 
 def _off_plane(drawn: _Drawn) -> tuple[Reason, Solvable | None] | None:
