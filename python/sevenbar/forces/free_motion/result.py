@@ -67,7 +67,7 @@ class FreeMotion(Drawable):
     the tolerance. `tail` is what the polynomials along the circuit leave out, as a part of the greatest
     value.
 
-    Source: docs/theory_free.md, (1) to (12).
+    Source: docs/theory_free.md, (1) to (15).
     """
 
     time: Floats
