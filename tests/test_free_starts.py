@@ -60,3 +60,17 @@ def test_a_time_has_the_units_of_the_help(text: str, end: float) -> None:
 def test_the_command_takes_milliseconds_and_refuses_what_is_no_time() -> None:
     assert "0 to 0.5 s" in sevenbar("free", "engine", "--time", "500ms").stdout
     assert "--time: '500 mm' is not a time" in mistake("free", "engine", "--time", "500 mm")
+
+
+def test_a_range_of_rest_is_one_equilibrium_from_end_to_end() -> None:
+    text = " ".join(sevenbar("free", "engine", "--time", "10ms").stdout.split())
+    assert "flat 135 deg to 240 deg" in text
+    assert " stable" not in text
+    _, flat = sb.load("engine").motion().circuits[0].equilibria()
+    assert np.degrees([flat.input, flat.until]) == pytest.approx([135, 240])
+
+
+def test_rounding_is_no_speed_and_no_angle_in_words() -> None:
+    text = " ".join(sevenbar("free", "engine", "--from", "0deg", "--time", "10ms").stdout.split())
+    assert "start crank = 0 deg, 0 deg/s" in text
+    assert "e-1" not in text.split("equilibrium crank")[1].replace("e-10", "")

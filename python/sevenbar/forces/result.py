@@ -30,6 +30,9 @@ COMPONENTS = ("Mx", "My", "Mz", "Fx", "Fy", "Fz")
 #: An input nearer to an end of a part than this share of it is the end.
 AT_END = 1e-9
 
+#: The moment of an idle spin below this part of the greatest moment in a joint is rounding.
+NO_MOMENT = 1e-9
+
 #: A component is open if a wrench that nothing determines has more than this part of its length in it.
 OPEN = 1e-8
 
@@ -190,6 +193,17 @@ class Forces(ReadOnly, Drawable):
         if every and any(one is every[used] for one in parts):
             return every[used]
         return parts[0] if parts else None
+
+    @property
+    def idle_spin(self) -> dict[str, float]:
+        """The greatest moment [N m] that the rule of each idle spin needs, by its link; 0 for rounding.
+
+        Of a link whose body is a rod, or which has none, the spin moves nothing.
+        """
+        moments = [_greatest(reaction.moment) for reaction in self.reactions.values()]
+        rounding = NO_MOMENT * max([*moments, 0.0])
+        found = {link: _greatest(moment) for link, moment in self.spin.items()}
+        return {link: most if most > rounding else 0.0 for link, most in found.items()}
 
     @property
     def unit(self) -> str:
@@ -403,3 +417,8 @@ class Forces(ReadOnly, Drawable):
         left = (ends[0] - ends[1] + outer + self.shaking[:, 3:])[known]
         greatest = max(float(np.abs(end[known]).max()) for end in ends)
         return float(np.abs(left).max() / greatest) if greatest else 0.0
+
+
+def _greatest(values: Floats) -> float:
+    """The greatest size of known values, 0 without any."""
+    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))

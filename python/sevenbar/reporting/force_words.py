@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from sevenbar.forces.sizing import WITHHELD, Sizing
 from sevenbar.reporting.shown import Shown, number
 from sevenbar.text.words import retold, say
 
-#: The moment of an idle spin below this part of the greatest moment in a joint is rounding.
+#: A force or moment below this part of the greatest is rounding.
 ROUNDING = 1e-9
 
 #: The parts of a bearing's load that are listed, with their units.
@@ -301,19 +301,30 @@ def _mean_power(forces: Forces, found: Sizing) -> float:
 def spin_facts(forces: Forces) -> list[tuple[str, str]]:
     """What holds links that spin idly: nothing for a rod, else a moment that no ball gives."""
     facts = []
-    moments = [np.abs(r.moment[np.isfinite(r.moment)]).max(initial=0.0) for r in forces.reactions.values()]
-    scale = max([*moments, 0.0])
-    for link, moment in forces.spin.items():
-        most = float(np.nanmax(np.abs(moment), initial=0.0))
-        if most <= ROUNDING * scale:
-            text = say("not held: its body is a rod, symmetric about the line of its balls, or none")
-        else:
+    for link, most in forces.idle_spin.items():
+        text = say("not held: its body is a rod, symmetric about the line of its balls, or none")
+        if most:
             text = say(
                 "the rule that holds it gives up to {moment} N m that no ball gives; without a guide "
                 "the link turns about the line of its balls, and these forces are not its own",
                 moment=number(most),
             )
         facts.append((say("idle spin"), say("{word}: {meaning}", word=retold(link), meaning=text)))
+    return facts
+
+
+def free_spin_facts(spin: Mapping[str, float]) -> list[tuple[str, str]]:
+    """The same of a free motion and of equilibria, where the spin moves something."""
+    facts = []
+    for link, most in spin.items():
+        if most:
+            text = say(
+                "the rule that holds it gives up to {moment} N m that no ball gives; without a guide "
+                "the link turns about the line of its balls, and neither this motion nor these equilibria "
+                "are its own",
+                moment=number(most),
+            )
+            facts.append((say("idle spin"), say("{word}: {meaning}", word=retold(link), meaning=text)))
     return facts
 
 

@@ -12,6 +12,7 @@ from rich.console import RenderableType
 from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
+from sevenbar.reporting.force_words import free_spin_facts
 from sevenbar.reporting.page import Facts, number_table, page
 from sevenbar.text.printing import figure_of, lines, text_of
 from sevenbar.text.words import retold, say
@@ -128,7 +129,7 @@ def holding_text(place: Equilibrium) -> str:
 
 @text_of.register
 def _(found: FreeMotion) -> str:
-    return lines(f"free motion of {found.heading}", free_facts(found))
+    return lines(f"free motion of {found.heading}", [*free_spin_facts(found.spin), *free_facts(found)])
 
 
 @figure_of.register
@@ -141,18 +142,22 @@ def _(found: FreeMotion, **options: Any) -> Any:
 def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
     fall, places = found
     facts = Facts()
-    facts.add_all(free_facts(fall))
+    # of the equilibria, too
+    spin = {
+        link: max([most, *(place.spin.get(link, 0.0) for place in places)])
+        for link, most in fall.spin.items()
+    }
+    facts.add_all([*free_spin_facts(spin), *free_facts(fall)])
     tables = []
     stops = any(place.stop for place in places)
+    highest = max([abs(place.potential) for place in places], default=0.0)
     if places:
         rows = [
             [
                 say(place.kind),
-                _angle(
-                    place.input, turns=fall.input_turns, unit=fall.length_unit, scale=float(fall.input_turns)
-                ),
+                _place_text(place, fall),
                 _vibration(place),
-                f"{place.potential:.9g}",
+                f"{0.0 if abs(place.potential) <= ROUNDING * highest else place.potential:.9g}",
                 *([holding_text(place) if place.stop else ""] if stops else []),
             ]
             for place in places
@@ -161,6 +166,14 @@ def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
         head += ["held by its stop"] * stops
         tables.append(number_table(head, rows, words=[0]))
     return page(say("free motion of {linkage}", linkage=fall.heading), facts, *tables)
+
+
+def _place_text(place: Equilibrium, fall: FreeMotion) -> str:
+    """The input of an equilibrium, of a range of rest both ends."""
+    ends = [place.input, place.until] if math.isfinite(place.until) else [place.input]
+    scale = float(fall.input_turns)
+    shown = [_angle(x, turns=fall.input_turns, unit=fall.length_unit, scale=scale) for x in ends]
+    return say(" to ").join(shown)
 
 
 def _vibration(place: Equilibrium) -> str:
@@ -182,6 +195,7 @@ def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]
         "energy_error": fall.energy_error,
         "difference": fall.difference,
         "tail": fall.tail,
+        "idle_spin": dict(fall.spin),
         "restitution": fall.restitution,
         "impacts": [
             {"time_s": one.time, "stop": one.stop, "input": one.input, "speed": one.speed}
@@ -196,6 +210,8 @@ def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]
                 "frequency_rad_s": place.frequency,
                 "rate_1_s": place.rate,
                 "potential_J": place.potential,
+                "until": place.until,
+                "idle_spin": dict(place.spin),
             }
             | (_held_dict(place) if place.stop else {})
             for place in places

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -67,7 +67,7 @@ class FreeMotion(ReadOnly, Drawable):
     the tolerance. `tail` is what the polynomials along the circuit leave out, as a part of the greatest
     value.
 
-    Source: docs/theory_free.md, (1) to (12).
+    Source: docs/theory_free.md, (1) to (15).
     """
 
     time: Floats
@@ -95,6 +95,9 @@ class FreeMotion(ReadOnly, Drawable):
     #: The rest on a stop with which it ends, and from when on [s].
     rest: Equilibrium | None
     rests_from: float
+    #: The greatest moment [N m] that the rule of each idle spin needs on the rows and that no ball gives, by
+    #: its link: where it is not 0 the link turns about the line of its balls: this motion is not its own.
+    spin: Mapping[str, float]
     #: What part of the speed a stop gives back.
     restitution: float
     heading: str = field(repr=False)

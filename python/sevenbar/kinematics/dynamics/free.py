@@ -20,20 +20,20 @@ from sevenbar.errors import RequestError, shown
 from sevenbar.forces.free_motion.conservative import BALANCED
 from sevenbar.forces.free_motion.course import DAMPING, INPUT, MASS, MASSLESS_WAY, EnergyCourse
 from sevenbar.forces.free_motion.driven import COARSE, TOLERANCE, Motor, force_at
-from sevenbar.forces.free_motion.equilibria import Equilibrium, Kind, resting_places
+from sevenbar.forces.free_motion.equilibria import Equilibrium, Resting, resting_places
 from sevenbar.forces.free_motion.result import FreeMotion, FreeStates, Impact, TurningPoint
 from sevenbar.forces.free_motion.stages import Stages, Walls, elastic, staged, stepped, without_losses
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.dynamics.energy_path import EnergyBuilder
-from sevenbar.kinematics.dynamics.forces import STILL, ForceSolver
+from sevenbar.kinematics.dynamics.forces import STILL, ForceSolver, PosedRows, forces_on
 from sevenbar.kinematics.dynamics.free_rows import CourseRows
 from sevenbar.kinematics.loop.columns import joint_columns
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_speed
 from sevenbar.kinematics.loop.law import Law
 from sevenbar.kinematics.paths.circuit_path import HAS, CircuitPath
-from sevenbar.kinematics.paths.covered_path import covered_path
+from sevenbar.kinematics.paths.covered_path import closed_on, covered_path
 from sevenbar.kinematics.paths.stretch import (
     Stretch,
     first_place,
@@ -98,6 +98,21 @@ class FreeCourse:
         """All columns along it."""
         return CourseRows(self.builder)
 
+    def spin_at(self, places: Floats, rates: Floats) -> dict[str, float]:
+        """The greatest moment [N m] of each idle spin at places (n,), with rates (n, 2) of the input."""
+        if not self.linkage.held[0]:
+            return {}
+        inside = places % self.path.length if self.path.closed else places
+        known = np.isfinite(inside) & np.isfinite(rates).all(axis=1)
+        inside, edges = inside[known], self.path.poses.edges
+        pieces = np.clip(np.searchsorted(edges, inside, "right") - 1, 0, len(edges) - 2)
+        poses = closed_on(self.path, self.solver.numbers, pieces, inside)
+        none = np.zeros(len(inside))
+        rows = PosedRows(
+            poses[:, self.path.input], none, none.astype("<U15"), none.astype(np.int64), poses, rates[known]
+        )
+        return forces_on(self.solver, self.circuit, rows).idle_spin
+
     @property
     def turns(self) -> bool:
         """Whether the input is an angle."""
@@ -161,12 +176,12 @@ class FreeCourse:
     def _between_stops(self) -> str:
         """What inputs are within the stops, for a message."""
         ends = [
-            " to ".join(self.shown(self._input(place)) for place in (one.begin, one.end))
+            " to ".join(self.shown(self.input_at(place)) for place in (one.begin, one.end))
             for one in self._found
         ]
         return f"they allow {', and '.join(ends)}"
 
-    def _input(self, place: float) -> float:
+    def input_at(self, place: float) -> float:
         """The input [rad, or length] at a place."""
         lap = math.floor(place / self.path.length) if self.path.closed else 0
         own = float(
@@ -179,7 +194,7 @@ class FreeCourse:
         gain = float(self.path.gain[self.path.input])
         if not gain:
             return place
-        return place + round((value - self._input(place)) / gain) * self.path.length
+        return place + round((value - self.input_at(place)) / gain) * self.path.length
 
     def on_rows_lap(self, place: float) -> float:
         """A place on the lap of the circuit's rows."""
@@ -187,7 +202,7 @@ class FreeCourse:
         if not gain:
             return place
         first = float(self.circuit.q[self.first_row, self.path.input])
-        return place - math.floor((self._input(place) - first) / gain + 1e-12) * self.path.length
+        return place - math.floor((self.input_at(place) - first) / gain + 1e-12) * self.path.length
 
     @cached_property
     def _first(self) -> float:
@@ -230,7 +245,7 @@ class FreeCourse:
             return one
         own = one.held(self.home, self.path)
         off = self.on_rows_lap(one.begin) - one.begin if own is None else self.home - own
-        first, last = self._input(one.begin + off), self._input(one.end + off)
+        first, last = self.input_at(one.begin + off), self.input_at(one.end + off)
         off += laps_by_range(self.linkage, self.path.input, one, first, last) * math.tau / gain * length
         return replace(one, begin=one.begin + off, end=one.end + off)
 
@@ -313,16 +328,15 @@ def equilibria_of(
     energy = course.energy.driven_by(finite_number("torque", torque))
     if stretches is None or any(one.is_whole for one in stretches):
         begin = course.home if energy.winds else 0.0
-        return tuple(
-            _equilibrium(
-                course, energy, place if energy.winds else course.on_rows_lap(place), kind, frequency, rate
-            )
-            for place, kind, frequency, rate in resting_places(energy, begin)
-        )
-    found: list[Equilibrium] = []
+        found = []
+        for place, kind, frequency, rate, end in resting_places(energy, begin):
+            off = 0.0 if energy.winds else course.on_rows_lap(place) - place
+            found.append(_equilibrium(course, energy, (place + off, kind, frequency, rate, end + off)))
+        return tuple(found)
+    found = []
     for one in stretches:
         own, begin = course.cut(energy, course.laid(one))
-        inner = [_equilibrium(course, own, *each, begin=begin) for each in resting_places(own)]
+        inner = [_equilibrium(course, own, each, begin=begin) for each in resting_places(own)]
         first, last = (
             [_on_stop(course, own, begin, place, stop, None, 0.0)]
             if stop and way * force_at(own, place, np.zeros(1), None)[0] > BALANCED * energy.steepest
@@ -336,19 +350,19 @@ def equilibria_of(
 def _equilibrium(
     course: FreeCourse,
     energy: EnergyCourse,
-    place: float,
-    kind: Kind,
-    frequency: float = math.nan,
-    rate: float = math.nan,
+    one: Resting,
     *,
     begin: float = 0.0,
 ) -> Equilibrium:
-    """An equilibrium at a place of a course that begins at one of the path."""
+    """An equilibrium of a course that begins at a place of the path."""
+    place, kind, frequency, rate, end = one
+    until = course.input_at(begin + end) if math.isfinite(end) else math.nan
     q = course.rows.at(np.array([begin + place]), (np.zeros(1),) * 3)[0][0]
     potential = float(energy.at(np.array([place]))[2][0])
     columns = course.circuit.columns
     value = float(q[course.path.input])
-    return Equilibrium(value, columns, q, kind, frequency, rate, potential, begin + place)
+    spin = course.spin_at(np.array([begin + place]), np.zeros((1, 2)))
+    return Equilibrium(value, columns, q, kind, frequency, rate, potential, begin + place, until, spin=spin)
 
 
 def _on_stop(
@@ -363,7 +377,8 @@ def _on_stop(
     """A rest at an end of a stretch that begins at a place of the path, and what the stop gives there."""
     force = float(force_at(energy, place, np.array([time]), motor)[0])
     holding, unit = course.pushed(force, begin + place, stop)
-    found = _equilibrium(course, energy, place, "on its stop", begin=begin)
+    none = math.nan
+    found = _equilibrium(course, energy, (place, "on its stop", none, none, none), begin=begin)
     return replace(found, stop=stop, holding=holding, holding_unit=unit)
 
 
@@ -448,6 +463,7 @@ def free_motion_of(
         through_change_points=bool(course.path.centres.size),
         impacts=_impacts(course, begin, solved),
         rest=rest,
+        spin=course.spin_at(rows.place, np.stack([rows.dq, rows.ddq], axis=2)[:, course.path.input]),
         rests_from=math.nan if rest is None else float(solved.begins[-1]),
         restitution=returned,
         heading=linkage.heading,
