@@ -92,3 +92,12 @@ def test_a_planar_four_bar_has_its_lengths_and_other_loops_none():
     assert turned.lengths == (bar["input link"], bar["coupler"], bar["output link"])
     with pytest.raises(sb.errors.NotCoveredError):
         sb.load("seven_r").lengths  # noqa: B018
+
+
+def test_a_column_that_is_not_read_is_named_where_a_kind_lacks(tmp_path):
+    table = tmp_path / "loop.csv"
+    rows = [f"{name};R;{x};0;0;0;0;1" for x, name in enumerate("abcd")]
+    table.write_text("\n".join(["name;Typ;x [mm];y [mm];z [mm];ax;ay;az", *rows]), encoding="utf-8")
+    assert "in a column 'kind'; not read: 'Typ'" in mistake("analyze", str(table))
+    table.write_text("a_(i-1),alpha_(i-1),d_i,theta_i\n0,0,0,0\n1,0,0,0\n", encoding="utf-8")
+    assert "modified (Craig's) Denavit-Hartenberg rows" in mistake("analyze", str(table))

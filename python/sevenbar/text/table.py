@@ -220,7 +220,8 @@ def name_and_unit(text: str) -> tuple[str, str]:
     ('rocker', 'rad/s2')
     """
     bracket = re.fullmatch(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*", text)
-    if bracket is not None:
+    # Craig's a_(i-1) has an index there
+    if bracket is not None and not bracket[1].endswith("_"):
         return bracket[1].strip(), bracket[2].strip()
     comma = re.fullmatch(r"(.+?)\s*[,/]\s*(\S+)", text)
     if comma is not None and is_unit(comma[2]):
