@@ -56,6 +56,8 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "stops that are no mapping": (lambda: loaded().stopped(radii=(1, 2)), "radii: (1, 2) is not a mapping; give one"),
     "start after many turns": (
         lambda: loaded().motion(36)[0].free_motion(1.0, start=1e300), "start: 1e+300 rad is lost in its turns"),
+    "energy": (
+        lambda: loaded().motion(36)[0].free_motion(1.0, energy=np.array(["a", "b"])), "energy: array(['a', 'b']"),
     "rows of forces": (lambda: loaded().motion(36)[0].forces().on(3), "rows: 3 chooses no rows; give a mask, numbers"),
     "body": (lambda: sb.Body(1.0, (0, 0, 0), solid=np.zeros(2)), "solid: array([0., 0.]) is not offered; give"),
     "law of texts": (lambda: sb.Law("a", 1, 1, 1, 1), "t: 'a' is not a number; give a number"),

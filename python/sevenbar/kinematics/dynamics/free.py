@@ -271,13 +271,13 @@ class FreeCourse:
         """The rate s' at a place, from the input's speed [rad/s, or length/s] or the kinetic energy [J]."""
         if speed is not None and energy is not None:
             raise RequestError("energy: speed and energy are both given; give one of them")
+        joule = None if energy is None else finite_number("energy", energy)
         inside = np.array([place % self.path.length if self.path.closed else place])
         quantities = self.energy.quantities.at(inside)[0]
-        if (speed is not None or energy) and self.energy.is_massless(quantities[:1])[0]:
+        if (speed is not None or joule) and self.energy.is_massless(quantities[:1])[0]:
             raise RequestError(MASSLESS_WAY)
         by_s = float(self.path.poses.slope.at(inside)[0, self.path.input])
-        if energy is not None:
-            joule = finite_number("energy", energy)
+        if joule is not None:
             if joule < 0:
                 raise RequestError(f"energy: {shown(energy)} is not a kinetic energy; give one >= 0")
             way = -1.0 if by_s < 0 else 1.0
