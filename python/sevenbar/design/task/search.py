@@ -31,7 +31,8 @@ TRIED, TAKEN = 8, 3
 #: squares are more than so many times those of the designs that are kept.
 ONE, HOPELESS = 1e-3, 2.0
 
-#: First ones that miss a room by more are taken last; those whose costs, rooms and numbers differ by less are one.
+#: First ones that miss a room by more are taken last; those whose costs, rooms and numbers differ by less are
+#: one.
 MISSED, SAME = -0.01, 1e-7
 
 #: A cost below which a task is met exactly: no other start can be better.
