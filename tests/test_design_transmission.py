@@ -39,7 +39,7 @@ def written(tmp_path, more):
     return task_file(path).task
 
 
-def used_angles(task, design):
+def used_angles(design):
     """The transmission angle on many rows of what is used, by an own law of cosines."""
     a, b, c = design.values
     inputs = np.linspace(design.solution.inputs[0].min(), design.solution.inputs[0].max(), 400)
@@ -53,7 +53,7 @@ def test_a_planar_function_generator_is_held_to_a_least_transmission_angle(tmp_p
     task = written(tmp_path, "[limits]\ntransmission = 40")
     found = designed(task, count=1, starts=3)
     (design,) = found.designs
-    used = used_angles(task, design)
+    used = used_angles(design)
     assert np.degrees(used.min()) >= 40
     assert design.candidate.transmission_lowest == pytest.approx(used.min(), abs=1e-4)
     circuit = design.draft.linkage.motion(72).circuits[design.candidate.circuit]

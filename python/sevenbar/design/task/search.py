@@ -19,6 +19,7 @@ from sevenbar.design.task.solve import LOOK, Solved, solved
 from sevenbar.design.task.starts import apart, seeds, seeds_at
 from sevenbar.design.task.task import DesignTask
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.measures import MEASURES
 from sevenbar.text.progress import Progress, silent
 
 #: Starts by default.
@@ -31,8 +32,8 @@ TRIED, TAKEN = 8, 3
 #: squares are more than so many times those of the designs that are kept.
 ONE, HOPELESS = 1e-3, 2.0
 
-#: First ones that miss a room by more are taken last; those whose costs, rooms and numbers differ by less
-#: are one.
+#: First ones that miss a room by more are taken last; those whose costs, rooms and numbers differ by less are
+#: one.
 MISSED, SAME = -0.01, 1e-7
 
 #: A cost below which a task is met exactly: no other start can be better.
@@ -162,7 +163,7 @@ def _search(
 ) -> None:
     tried: list[Solved] = []
     nearest = math.inf
-    for one in apart(model, begun, TRIED * count):
+    for one in apart(model, _unlike_seeds(model, begun), TRIED * count):
         look = _first_look(model, one)
         if look is not None:
             nearest = min(nearest, look.cost)
@@ -189,6 +190,25 @@ def _search(
         several = len(model.task.wants) > 1 and bool(kept)
         best = f"best: {kept[0].cost:.3g}" if several else least_error([one.candidate for one in kept])
         course.step(best, done=int(course.done < course.total))
+
+
+def _unlike_seeds(model: TaskModel, begun: Sequence[TaskSeed]) -> Sequence[TaskSeed]:
+    """Of circuits of one linkage with the same measures, as those that are mirror images, the first.
+
+    Forces and stops may tell mirror images apart, and poses do.
+    """
+    if model.wanted or not set(model.figures.names) <= set(MEASURES):
+        return begun
+    kept: list[TaskSeed] = []
+    for one in begun:
+        like = (np.array_equal(one.values, other.values) for other in kept)
+        same = (
+            alike and math.isclose(one.error, other.error, rel_tol=SAME)
+            for alike, other in zip(like, kept, strict=True)
+        )
+        if not any(same):
+            kept.append(one)
+    return kept
 
 
 def _unlike(model: TaskModel, tried: Sequence[Solved]) -> list[Solved]:

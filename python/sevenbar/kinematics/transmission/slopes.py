@@ -65,6 +65,10 @@ class AxisPoints:
         """
         sine, cosine = self._made(places)
         whole = np.hypot(sine, cosine)
+        if not by.shape[-1]:
+            none = np.empty((len(places), 0))
+            with np.errstate(invalid="ignore", divide="ignore"):
+                return np.abs(sine) / whole, np.abs(cosine) / whole, none, none
         stepped = places[..., None] + 1j * COMPLEX_STEP * by
         count = by.shape[-1]
         every = np.moveaxis(stepped, -1, 0).reshape(-1, *places.shape[1:])
