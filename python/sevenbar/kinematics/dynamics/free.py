@@ -1,6 +1,6 @@
 """Free motion and equilibria of a circuit: the path, what acts along it, and the state at any time.
 
-Source: docs/theory_free.md, (1) to (13).
+Source: docs/theory_free.md, (1) to (15).
 """
 
 from __future__ import annotations
