@@ -148,3 +148,13 @@ def test_a_film_and_a_picture_go_from_stop_to_stop_on_the_stretch_of_the_drawn_p
     lines = [line.get_xydata() for line in axes.get_lines() if len(line.get_xydata()) > 20]
     assert lines
     assert all(np.nanmax(line[:, 0]) < 120 and np.nanmin(line[:, 1]) > -30 for line in lines)
+
+
+def test_a_law_that_goes_beyond_a_stop_is_followed_and_the_report_says_so(tmp_path: Any) -> None:
+    file, law = tmp_path / "hood.toml", tmp_path / "law.csv"
+    file.write_text(HOOD)
+    rows = [f"{k / 10},{k * 4}" for k in range(21)]
+    law.write_text("time_s,angle_deg\n" + "\n".join(rows) + "\n")
+    text = " ".join(sevenbar("forces", file, "--law", law, "--branch", "0").stdout.split())
+    # 68, 72, 76 and 80 degrees
+    assert "4 of 21 rows of the law are beyond them: range of g1" in text

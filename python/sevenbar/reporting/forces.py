@@ -23,11 +23,12 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.reporting import force_words
+from sevenbar.reporting.extents import known
 from sevenbar.reporting.figures import FigureLook
 from sevenbar.reporting.files import Files, Report, Write, columns_file, figure_files, json_file
 from sevenbar.reporting.page import Facts, number_table, page
 from sevenbar.reporting.shown import drive_text, number, rows_text
-from sevenbar.text.words import say
+from sevenbar.text.words import retold, say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -129,6 +130,7 @@ def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     sliding = [column for column in linkage.columns if not linkage.turns(column)]
     facts = [(say("circuit"), drive_fact(found)), *force_words.acting_facts(forces, sliding)]
     facts += force_words.part_facts(forces, found.others)
+    facts += _law_facts(found)
     facts += force_words.drive_facts(forces, found.sizing)
     facts += force_words.shaking_facts(forces, found.shaking)
     facts += force_words.spin_facts(forces)
@@ -139,6 +141,26 @@ def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     facts.append((say("checks"), force_words.check_text(forces)))
     facts.append((say("rows"), f"{len(forces.status)}: {rows_text(forces.status)}"))
     return [(label, said) for label, said in facts if said]
+
+
+def _law_facts(found: CircuitForces) -> list[tuple[str, str]]:
+    """How many rows of a law are beyond the stops, which do not end it."""
+    circuit = found.circuit
+    if found.motion.law is None or not found.motion.linkage.stops.stops:
+        return []
+    allowed = known(lambda: circuit.allowed)
+    if allowed is None:
+        return []
+    by = allowed.stopped_by[np.isin(circuit.branch, found.forces.branch)]
+    beyond = by != ""
+    if not beyond.any():
+        return []
+    stops = sorted({name for row in set(by[beyond]) for name in row.split(", ")})
+    text = say(
+        "{count} of {rows} rows of the law are beyond them: {stops}",
+        count=int(beyond.sum()), rows=len(beyond), stops=say(", ").join(map(retold, stops)),
+    )  # fmt: skip
+    return [(say("within the stops"), text)]
 
 
 def text(found: CircuitForces) -> RenderableType:

@@ -507,7 +507,7 @@ class Circuit(ReadOnly, Printed, WithExtents):
             >>> fall.kind
             'oscillation'
 
-        Source: docs/theory_free.md, (1) to (13).
+        Source: docs/theory_free.md, (1) to (15).
         """
         given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
         return self._answers.free_motion(
