@@ -36,6 +36,6 @@ def write_mjcf(
     apart = np.abs(np.exp(1j * circuit.q[usable]) - np.exp(1j * pose.q)).max(axis=1)
     model = prototype(linkage, circuit, int(usable[apart.argmin()]), speed)
     if model.drive.turns and not model.connections[model.drive.connection].advance:
-        # counted in the turn that was asked for: a position is given in it
+        # counted in the turn of the given input: a position is given in it
         model.values[model.drive.connection, model.drive.freedom] = pose.input
     path.write_text(mjcf(model, drive=drive), encoding="utf-8")

@@ -88,7 +88,7 @@ def mjcf(model: Prototype, *, time_step: float = 1e-3, drive: Drive = "flywheel"
     root.append(ElementTree.Comment(" made by Sevenbar; lengths in metres, angles in radians "))
     add(root, "compiler", angle="radian", autolimits="true")
     gravity = "0 0 0" if model.acting is None else numbers(model.acting.gravity)
-    # an actuator's gain is met within a step, which only an implicit step stands
+    # an actuator's gain is met within a step, which needs an implicit one
     integrator = "Euler" if drive == "flywheel" else "implicitfast"
     how = {"integrator": integrator, "solver": "Newton", "iterations": "100", "tolerance": "0"}
     add(root, "option", timestep=f"{time_step:.17g}", gravity=gravity, **how)
