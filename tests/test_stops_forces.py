@@ -13,6 +13,7 @@ import sevenbar as sb
 from commands import mistake, sevenbar
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.timed_walk import TimedWalk
+from sevenbar.kinematics.measures import FORCE_MEASURES, JOINT_MEASURES
 from sevenbar.kinematics.ranges.reach import used_reach
 from test_stops_free import HOOD
 
@@ -158,3 +159,15 @@ def test_a_law_that_goes_beyond_a_stop_is_followed_and_the_report_says_so(tmp_pa
     text = " ".join(sevenbar("forces", file, "--law", law, "--branch", "0").stdout.split())
     # 68, 72, 76 and 80 degrees
     assert "4 of 21 rows of the law are beyond them: range of g1" in text
+
+
+def test_measures_of_a_circuit_that_rocks_are_those_between_its_stops() -> None:
+    circuit = sb.loads(HOOD).motion().circuits[0]
+    found = circuit.forces().sizing()
+    assert FORCE_MEASURES["peak_torque"].value(circuit) == pytest.approx(abs(found.peak_torque.value))
+    assert FORCE_MEASURES["peak_shaking"].value(circuit) > 0
+    assert JOINT_MEASURES["peak_force_in_plane"][1](circuit, "g1") == pytest.approx(
+        found.bearings["g1"].in_plane.peak.value
+    )
+    free = sb.loads(HOOD.replace("range = [0, 65]", "range = [-90, 65]")).motion().circuits[0]
+    assert FORCE_MEASURES["peak_torque"].value(free) is None

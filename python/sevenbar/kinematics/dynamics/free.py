@@ -44,7 +44,7 @@ _COURSES: WeakKeyDictionary[Circuit, list[tuple[object, FreeCourse]]] = WeakKeyD
 
 
 def course_of(
-    linkage: Solvable, circuit: Circuit, loading: Loading, stretches: tuple[Stretch, ...] | None
+    linkage: Solvable, circuit: Circuit, loading: Loading, stretches: tuple[Stretch, ...] | None = None
 ) -> FreeCourse:
     """The course of a circuit under a loading, made once for each."""
     if not any(loading.bodies.values()):
