@@ -79,7 +79,7 @@ def test_a_position_holds_and_a_motor_is_free(tmp_path):
         ("position", None, False),
         ("position", 0.3, True),
         ("motor", 0.0, False),
-        ("motor", 5.0, True),
+        ("motor", 0.02, True),
     ):
         (path,) = export(
             sb.load("planar_4r"), "mjcf", tmp_path / "model.xml", at=0.5, drive=drive, force=True

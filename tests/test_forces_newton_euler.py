@@ -290,6 +290,7 @@ def test_an_error_that_is_put_in_is_found() -> None:
         [got.reactions["cylinder"].force, got.torque, got.reactions["cylinder"].at]
     ):
         kept = array.copy()
+        array.setflags(write=True)
         array[row] += 1e-9 * (
             greatest if quantity == 0 else np.abs(array[row]).max() + greatest * loaded.metre
         )

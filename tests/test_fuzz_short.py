@@ -105,7 +105,7 @@ def test_what_must_hold_can_break() -> None:
     assert "range" in broken(circuit, input_range=(0.0, 1.0))[0]
     assert circuit.velocity is not None
     lower = dataclasses.replace(circuit.velocity, highest=0.5 * circuit.velocity.highest)
-    assert "above its extreme" in broken(circuit, velocity=lower)[0]
+    assert "above its extreme" in broken(circuit, _velocity=lower)[0]
 
 
 def test_motions_that_contradict_themselves_break() -> None:

@@ -15,6 +15,7 @@ import imageio_ffmpeg
 import numpy as np
 import pytest
 from matplotlib import rcParams
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -218,7 +219,7 @@ def test_a_named_point_is_tied_to_its_link_in_that_links_colour() -> None:
         draft = draft.with_point(name, link, (10.0, 20.0, 0.0))
     motion = draft.linkage.motion(12)
     drawn = scene.stays(skeleton.skeleton(motion, motion.circuits[0]), ("theta_1", "theta_4"))
-    assert [colour for _, colour in drawn] == [OUTPUT, INPUT, COUPLER, paler(GROUND, 0.35)]
+    assert [colour for _, colour in drawn] == [OUTPUT, INPUT, COUPLER, to_hex(paler(GROUND, 0.35))]
 
 
 def test_names_are_shown_as_they_are_written() -> None:

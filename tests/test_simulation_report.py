@@ -156,9 +156,9 @@ def test_a_linkage_that_cannot_be_simulated_says_why():
         {"name": "second", "kind": "R", "at": (710, 300, 0), "axis": (1, 0, 0)},
     ]
     with pytest.raises(
-        NotCoveredError, match="turn of link 4 about the common axis of first and second: an idle"
+        NotCoveredError, match="turn of link 4 about the common axis of second and first: an idle"
     ):
-        simulate(sb.from_axes(joints), "mujoco", input="first", output="crank")
+        simulate(sb.from_axes(joints), "mujoco", input="crank", output="second")
     with pytest.raises(RequestError, match=r"short does not move \(cannot-assemble\), so no engine"):
         simulate(sb.rssr(M=700, N=700, L1=250, L3=550, D=0, L2=2, name="short"), "mujoco")
 

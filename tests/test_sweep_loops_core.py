@@ -56,7 +56,7 @@ def random_seven_r(count: int, seed: int) -> list[sb.Linkage]:
 
 def ends(linkage: sb.Linkage) -> tuple[int, int]:
     """The columns of input and output that the linkage names."""
-    return linkage._asked(SAMPLES, None, None, None)[:2]
+    return linkage._asked(SAMPLES, None, None, None, None)[:2]
 
 
 def batch(

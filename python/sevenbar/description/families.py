@@ -15,7 +15,7 @@ import numpy as np
 
 from sevenbar.arrays import finite_number, whole_number
 from sevenbar.description.forms import from_description, head_of
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_kind, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.text.amounts import value_of
@@ -494,6 +494,7 @@ def _in_links(
     points: Points, links: int, others: Mapping[str, Any]
 ) -> Iterator[tuple[str, int, float, float]]:
     """The points of a planar linkage by name, link and place, once checked."""
+    check_kind("points", points, Mapping, "points by name; give {name: (link, (u, v))}")
     for name, given in points.items():
         if not isinstance(given, Sequence) or len(given) != 2 or not hasattr(given[1], "__len__"):
             raise RequestError(

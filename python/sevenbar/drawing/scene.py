@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
+from matplotlib.colors import to_hex
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import Normal, withStroke
 
@@ -219,7 +220,7 @@ def link_colours(linkage: Loop, ends: tuple[str, str]) -> tuple[list[str], list[
 
 def stays(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[tuple[int, int, int], str]]:
     """The places that tie each named point to its link, and that link's colour."""
-    colours = link_colours(frame.linkage, ends)[0] + [str(paler(GROUND, 0.35))]
+    colours = link_colours(frame.linkage, ends)[0] + [to_hex(paler(GROUND, 0.35))]
     return [
         (stay, colours[link])
         for stay, link in zip(frame.stays, frame.owners, strict=True)

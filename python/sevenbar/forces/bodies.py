@@ -82,7 +82,8 @@ class Body:
 
     def about(self, normal: Floats) -> Body:
         """The same as a lamina: half of what is given alone about all axes square to it."""
-        assert self.alone is not None
+        if self.alone is None:
+            return self
         across = np.outer(normal, normal)
         return Body(self.mass, self.centre, self.alone[0] / 2 * (np.eye(3) + across))
 

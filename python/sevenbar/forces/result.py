@@ -93,7 +93,7 @@ class Reaction(ReadOnly, Printed):
 
 
 @dataclass(frozen=True)
-class Part:
+class StopPart:
     """A part of a circuit between stops: from an input to an input [rad, or length], and what ends it."""
 
     start: float
@@ -160,7 +160,7 @@ class Forces(ReadOnly, Drawable):
     #: The same at any inputs (m,) of the cycle, where it is periodic.
     between: Callable[[Floats], Forces] | None = field(default=None, repr=False)
     #: The part between stops that the rows are: from stop to stop, both ends among them.
-    part: Part | None = None
+    part: StopPart | None = None
     #: The same on the parts between stops, and the number of that on which the linkage is used; where it has
     #: stops and they end the circuit.
     _parts: Callable[[], tuple[tuple[Forces, ...], int] | None] | None = field(default=None, repr=False)

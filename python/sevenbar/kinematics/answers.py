@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.circuits.one_pose import OnePose
     from sevenbar.kinematics.dynamics.forces import ForceSolver
     from sevenbar.kinematics.loop.stops import Cone
-    from sevenbar.kinematics.paths.stretch import Stretch
+    from sevenbar.kinematics.paths.stretch import StopStretch
 
 #: A mechanical advantage, and the input [rad, or length] at which it is had.
 Place = tuple[float, float]
@@ -249,7 +249,7 @@ class LinkageAnswers:
         found = self._stretches(circuit)
         return free_motion_of(self.linkage, circuit, loading, duration, stretches=found, **how)
 
-    def _stretches(self, circuit: Circuit) -> tuple[Stretch, ...] | None:
+    def _stretches(self, circuit: Circuit) -> tuple[StopStretch, ...] | None:
         """The parts of a circuit between stops; `None` where the linkage has no stops."""
         if not self.linkage.stops.stops:
             return None

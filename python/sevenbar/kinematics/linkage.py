@@ -292,6 +292,7 @@ class Linkage(Solvable):
         """Why a motion of it has no circuit, or which link has no length; see `Motion.reason`."""
         from sevenbar.kinematics.solvers.why_rigid import reason_of
 
+        check_kind("motion", motion, Motion, "a motion of it; give one, as motion() has it")
         return reason_of(motion)
 
     @property

@@ -17,6 +17,7 @@ The input is driven in one of the ways `DRIVES`:
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import Literal
@@ -28,7 +29,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import moved_by
 from sevenbar.kinematics.loop.joints import Step
-from sevenbar.kinematics.loop.rigid import inverse
+from sevenbar.kinematics.loop.rigid import inverse, pose
 from sevenbar.simulation.mjcf_acting import add_springs, gyration, heaviest, inertial, joint_spring
 from sevenbar.simulation.mjcf_elements import add, mark, numbers, placed
 from sevenbar.simulation.prototype import GROUND, STILL, Connection, Prototype, SpinRule
@@ -186,17 +187,17 @@ class _Tree:
 
         Past the last joint a bare body that the ground's frame is welded to.
         """
-        model = self._model
-        above, child, far = joint.before, joint.after, joint.frame_after
+        child, near, far = joint.after, joint.frame_before, joint.frame_after
         if way < 0:
-            above, child, far = joint.after, joint.before, joint.frame_before
+            child, near, far = joint.before, far, near
         elif child in self._rules:
             return self._add_held_ball(parent, joint, self._rules[child])
-        own = model.placed(child)
-        name = model.bodies[child].name if child != GROUND else "loop_end_body"
-        if child == GROUND:
-            own, far = far, np.eye(4)
-        body = self._add_body(parent, name, inverse(model.placed(above)) @ own, child)
+        name = self._model.bodies[child].name if child != GROUND else "loop_end_body"
+        far = far if child != GROUND else np.eye(4)
+        moved = self._moved(joint, number)
+        body = self._add_body(
+            parent, name, near @ (moved if way > 0 else inverse(moved)) @ inverse(far), child
+        )
         self._add_freedoms(body, joint, number, far, way)
         if child == GROUND:
             mark(body, "loop_end", far, self._model)
@@ -258,10 +259,21 @@ class _Tree:
                 tie, advance = f"{joint.name}_screw", numbers([0, joint.advance * self._metre, 0, 0, 0])
                 add(self._equality, "joint", name=tie, joint1=name, joint2=joint.name, polycoef=advance)
 
-    def _carried(self, steps: list[Step], number: int, way: float) -> list[Floats]:
-        """The frame (4, 4) of each step at the start, in the joint's frame on the body that it moves."""
+    def _moves(self, steps: Sequence[Step], number: int) -> list[Floats]:
+        """The motion (4, 4) of each step at the start."""
         values = self._model.values[number]
-        moves = [moved_by(step, np.array([values[step.number]]))[0] for step in steps]
+        return [moved_by(step, np.array([values[step.number]]))[0] for step in steps]
+
+    def _moved(self, joint: Connection, number: int) -> Floats:
+        """The motion (4, 4) of a joint at the start, from its frame before to that after."""
+        if joint.row.is_ball:
+            before, after = self._model.frames(number)
+            return pose(before[:3, :3].T @ after[:3, :3], np.zeros(3))
+        return reduce(np.matmul, self._moves(joint.row.steps, number), np.eye(4))
+
+    def _carried(self, steps: Sequence[Step], number: int, way: float) -> list[Floats]:
+        """The frame (4, 4) of each step at the start, in the joint's frame on the body that it moves."""
+        moves = self._moves(steps, number)
         if way < 0:
             return [reduce(np.matmul, moves[:k], np.eye(4)) for k in range(len(moves))]
         return [inverse(reduce(np.matmul, moves[k + 1 :], np.eye(4))) for k in range(len(moves))]

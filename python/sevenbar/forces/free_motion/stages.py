@@ -63,7 +63,7 @@ class Walls:
 
 
 @dataclass(frozen=True)
-class Met:
+class StopMet:
     """A stop that is met: when [s], where, and with what rate s' before."""
 
     time: float
@@ -92,7 +92,7 @@ class Stages:
     #: How long [s] each lasts, the last for ever.
     lasting: Floats
     lost: Floats
-    met: tuple[Met, ...]
+    met: tuple[StopMet, ...]
     #: How the last one goes on, its period and turning points.
     kind: str
     period: float | None = None
@@ -171,7 +171,7 @@ def staged(
 ) -> Stages:
     """The motion from a place with a rate s' between stops, for a time [s] at least."""
     begins, flights, lasting, losses = list[float](), list[Flight](), list[float](), list[float]()
-    met = list[Met]()
+    met = list[StopMet]()
     (place, speed), time, lost, greatest = start, 0.0, 0.0, 0.0
     kind, period, turning = "meets stops", None, tuple[float, ...]()
 
@@ -192,7 +192,7 @@ def staged(
         if stop and way * speed > 0:
             energy = float(course.at(np.array([place]))[0][0]) * speed**2 / 2
             greatest = max(greatest, energy)
-            met.append(Met(time, place, stop, speed))
+            met.append(StopMet(time, place, stop, speed))
             after = energy * walls.restitution**2
             after = after if after > RESTS * greatest else 0.0
             lost += energy - after
@@ -273,7 +273,7 @@ def elastic(course: EnergyCourse, walls: Walls, start: tuple[float, float]) -> S
             return None
         if not turned:
             leg = next(leg for leg in flight.legs if leg.way == way)
-            met.append(Met(leg.end, end, stop, float(leg.at(np.array([leg.end]))[1][0])))
+            met.append(StopMet(leg.end, end, stop, float(leg.at(np.array([leg.end]))[1][0])))
     if not met:
         return None
     met.sort(key=lambda one: one.time)

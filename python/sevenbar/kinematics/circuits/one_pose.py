@@ -16,7 +16,7 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.printing import Printed
 
 
-class PosedRows(Protocol):
+class AnsweringRows(Protocol):
     """The circuit whose row a pose is: what it answers by row."""
 
     @property
@@ -62,7 +62,7 @@ class OnePose(Printed):
     #: Freedoms that move no other link, held by convention.
     idle: tuple[str, ...]
     _linkage: Loop = field(repr=False)
-    _rows: PosedRows = field(repr=False)
+    _rows: AnsweringRows = field(repr=False)
     _row: int = field(repr=False)
 
     def __getitem__(self, name: str) -> float:

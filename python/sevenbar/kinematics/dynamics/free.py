@@ -29,7 +29,7 @@ from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.dynamics.free_course import FreeCourse
 from sevenbar.kinematics.loop.columns import joint_columns
 from sevenbar.kinematics.loop.law import Law
-from sevenbar.kinematics.paths.stretch import Stretch
+from sevenbar.kinematics.paths.stretch import StopStretch
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.units import LENGTHS
 
@@ -44,7 +44,7 @@ _COURSES: WeakKeyDictionary[Circuit, list[tuple[object, FreeCourse]]] = WeakKeyD
 
 
 def course_of(
-    linkage: Solvable, circuit: Circuit, loading: Loading, stretches: tuple[Stretch, ...] | None = None
+    linkage: Solvable, circuit: Circuit, loading: Loading, stretches: tuple[StopStretch, ...] | None = None
 ) -> FreeCourse:
     """The course of a circuit under a loading, made once for each."""
     if not any(loading.bodies.values()):
@@ -67,7 +67,7 @@ def equilibria_of(
     circuit: Circuit,
     loading: Loading,
     torque: float,
-    stretches: tuple[Stretch, ...] | None = None,
+    stretches: tuple[StopStretch, ...] | None = None,
 ) -> tuple[Equilibrium, ...]:
     """All equilibria of a circuit within its stops; see `Circuit.equilibria`."""
     course = course_of(linkage, circuit, loading, stretches)
@@ -142,7 +142,7 @@ def free_motion_of(
     torque_by_time: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     samples: int = 361,
     restitution: float | None = None,
-    stretches: tuple[Stretch, ...] | None = None,
+    stretches: tuple[StopStretch, ...] | None = None,
 ) -> FreeMotion:
     """A free motion; see `Circuit.free_motion`."""
     seconds = _seconds(duration)
@@ -220,7 +220,7 @@ def free_motion_of(
     )
 
 
-def _restitution(given: float | None, stretches: tuple[Stretch, ...] | None) -> float:
+def _restitution(given: float | None, stretches: tuple[StopStretch, ...] | None) -> float:
     """What part of the speed a stop gives back; raises `RequestError` for what is no part."""
     if given is None:
         return 0.0

@@ -21,7 +21,7 @@ from sevenbar.kinematics.loop.joint_text import joint_number, joint_speed
 from sevenbar.kinematics.paths.circuit_path import HAS, CircuitPath
 from sevenbar.kinematics.paths.covered_path import closed_on, covered_path
 from sevenbar.kinematics.paths.stretch import (
-    Stretch,
+    StopStretch,
     first_place,
     laps_by_range,
     stopped_column,
@@ -44,7 +44,7 @@ class FreeCourse:
     circuit: Circuit
     loading: Loading
     #: The stretches of its path between stops; `None` where the linkage has no stops.
-    stretches: tuple[Stretch, ...] | None
+    stretches: tuple[StopStretch, ...] | None
 
     @cached_property
     def solver(self) -> ForceSolver:
@@ -189,9 +189,9 @@ class FreeCourse:
         return first_place(self.linkage, self.circuit, self.path, self.solver.numbers)
 
     @cached_property
-    def _found(self) -> tuple[Stretch, ...]:
+    def _found(self) -> tuple[StopStretch, ...]:
         """The stretches, one of the whole path without stops."""
-        whole = (Stretch(0.0, self.path.length, "", ""),)
+        whole = (StopStretch(0.0, self.path.length, "", ""),)
         return whole if self.stretches is None else self.stretches
 
     @cached_property
@@ -207,7 +207,7 @@ class FreeCourse:
         assert used is not None
         return self.on_rows_lap(used[1])
 
-    def stretch_at(self, place: float) -> Stretch | None:
+    def stretch_at(self, place: float) -> StopStretch | None:
         """The stretch between stops that holds a place, on its lap; `None` beyond the stops."""
         for one in self._found:
             own = one.held(place, self.path)
@@ -217,7 +217,7 @@ class FreeCourse:
                 return replace(one, begin=one.begin + off, end=one.end + off)
         return None
 
-    def laid(self, one: Stretch) -> Stretch:
+    def laid(self, one: StopStretch) -> StopStretch:
         """A stretch on the lap of the range that ends it, of where it is at home, or of the rows."""
         gain, length = float(self.path.gain[self.path.input]), self.path.length
         if not gain:
@@ -228,7 +228,7 @@ class FreeCourse:
         off += laps_by_range(self.linkage, self.path.input, one, first, last) * math.tau / gain * length
         return replace(one, begin=one.begin + off, end=one.end + off)
 
-    def cut(self, energy: EnergyCourse, one: Stretch) -> tuple[EnergyCourse, float]:
+    def cut(self, energy: EnergyCourse, one: StopStretch) -> tuple[EnergyCourse, float]:
         """The course on a stretch, and where on the path it begins; the whole one where no stop ends it."""
         if one.is_whole:
             return energy, 0.0

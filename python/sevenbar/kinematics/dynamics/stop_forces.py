@@ -13,12 +13,12 @@ from functools import cached_property
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.forces.result import Forces, Part
+from sevenbar.forces.result import Forces, StopPart
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.dynamics.forces import ForceSolver, PosedRows, forces_on
 from sevenbar.kinematics.paths.circuit_path import CircuitPath
 from sevenbar.kinematics.paths.covered_path import closed_on, covered_path
-from sevenbar.kinematics.paths.stretch import Stretch, laps_by_range, used_stretch
+from sevenbar.kinematics.paths.stretch import StopStretch, laps_by_range, used_stretch
 
 #: At an end where the input moves by less than this [rad, or shares of the size] it is at a dead centre.
 AT_DEAD_CENTRE = 1e-7
@@ -35,7 +35,7 @@ ON_PATH = 1e-6
 
 
 def parts_of(
-    solver: ForceSolver, circuit: Circuit, stretches: tuple[Stretch, ...], whole: Forces, *, at_rest: bool
+    solver: ForceSolver, circuit: Circuit, stretches: tuple[StopStretch, ...], whole: Forces, *, at_rest: bool
 ) -> tuple[tuple[Forces, ...], int]:
     """The forces on each stretch, in order, and the number of that on which the linkage is used."""
     path = covered_path(solver.linkage, circuit, solver.numbers)
@@ -52,7 +52,7 @@ class _Part:
     solver: ForceSolver
     circuit: Circuit
     path: CircuitPath
-    stretch: Stretch
+    stretch: StopStretch
     #: Whether it is the only one.
     alone: bool
     at_rest: bool
@@ -60,7 +60,7 @@ class _Part:
     def forces(self, whole: Forces) -> Forces:
         """The forces on it: at both ends, and on the circuit's rows between them."""
         start, end = float(self._input[0]), float(self._input[-1])
-        part = Part(start, end, self.stretch.first_stop, self.stretch.last_stop)
+        part = StopPart(start, end, self.stretch.first_stop, self.stretch.last_stop)
         if self._turns_back:
             # without bound there, and the rows say so
             return replace(whole.on(self._rows), part=part, between=None, _parts=None)

@@ -24,7 +24,7 @@ DRAWN = 1e-6
 
 
 @dataclass(frozen=True)
-class Stretch:
+class StopStretch:
     """A part of a path within all stops, from the place `begin` to `end`.
 
     Of a closed circuit `end` may lie beyond its length: the stretch then goes on over the seam. `first_stop`
@@ -60,7 +60,7 @@ def stopped_column(stop: str) -> str | None:
     return names[0].removeprefix(RANGE_OF) if names else None
 
 
-def laps_by_range(linkage: Solvable, column: int, one: Stretch, start: float, end: float) -> int:
+def laps_by_range(linkage: Solvable, column: int, one: StopStretch, start: float, end: float) -> int:
     """By how many whole turns the inputs of a stretch are moved, so that they are as its range has them.
 
     That of the input's `column`; 0 for one that slides, and where other stops end the stretch.
@@ -117,7 +117,7 @@ def first_place(linkage: Solvable, circuit: Circuit, path: CircuitPath, numbers:
 
 
 def used_stretch(
-    linkage: Solvable, circuit: Circuit, path: CircuitPath, numbers: Numbers, found: tuple[Stretch, ...]
+    linkage: Solvable, circuit: Circuit, path: CircuitPath, numbers: Numbers, found: tuple[StopStretch, ...]
 ) -> tuple[int, float] | None:
     """The stretch on which a linkage is used, by its number, and the place at which it begins to move.
 

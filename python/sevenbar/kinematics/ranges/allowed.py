@@ -17,7 +17,7 @@ from sevenbar.kinematics.circuits.poses import frames_along, joint_frames
 from sevenbar.kinematics.loop.rods import rod_distance
 from sevenbar.kinematics.loop.stops import Cone
 from sevenbar.kinematics.paths.circuit_path import CircuitPath
-from sevenbar.kinematics.paths.stretch import RANGE_OF, Stretch
+from sevenbar.kinematics.paths.stretch import RANGE_OF, StopStretch
 from sevenbar.kinematics.ranges.circuit_extents import chosen, rod_pairs
 from sevenbar.kinematics.ranges.joint_course import JointCourse, joint_course
 
@@ -75,7 +75,7 @@ def _back(circuit: Circuit) -> int:
     return sum(centre.kind == "input" for centre in circuit.dead_centres)
 
 
-def stretches(linkage: Solvable, circuit: Circuit) -> tuple[Stretch, ...]:
+def stretches(linkage: Solvable, circuit: Circuit) -> tuple[StopStretch, ...]:
     """The parts of a circuit's path within all stops, in order; all of it where nothing stops it."""
     course = joint_course(linkage, circuit)
     return tuple(_stretches(course, _stops(linkage, circuit, course)))
@@ -85,7 +85,7 @@ def _stops(linkage: Solvable, circuit: Circuit, course: JointCourse) -> list[_St
     return [*_ranges(linkage, course), *_cones(linkage, course), *_rods(linkage, circuit, course)]
 
 
-def _stretches(course: JointCourse, stops: list[_Stop]) -> Iterator[Stretch]:
+def _stretches(course: JointCourse, stops: list[_Stop]) -> Iterator[StopStretch]:
     length, closed = course.path.length, course.path.closed
     marks = np.unique(np.concatenate([[0.0, length], *(stop.crossings for stop in stops)]))
     marks = marks[np.append(np.diff(marks) > SAME * length, True)]
@@ -93,7 +93,7 @@ def _stretches(course: JointCourse, stops: list[_Stop]) -> Iterator[Stretch]:
     inside = np.array([stop.within(middles) for stop in stops]).reshape(len(stops), len(middles))
     free: Flags = np.asarray(inside.all(axis=0))
     if free.all():
-        yield Stretch(0.0, length, "", "")
+        yield StopStretch(0.0, length, "", "")
         return
     count = len(middles)
     # of a closed circuit the stretches go on over its end
@@ -106,7 +106,7 @@ def _stretches(course: JointCourse, stops: list[_Stop]) -> Iterator[Stretch]:
         if run:
             before, after = run[0] - 1, run[-1] + 1
             begin = float(marks[run[0]])
-            yield Stretch(
+            yield StopStretch(
                 begin,
                 begin + float(sum(marks[k + 1] - marks[k] for k in run)),
                 _passed(stops, inside[:, before % count]) if closed or before >= 0 else "",

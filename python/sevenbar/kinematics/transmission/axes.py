@@ -8,7 +8,7 @@ closed: with the screws S of the joints about one origin, each moved by the twis
 A ball is three turns about its centre. Where input and output rest together, one moves with the other
 as their second derivatives do.
 
-Source: docs/theory_measures.md, mechanical advantage.
+Source: docs/theory_measures.md, (11).
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ with h(y) = y in the plane and sin(y / 2) on the sphere. B is extreme where the 
 ground, or for a slide as the input where its pin is next to the output's. A slide as the output has
 cos mu = k / b, with k the rod's part square to it, extreme where the crank is square to it, too.
 
-Source: docs/theory_measures.md, extremes; H. Alt, Werkstattstechnik 26 (1932).
+Source: docs/theory_measures.md, (4) to (7); H. Alt, Werkstattstechnik 26 (1932).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ NO_LENGTH = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class AngleCourse:
     """How the angle follows the input: stationary at the input `place`, and half a turn on if it `turns`.
 
     `angle` has it at an input [rad, 0 to pi]; `square` are the inputs away from `place` at which it is a
@@ -98,14 +98,14 @@ def turning_cosines(coupling: Coupling, axes: Axes) -> Floats | None:
     return np.array([(b * b + c * c - (d + way * a) ** 2) / (2 * b * c) for way in (-1, 1)])
 
 
-def _round(course: Course, start: float, turns: int) -> Extremes:
+def _round(course: AngleCourse, start: float, turns: int) -> Extremes:
     """Those of an input that turns fully, at inputs of its turns from the start on."""
     ends = _ends(_stationary(course, start))
     last = math.tau * (max(turns, 1) - 1)
     return Extremes(ends.lowest, ends.lowest_at, ends.highest, ends.highest_at + last)
 
 
-def _stationary(course: Course, low: float) -> list[tuple[float, float]]:
+def _stationary(course: AngleCourse, low: float) -> list[tuple[float, float]]:
     """The angles where it is stationary or a right one, with their inputs, of one turn from `low` on."""
     places = [course.place, course.place + math.pi] if course.turns else [course.place]
     found = [(_acute(course.angle(x)), x) for x in places]
@@ -129,7 +129,7 @@ def _acute(angle: float) -> float:
     return min(angle, math.pi - angle)
 
 
-def _course(coupling: Coupling, axes: Axes, x: float) -> Course | None:
+def _course(coupling: Coupling, axes: Axes, x: float) -> AngleCourse | None:
     """That of a coupling whose joints are in a pose, at the input x."""
     letters, pin, near, output = axes.parts.letters, coupling.at, coupling.free[0], coupling.output
     if coupling.kind == "ball" or "P" in (letters[near], letters[pin]):
@@ -165,10 +165,10 @@ def _course(coupling: Coupling, axes: Axes, x: float) -> Course | None:
         half = math.sin((x - place) / 2)
         return _of_apart(math.sqrt((a - d) ** 2 + 4 * a * d * half * half), b, c, a + d)
 
-    return Course(place, True, angle, square_away)
+    return AngleCourse(place, True, angle, square_away)
 
 
-def _on_sphere(axes: Floats, way: float, x: float) -> Course | None:
+def _on_sphere(axes: Floats, way: float, x: float) -> AngleCourse | None:
     own, first, middle, last = axes
     a, b, c, d = (_arc(*pair) for pair in ((own, first), (first, middle), (middle, last), (last, own)))
     if min(map(math.sin, (a, b, c, d))) <= NO_LENGTH:
@@ -185,10 +185,10 @@ def _on_sphere(axes: Floats, way: float, x: float) -> Course | None:
         apart = math.sin((a - d) / 2) ** 2 + arms * half * half
         return _of_apart(2 * math.asin(math.sqrt(min(apart, 1.0))), b, c, a + d, sphere=True)
 
-    return Course(place, True, angle, square)
+    return AngleCourse(place, True, angle, square)
 
 
-def _from_slide(apart: Floats, slide: Floats, b: float, c: float, way: float, x: float) -> Course | None:
+def _from_slide(apart: Floats, slide: Floats, b: float, c: float, way: float, x: float) -> AngleCourse | None:
     if min(b, c) <= NO_LENGTH * (b + c):
         return None
     along = float(apart @ slide)
@@ -198,12 +198,12 @@ def _from_slide(apart: Floats, slide: Floats, b: float, c: float, way: float, x:
     def angle(x: float) -> float:
         return _of_apart(math.hypot(offset, x - place), b, c, offset)
 
-    return Course(place, False, angle, math.sqrt(beyond) if beyond >= 0 else None)
+    return AngleCourse(place, False, angle, math.sqrt(beyond) if beyond >= 0 else None)
 
 
 def _to_slide(
     arm: Floats, pin: Floats, square: Floats, normal: Floats, turn: float, x: float
-) -> Course | None:
+) -> AngleCourse | None:
     a, b, offset = math.hypot(*arm), math.dist(arm, pin), float(pin @ square)
     if min(a, b) <= NO_LENGTH * (a + b):
         return None
@@ -215,7 +215,7 @@ def _to_slide(
         rest, beyond = (0.0 if y <= EQUAL_SUMS * every else y for y in (b - part, b + part))
         return 2 * math.atan2(math.sqrt(rest), math.sqrt(beyond))
 
-    return Course(place, True, angle, _arc_cosine(offset / a))
+    return AngleCourse(place, True, angle, _arc_cosine(offset / a))
 
 
 def _of_apart(apart: float, b: float, c: float, rest: float, *, sphere: bool = False) -> float:
