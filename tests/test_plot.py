@@ -528,3 +528,13 @@ def test_ffmpegs_own_words_are_passed_on(
     with pytest.raises(OutputError, match="ffmpeg failed: no such encoder"):
         animate(crank_rocker, tmp_path / "a.mp4", frames=10)
     assert [p.name for p in tmp_path.iterdir()] == ["ffmpeg"]
+
+
+def test_a_coupler_curve_can_be_had_alone_without_a_title_in_a_small_size() -> None:
+    motion = sb.load("planar_4r").motion(72)
+    at = (2, (50.0, 60.0, 0.0))
+    figure = plot.point_path(motion, at, parts=["path"], title=False, figsize=(3.35, 2.36), style="ieee")
+    assert len(figure.axes) == 1
+    assert [text.get_text() for text in figure.texts if text.get_text()] == []
+    with pytest.raises(RequestError, match=r"size: 85.1 x 59.9 mm is too small for 3 panels; .*--kind coupler"):
+        plot.point_path(motion, at, figsize=(3.35, 2.36), style="ieee")

@@ -27,6 +27,7 @@ from sevenbar.commands.output import safe_output
 from sevenbar.commands.poses import rates_at
 from sevenbar.commands.progress import progress_bar
 from sevenbar.commands.signals import NOTHING, at_work, has_just_come, heed_signals, stopped
+from sevenbar.drawing.asked import PATH_PARTS
 from sevenbar.errors import (
     AngleUnitWarning,
     MissingFontWarning,
@@ -285,7 +286,8 @@ def plot_(
     kind: Annotated[
         list[str] | None,
         typer.Option(
-            help=f"{', '.join(KINDS)}, or all (the default), which leaves axodes out; may be repeated."
+            help=f"{', '.join(KINDS)}, or all (the default), without the last two; may be repeated. "
+            "coupler: a point's path alone."
         ),
     ] = None,
     point: options.PointName = None,
@@ -303,18 +305,30 @@ def plot_(
     view: options.FigureView = None,
     size: options.FigureSize = None,
     style: options.FigureStyle = None,
+    parts: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Of a point's figure: path, velocity, acceleration, speed; all but path by default."
+        ),
+    ] = None,
+    no_title: Annotated[bool, typer.Option("--no-title", help="Figures without titles.")] = False,
     force: options.Force = False,
 ) -> None:
     """Draw a linkage: curves of the output, all joints, all modes, the linkage in space, a point's path."""
     formats = options.figure_formats(figures, out)
     kinds = _kinds(kind)
-    look = look_of(view, size, style)
+    chosen = None if parts is None else tuple(options.words(parts))
+    for part in chosen or ():
+        check_word("--parts", part, PATH_PARTS, "a part of a point's figure")
+    look = replace(look_of(view, size, style), title=not no_title, parts=chosen)
     loaded = opened(linkage, agree)
     points = _points(loaded, point_of(point, link, at))
-    if "point" in kinds and not points:
-        if kind is not None and "point" in kind:
-            raise RequestError("--kind: point needs a point; give --link and --at, as the linkage names none")
-        kinds.remove("point")
+    for one in {"point", "coupler"} & set(kinds) if not points else ():
+        if kind is not None and one in options.words(kind):
+            raise RequestError(
+                f"--kind: {one} needs a point; give --link and --at, as the linkage names none"
+            )
+        kinds.remove(one)
     # more rows than that are no better to look at
     motion = loaded.motion(
         min(sample_count("samples", samples), MOST_DRAWN),

@@ -1,10 +1,13 @@
-"""The style and the view of figures for which none is given: those that a person chose for all of a call."""
+"""What is asked of figures: parts of a path, and the style and the view that a person chose for all of a call."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+
+#: What a figure of a path can show: the path alone, with arrows of either rate, and the speed over the input.
+PATH_PARTS = ("path", "velocity", "acceleration", "speed")
 
 _style: ContextVar[str | None] = ContextVar("style", default=None)
 _view: ContextVar[str | tuple[float, float] | None] = ContextVar("view", default=None)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.drawing import page
+from sevenbar.drawing.asked import PATH_PARTS
 from sevenbar.drawing.figure import (
     CUT,
     given_axes,
@@ -48,8 +49,8 @@ ARROWS, LONGEST_ARROW = 36, 0.35
 BEYOND = 4.0
 #: The head of an arrow: its length as a share of the arrow, at most that of the longest; half its angle.
 HEAD, SPREAD = 0.16, 0.38
-#: What a figure of a path can show: the path with arrows of either rate, and the speed over the input.
-PARTS = ("velocity", "acceleration", "speed")
+#: Least size of a picture, and least height of the panel of the speed [inch, at letters of 9 points].
+LEAST_PICTURE, LEAST_PANEL = (1.8, 1.3), 1.2
 #: Width of the page, of one picture alone, and height of the panel of the speed [inch].
 WIDTH, ALONE, PANEL = 9.4, 5.4, 2.1
 
@@ -60,7 +61,7 @@ def point_path(
     circuit: int = 0,
     *,
     name: str | None = None,
-    parts: Sequence[str] = PARTS,
+    parts: Sequence[str] = PATH_PARTS[1:],
     ax: Any = None,
     view: Asked = None,
     figsize: Sequence[float] | None = None,
@@ -71,8 +72,8 @@ def point_path(
 
     `point` is a name of the linkage's points, or (link, at) as for `Circuit.point`; `name` is what the title
     calls it. The path of a planar loop is drawn in its plane, as a coupler curve. Arrows are drawn to one
-    scale in each view; the greatest value of all rows is above it. `parts` are those of "velocity",
-    "acceleration" and "speed" that are drawn; `ax`: axes to draw in, one for each. The rest is as for
+    scale in each view; the greatest value of all rows is above it. `parts` are those of "path" (without
+    arrows), "velocity", "acceleration" and "speed" that are drawn; `ax`: axes to draw in, one for each. The rest is as for
     `configuration`. Raises `RequestError` for a point or a circuit that does not exist.
 
     Source: "Kinematical analysis of 7R spatial mechanism", Figure 2.
@@ -87,17 +88,18 @@ def point_path(
     else:
         link, at = point
     for part in parts:
-        if part not in PARTS:
-            raise RequestError(f"parts: {shown(part)} is not drawn; give some of {', '.join(PARTS)}")
+        if part not in PATH_PARTS:
+            raise RequestError(f"parts: {shown(part)} is not drawn; give some of {', '.join(PATH_PARTS)}")
     trace = chosen.point(link, at)
     if not np.isfinite(trace.position).all(axis=1).any():
         raise RequestError(f"point: it has no place along circuit {chosen.index}; nothing to draw")
     rows = walk(chosen).rows
     places = trace.position[rows]
-    arrows = {what: arrows_along(places, getattr(trace, what)[rows]) for what in ("velocity", "acceleration")}
+    rates = [part for part in parts if part not in ("path", "speed")]
+    arrows = {what: arrows_along(places, getattr(trace, what)[rows]) for what in rates}
     # both views to one scale
     seen = np.concatenate([places, *(places[own] + ways for own, ways, _ in arrows.values())])
-    marks = [f"({letter}) " if len(parts) > 1 else "" for letter in "abc"]
+    marks = [f"({letter}) " if len(parts) > 1 else "" for letter in "abcd"]
     letter = dict(zip(parts, marks, strict=False))
     pictures = [part for part in parts if part != "speed"]
     with styled(style):
@@ -113,7 +115,7 @@ def point_path(
                 else:
                     space = ViewAxes(axes, seen_as)
                     page.prepare_box(space, box, unit, None)
-                    _arrows(space, places, arrows[part], part)
+                    _draw(space, places, arrows.get(part), part)
             return given[0].figure.figure  # type: ignore[no-any-return]
         wide = len(pictures) > 1
         usual = WIDTH if wide else ALONE
@@ -137,13 +139,17 @@ def point_path(
             below = min(below, 0.35 * height)
         else:
             below = height - top
+        if figsize is not None:
+            _check_room(figsize, across, height - top - line - below, below, pictures, parts)
         for place, part in enumerate(pictures):
             space = ViewAxes(page.own_axes(figure, seen_as), seen_as)
             room: page.Rectangle = (place * across, below, across, height - top - line - below)
             page.prepare_box(space, box, unit, room)
-            _arrows(space, places, arrows[part], part)
-            greatest = _greatest(chosen, arrows[part][2], unit, part)
-            words = letter[part] + say("{quantity}, {greatest}", quantity=say(part), greatest=greatest)
+            _draw(space, places, arrows.get(part), part)
+            words = letter[part]
+            if part in arrows:
+                greatest = _greatest(chosen, arrows[part][2], unit, part)
+                words += say("{quantity}, {greatest}", quantity=say(part), greatest=greatest)
             space.heading(words, room[0] + across / 2, height - top - line + page.EDGE / 4)
         if "speed" in parts:
             left, under = 0.075 * letters(), 0.052 * letters()
@@ -163,9 +169,31 @@ def _greatest(circuit: Circuit, largest: float, unit: str, part: str) -> str:
     return say("at most {amount}", amount=amount_text(largest, unit, "/s" if part == "velocity" else "/s²"))
 
 
-def _arrows(space: ViewAxes, places: Floats, arrows: tuple[Integers, Floats, float], part: str) -> None:
+def _check_room(
+    size: Sequence[float],
+    across: float,
+    high: float,
+    below: float,
+    pictures: Sequence[str],
+    parts: Sequence[str],
+) -> None:
+    """Raises `RequestError` for a page on which the panels would run into each other."""
+    scale = letters() / 9.0
+    wide, tall = (scale * least for least in LEAST_PICTURE)
+    narrow = bool(pictures) and (across < wide or high < tall)
+    if len(parts) > 1 and (narrow or ("speed" in parts and below < scale * LEAST_PANEL)):
+        given = " x ".join(f"{25.4 * side:.3g}" for side in size)
+        raise RequestError(
+            f"size: {given} mm is too small for {len(parts)} panels; give a greater one, or fewer parts, "
+            "as in --parts velocity, or --kind coupler for the path alone"
+        )
+
+
+def _draw(space: ViewAxes, places: Floats, arrows: tuple[Integers, Floats, float] | None, part: str) -> None:
     """The path, and one of its rates as arrows on it."""
     space.line(places, color=INK, lw=1.3, zorder=3)
+    if arrows is None:
+        return
     rows, ways, _ = arrows
     if not len(rows):
         return

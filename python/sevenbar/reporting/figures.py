@@ -22,18 +22,23 @@ if TYPE_CHECKING:
 Places = Mapping[str, tuple[int, tuple[float, float, float]]]
 
 #: What can be drawn of a motion.
-KINDS = ("curves", "joints", "modes", "configuration", "point", "transmission", "axodes")
-#: Those that are drawn where none is named: axodes are for those who look for them.
-USUAL_KINDS = KINDS[:-1]
+KINDS = ("curves", "joints", "modes", "configuration", "point", "transmission", "coupler", "axodes")
+#: Those that are drawn where none is named: not a point's path alone, nor axodes.
+USUAL_KINDS = KINDS[:-2]
 
 
 @dataclass(frozen=True)
 class FigureLook:
-    """How figures are drawn: the view of pictures, the size of the page [inch], the style."""
+    """How figures are drawn: the view of pictures, the size of the page [inch], the style, with a title or not.
+
+    `parts` are what a point's figure shows; `None` for the usual ones.
+    """
 
     view: str | tuple[float, float] | None = None
     size: tuple[float, float] | None = None
     style: str | None = None
+    title: bool = True
+    parts: tuple[str, ...] | None = None
 
     @property
     def of_curves(self) -> dict[str, Any]:
@@ -122,7 +127,7 @@ def _files(
     """What draws and writes each figure, by the file's name."""
     from sevenbar.drawing import plot
 
-    curves, pictures = look.of_curves, look.of_pictures
+    curves, pictures = ({**given, "title": look.title} for given in (look.of_curves, look.of_pictures))
     known: tuple[tuple[str, str, Callable[[], Figure]], ...] = (
         ("curves", "motion", partial(plot.curves, motion, **curves)),
         ("joints", "joints", partial(plot.joints, motion, **curves)),
@@ -131,9 +136,14 @@ def _files(
         ("configuration", "configuration", partial(plot.configuration, motion, circuit, **pictures)),
     )
     draw = {name: one for kind, name, one in known if kind in kinds}
-    for name, point in points.items() if "point" in kinds else ():
-        part = re.sub(r"[^\w.-]+", "_", name).strip("_.") or "point"
-        draw[f"path_{part}"] = partial(plot.point_path, motion, point, circuit, name=name, **pictures)
+    wanted: dict[str, Any] = {} if look.parts is None else {"parts": look.parts}
+    shown = {"point": ("path", wanted), "coupler": ("coupler", {"parts": ("path",)})}
+    for kind, (prefix, parts) in shown.items():
+        for name, point in points.items() if kind in kinds else ():
+            own = re.sub(r"[^\w.-]+", "_", name).strip("_.") or "point"
+            draw[f"{prefix}_{own}"] = partial(
+                plot.point_path, motion, point, circuit, name=name, **parts, **pictures
+            )
     if "modes" in kinds:
         chosen = chosen_circuit(motion, circuit)
         # a limit is no place to show modes at: there two are one
