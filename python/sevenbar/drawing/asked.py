@@ -1,4 +1,4 @@
-"""What is asked of figures: parts of a path, and the style and the view that a person chose for all of a call."""
+"""Choices for figures: parts of a path, and the style and the view that a person chose for all of a call."""
 
 from __future__ import annotations
 
