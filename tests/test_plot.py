@@ -536,5 +536,7 @@ def test_a_coupler_curve_can_be_had_alone_without_a_title_in_a_small_size() -> N
     figure = plot.point_path(motion, at, parts=["path"], title=False, figsize=(3.35, 2.36), style="ieee")
     assert len(figure.axes) == 1
     assert [text.get_text() for text in figure.texts if text.get_text()] == []
-    with pytest.raises(RequestError, match=r"size: 85.1 x 59.9 mm is too small for 3 panels; .*--kind coupler"):
+    with pytest.raises(
+        RequestError, match=r"size: 85.1 x 59.9 mm is too small for 3 panels; .*--kind coupler"
+    ):
         plot.point_path(motion, at, figsize=(3.35, 2.36), style="ieee")

@@ -258,3 +258,13 @@ def test_a_motion_without_a_row_that_has_rates_has_no_closure_error():
     motion = sb.rssr(M=1e-50, N=-1e-100, L1=2.0, L2=1.000000000000001, L3=1e12, D=1e12).motion()
     assert "closure error  no row has one" in repr(motion)
     assert "nan" not in repr(motion) + repr(motion.circuits[0])
+
+
+def test_a_brief_report_has_what_a_linkage_does_and_says_where_others_may_be_missing():
+    from sevenbar.reporting.summary import summary
+
+    known = summary(sb.load("planar_4r").motion(36), short=True)
+    assert [name for name, _ in known.facts] == ["drive", "motion type", "circuits", "input limits"]
+    assert "transmission angle min" in [row[0] for sheet in known.sheets for row in sheet.rows]
+    unsure = dict(summary(sb.load("screw_drill").motion(36), short=True).facts)
+    assert unsure["completeness"].startswith("searched")

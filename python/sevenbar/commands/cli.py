@@ -153,6 +153,10 @@ def analyze(
     ranges: Annotated[
         bool, typer.Option("--ranges", help="Tables of the ranges of all joints, and the bends of balls.")
     ] = False,
+    brief: Annotated[
+        bool,
+        typer.Option("--brief", help="Print what the linkage does, not how it is written and was found."),
+    ] = False,
     view: options.FigureView = None,
     size: options.FigureSize = None,
     style: options.FigureStyle = None,
@@ -189,7 +193,7 @@ def analyze(
         chosen_circuit(motion, circuit)
     # more rows than that are no better to look at
     seen = motion if motion.samples <= MOST_DRAWN or read is not None else moved(MOST_DRAWN)
-    report = motion_report(formats, lambda _: seen, circuit=circuit, look=look, ranges=ranges)
+    report = motion_report(formats, lambda _: seen, circuit=circuit, look=look, ranges=ranges, short=brief)
     elsewhere: dict[Path, Callable[[Path], object]] = {}
     if animate is not None:
         film = _film(seen, animate, out, circuit, look, film_look, force=force)

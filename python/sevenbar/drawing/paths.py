@@ -73,8 +73,8 @@ def point_path(
     `point` is a name of the linkage's points, or (link, at) as for `Circuit.point`; `name` is what the title
     calls it. The path of a planar loop is drawn in its plane, as a coupler curve. Arrows are drawn to one
     scale in each view; the greatest value of all rows is above it. `parts` are those of "path" (without
-    arrows), "velocity", "acceleration" and "speed" that are drawn; `ax`: axes to draw in, one for each. The rest is as for
-    `configuration`. Raises `RequestError` for a point or a circuit that does not exist.
+    arrows), "velocity", "acceleration" and "speed" that are drawn; `ax`: axes to draw in, one for each. The
+    rest is as for `configuration`. Raises `RequestError` for a point or a circuit that does not exist.
 
     Source: "Kinematical analysis of 7R spatial mechanism", Figure 2.
     """

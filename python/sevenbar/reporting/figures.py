@@ -29,7 +29,7 @@ USUAL_KINDS = KINDS[:-2]
 
 @dataclass(frozen=True)
 class FigureLook:
-    """How figures are drawn: the view of pictures, the size of the page [inch], the style, with a title or not.
+    """How figures are drawn: the view of pictures, the size of the page [inch], the style, the title.
 
     `parts` are what a point's figure shows; `None` for the usual ones.
     """

@@ -33,11 +33,11 @@ class _Page:
         yield from made
 
 
-def motion_page(motion: Motion, *, ranges: bool = False) -> RenderableType:
-    """The report of a motion; angles in degrees; with `ranges` of all joints."""
+def motion_page(motion: Motion, *, ranges: bool = False, short: bool = False) -> RenderableType:
+    """The report of a motion; angles in degrees; with `ranges` of all joints; or a `short` one."""
 
     def parts(width: int) -> Iterator[RenderableType]:
-        page = summary(motion, width, ranges=ranges)
+        page = summary(motion, width, ranges=ranges, short=short)
         facts = Facts()
         facts.add_all(page.facts, bold=[say("motion type")])
         yield Text(page.title, style="bold underline")

@@ -148,12 +148,12 @@ def as_json(motion: Motion, *, ranges: bool = False) -> str:
     return json_text(as_dict(motion, ranges=ranges))
 
 
-def text(motion: Motion, *, ranges: bool = False) -> RenderableType:
-    """The report for people, to be printed by rich; angles in degrees; with `ranges` of all joints."""
+def text(motion: Motion, *, ranges: bool = False, short: bool = False) -> RenderableType:
+    """The report for people, to be printed by rich; angles in degrees; with `ranges`, or a `short` one."""
     # rich takes a while to load, and JSON does without it
     from sevenbar.reporting.printed import motion_page
 
-    return motion_page(motion, ranges=ranges)
+    return motion_page(motion, ranges=ranges, short=short)
 
 
 def print_text(motion: Motion, console: Console | None = None) -> None:
@@ -188,10 +188,12 @@ def motion_report(
     circuit: int | None = None,
     look: FigureLook | None = None,
     ranges: bool = False,
+    short: bool = False,
 ) -> Report[Motion]:
     """How a motion is reported, with the figures in these formats, of a circuit, drawn in a way.
 
-    With `ranges` those of all joints, bends and distances are part of the page and of the JSON.
+    With `ranges` those of all joints, bends and distances are part of the page and of the JSON. What is
+    printed may be a `short` report.
 
     `drawn` gives the motion that the figures show, where it is another, such as one of fewer rows.
     """
@@ -203,7 +205,7 @@ def motion_report(
         ),
     }
     return Report(
-        partial(text, ranges=ranges),
+        partial(text, ranges=ranges, short=short),
         plain,
         files,
         lambda motion: report_figures(drawn(motion), figures, circuit=circuit, look=look),

@@ -46,24 +46,48 @@ class Summary:
     sheets: tuple[Sheet, ...]
 
 
-def summary(motion: Motion, room: int = 100, *, ranges: bool = False) -> Summary:
+#: What a designer reads in a brief report; how it was found is left out.
+BRIEF = (
+    "drive",
+    "motion type",
+    "nearly moves",
+    "circuits",
+    "input limits",
+    "change point",
+    "within the stops",
+)
+
+
+def summary(motion: Motion, room: int = 100, *, ranges: bool = False, short: bool = False) -> Summary:
     """All that the report says of a motion, in lines of `room` characters if that can be.
 
     Angles are in degrees, rates in radians. With `ranges`, and where the linkage has stops, there are tables
-    of ranges, bends and distances.
+    of ranges, bends and distances. A `short` one has what it does, not how it is written and was found.
     """
     linkage = motion.linkage
     # of an overconstrained loop the last digits decide
     exact = bool(motion.redundant)
-    sheets = [_dimension_sheet(linkage, exact=exact)] if linkage.in_rows else []
+    sheets = [_dimension_sheet(linkage, exact=exact)] if linkage.in_rows and not short else []
     if len(motion.circuits) > MOST_COLUMNS:
         sheets += _compared(motion, room)
     elif motion.circuits:
         sheets += _side_by_side(motion)
     if motion.circuits and (ranges or not linkage.stops.is_empty):
         sheets += _extents(motion)
-    facts = tuple((say(name) if name else "", fact) for name, fact in facts_of(motion))
+    every = facts_of(motion)
+    sure = motion.completeness in ("closed-form", "counted") and not motion.search.unfollowed
+    shown = _short(every, sure=sure) if short else every
+    facts = tuple((say(name) if name else "", fact) for name, fact in shown)
     return Summary(linkage.heading, facts, tuple(sheets))
+
+
+def _short(facts: Sequence[tuple[str, str]], *, sure: bool) -> list[tuple[str, str]]:
+    """The facts of a brief report and their sentences; unless it is `sure`, also whether all is found."""
+    found, takes = [], False
+    for name, fact in facts:
+        takes = name in BRIEF or (name == "completeness" and not sure) if name else takes
+        found += [(name, fact)] * takes
+    return found
 
 
 def _extents(motion: Motion) -> list[Sheet]:
