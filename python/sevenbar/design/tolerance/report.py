@@ -244,8 +244,8 @@ def _samples_text(exact: MonteCarlo) -> str:
     linear = exact.linear
     three = 3 * float(linear.shown(exact.deviation).max())
     return say(
-        "{count} designs (seed {seed}): 3 sigma ± {sigma}, greatest {seen:.4g}; exact over linear deviation "
-        "{ratio}, bias {bias} of one",
+        "{count} designs (seed {seed}): 3 sigma ± {sigma}, greatest {seen:.4g}; their standard deviation is "
+        "{ratio} times the linear one, their mean is off by {bias} of it",
         **named(exact, "count", "seed"),
         sigma=f"{three:.4g} {linear.shown_unit}",
         seen=float(linear.shown(exact.greatest)),
