@@ -6,7 +6,7 @@ use super::follow::{self, Start, Stop};
 use super::on_curve::lies_on;
 use super::turnings::begun_at;
 use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, Columns, length};
+use crate::loops::equation::dense::{COLUMNS, Columns, length, singular_values};
 use std::f64::consts::TAU;
 
 /// Rounds of arcs that lead to further change points; the curves of a linkage pass a few.
@@ -16,6 +16,15 @@ const MOST_ROUNDS: usize = 32;
 /// such a loop is degenerate throughout.
 const TRIED: f64 = 1e-3;
 const MOST_FAILED: usize = 16;
+
+/// Of poses at which curves coincide, or on a surface, no more than so many are searched: every pose near by is like them.
+const MOST_ALIKE: usize = 64;
+
+/// Curves that near a place ever more slowly are followed farther until so many led to none.
+const MOST_PATIENCE: usize = 4;
+
+/// Norm of the screws' inverse at a pose beyond which none is nearer to a change point.
+const BLIND: f64 = 1e6;
 
 /// Norm of the screws' inverse from which a place may lie beside a change point.
 const NARROW: f64 = 1e4;
@@ -31,7 +40,6 @@ struct Arc {
 }
 
 /// Change points and the arcs between them.
-#[derive(Default)]
 pub(crate) struct Arcs {
     pub points: Vec<ChangePoint>,
     arcs: Vec<Arc>,
@@ -39,6 +47,10 @@ pub(crate) struct Arcs {
     done: Vec<Vec<bool>>,
     /// Where walks ended and there is none.
     failed: Vec<Configuration>,
+    /// How many poses were searched about which every pose is like them.
+    alike: usize,
+    /// How many more curves may be followed to where they end however slowly they near it.
+    pub patience: usize,
     /// How many of the points the arcs end at, where they come by.
     respected: usize,
     /// The most freedoms with which the loop moves out of a pose that was looked at.
@@ -46,11 +58,23 @@ pub(crate) struct Arcs {
 }
 
 impl Arcs {
+    /// None yet.
+    pub fn new() -> Self {
+        Self {
+            points: Vec::new(),
+            arcs: Vec::new(),
+            done: Vec::new(),
+            failed: Vec::new(),
+            alike: 0,
+            patience: MOST_PATIENCE,
+            respected: 0,
+            finite: 0,
+        }
+    }
+
     /// The change point that a pose is at.
     pub fn at(&self, chain: &Chain, pose: &Configuration) -> Option<usize> {
-        self.points
-            .iter()
-            .position(|p| length(&chain.difference(&p.at, pose)) < AT_POINT * p.cut)
+        self.points.iter().position(|p| p.is_at(chain, pose))
     }
 
     /// Whether a mode is a place of an arc, or one of the points.
@@ -79,18 +103,20 @@ impl Arcs {
             return Some(known);
         }
         let tried = |at: &Configuration| length(&chain.difference(at, pose)) < TRIED;
-        if self.failed.len() >= MOST_FAILED || self.failed.iter().any(tried) {
+        let degenerate = self.failed.len() >= MOST_FAILED || (self.alike >= MOST_ALIKE && !stuck);
+        if degenerate || self.failed.iter().any(tried) {
             return None;
         }
         let Some(found) = change_points::change_point(chain, pose, wished, stuck) else {
-            if stuck {
+            if stuck && is_blind(chain, pose) {
                 self.failed.push(*pose);
             }
             return None;
         };
         self.finite = self.finite.max(found.finite);
-        // on a surface every pose is like this one
-        if found.finite > 1 && found.rays.is_empty() {
+        // on a surface every pose is like this one, and where curves coincide
+        if found.rays.is_empty() && (found.finite > 1 || found.lost > 0) {
+            self.alike += 1;
             return None;
         }
         if let Some(known) = self.at(chain, &found.at) {
@@ -114,15 +140,25 @@ impl Arcs {
                 break;
             }
             let starts: Vec<Start> = rays.iter().map(|&(p, r)| self.points[p].rays[r].start).collect();
-            let followed = follow::follow(chain, &starts, &self.stops());
+            let mut followed = follow::follow(chain, &starts, &self.stops());
             let count = self.points.len();
-            for end in followed.iter().flat_map(Curve::singular_ends) {
-                self.learn(chain, end, wished, true);
+            for (&(p, r), curve) in rays.iter().zip(&mut followed) {
+                let start = self.points[p].rays[r].start;
+                let mut patience = self.patience;
+                follow::follow_on(chain, start, curve, &mut patience, &mut |curve| {
+                    let mut all = true;
+                    for end in curve.singular_ends() {
+                        all &= self.learn(chain, end, wished, true).is_some();
+                    }
+                    (all, self.stops())
+                });
+                self.patience = patience;
             }
-            // those that come by the points that they have led to are followed once more, to end there
+            // those that come by the points that they have led to, or towards them, are followed once more, to end there
             let fresh = self.stops().split_off(count);
             for (ray, curve) in rays.into_iter().zip(followed) {
-                if !curve.nodes.iter().any(|n| is_at(chain, n, &fresh)) {
+                let towards = !fresh.is_empty() && curve.ends_by(End::Narrow);
+                if !towards && !curve.nodes.iter().any(|n| is_at(chain, n, &fresh)) {
                     self.take(chain, ray, curve, &mut passing);
                 }
             }
@@ -271,6 +307,12 @@ impl Arcs {
         let tangent = point.rays[ray].tangent().map(|t| -t);
         Node::crossing(at, tangent, AT_POINT * point.cut)
     }
+}
+
+/// Whether no place can be nearer to where a curve is not smooth, as rounding has it.
+fn is_blind(chain: &Chain, pose: &Configuration) -> bool {
+    let (values, _) = singular_values(&chain.screws(pose));
+    chain.columns < 2 || values[chain.columns - 2] * BLIND < 1.0
 }
 
 /// Whether a node lies where walks end that run into one of some points.

@@ -28,8 +28,16 @@ const CUT_TIMES: f64 = 30.0;
 /// greater norm, rounding hides the curves from each other.
 const HIDDEN: f64 = 1e7;
 
+/// The same where curves touch, which is sooner: on the way in there, steps are as short as the curves are near. No farther out than the
+/// second number times the sphere's radius.
+const HIDDEN_IN_TOUCH: f64 = 1e5;
+const NEAR_TOUCH: f64 = 0.1;
+
 /// Radii of the sphere [rad, or relative to the size], tried in turn until all curves run straight from the sphere into the pose.
 const RADII: [f64; 4] = [1e-2, 2e-3, 4e-4, 8e-5];
+
+/// The same where curves may touch: their distance falls with the square of the radius, and they part where it is great.
+const RADII_OF_TOUCHING: [f64; 6] = [5e-2, 2e-2, 1e-2, 2e-3, 4e-4, 8e-5];
 
 /// A sphere's radius is at least this many times the distance at which curves are cut.
 const LEAST_RADIUS: f64 = 3.0;
@@ -61,6 +69,9 @@ const OPPOSITE: f64 = 0.03;
 /// A pose belongs to a change point up to this many times the distance at which curves are cut there.
 pub(super) const AT_POINT: f64 = 3.0;
 
+/// Ends of curves nearer to each other than this [rad, or relative to the size] are at one change point: rounding ends them as far from it.
+const SAME_END: f64 = 1e-2;
+
 /// Newton's method on a sphere is given up if a step is still longer than this part of the radius after this many steps.
 const WANDERING_AFTER: usize = 15;
 const WANDERING: f64 = 1e-2;
@@ -68,10 +79,17 @@ const WANDERING: f64 = 1e-2;
 /// Longest step of Newton's method on a sphere [parts of the radius]: it cannot cross the sphere.
 const LONGEST_STEP: f64 = 0.3;
 
+/// Where curves may touch, the first steps of Newton's method see only what is seen to first order, so that the direction is kept: the
+/// rest is of a higher order than the error with which a start closes.
+const FIRST_STEPS: usize = 3;
+
 /// Newton's method has left the sphere's neighbourhood where the free directions carry less than the first part of the radius, or the
 /// pose is farther off than the second [parts of the radius].
 const INNERMOST: f64 = 0.1;
 const OUTERMOST: f64 = 3.0;
+
+/// Zeros that the determinant has in an isolated pose, where two curves cross, or where one has a cusp.
+const ZEROS_OF_POSE: usize = 2;
 
 /// A closure error up to this is rounding [rad, or relative to the size].
 const ROUNDED: f64 = 1e-13;
@@ -81,8 +99,19 @@ const ROUNDED: f64 = 1e-13;
 const NEARER: f64 = 0.125;
 const LEAST_FALL: f64 = 0.042;
 
-/// On a sphere, a singular value below this times the radius and the greatest singular value counts as zero.
+/// On a sphere, a singular value counts as zero below the first times the radius and the greatest singular value. So small that this is
+/// the second, rounding may hide that curves meet twice all along: such a value is that part of the greatest.
 const NO_FREEDOM: f64 = 1e-4;
+const NO_FREEDOM_AT_ALL: f64 = 1e-7;
+
+/// On a sphere, how far from a solution with more freedoms another is searched for, and how far off it must be [parts of the radius], to
+/// belong to a surface. Where curves coincide Newton's method comes back.
+const ASIDE: f64 = 0.1;
+const SURFACE: f64 = 0.05;
+
+/// Ways out that cannot be followed are one where they are nearer to each other than this part of the radius: the place where curves
+/// coincide is known to the square root of rounding.
+const SAME_LOST_WAY: f64 = 1e-2;
 
 /// A way out of a pose.
 #[derive(Clone, Copy, Debug)]
@@ -93,6 +122,9 @@ pub(crate) struct Ray {
     seen: [Columns; 2],
     /// Distance from the change point up to which it can be followed inwards [rad, or relative to the size].
     hidden: f64,
+    /// The power of the distance with which the least singular value of the screws falls: 1 for each curve that crosses, 2 for each
+    /// that touches.
+    power: f64,
 }
 
 /// A pose at which the motion is not smooth.
@@ -106,6 +138,19 @@ pub(crate) struct ChangePoint {
     pub cut: f64,
     /// The greatest mobility of the motions out of it: 0 if it is isolated, 2 or more if it lies on a surface.
     pub finite: usize,
+    /// Ways out of it that are not followed.
+    pub lost: usize,
+}
+
+/// What leads out of a place.
+#[derive(Default)]
+struct Ways {
+    /// The poses at which curves cut a sphere about it, each once.
+    single: Vec<Configuration>,
+    /// The same of curves that coincide.
+    lost: Vec<Configuration>,
+    /// The greatest mobility found on the sphere.
+    finite: usize,
 }
 
 /// The change point at or near a pose, if there is one, judged by the wished columns; `stuck` says that a walk could not go on there.
@@ -122,25 +167,42 @@ pub(super) fn change_point(
         return None;
     }
     let cut = CUT.max(CUT_TIMES * place.passing());
-    let mut found = ChangePoint { at: place.at, rays: Vec::new(), partner: Vec::new(), cut, finite: 0 };
+    let mut found = ChangePoint {
+        at: place.at,
+        rays: Vec::new(),
+        partner: Vec::new(),
+        cut,
+        finite: 0,
+        lost: 0,
+    };
     let least = LEAST_RADIUS * cut;
-    let mut radii: Vec<f64> = RADII.into_iter().filter(|&r| r > least).collect();
+    let all = if place.may_touch() {
+        RADII_OF_TOUCHING.as_slice()
+    } else {
+        RADII.as_slice()
+    };
+    let mut radii: Vec<f64> = all.iter().copied().filter(|&r| r > least).collect();
     if radii.is_empty() {
         if least > WIDEST {
             return None;
         }
         radii.push(least);
     }
+    // the sphere on which its ways were found
+    let mut widest = RADII[0];
     for radius in radii {
-        let (ways, finite) = ways_out(chain, &place, radius);
-        found.finite = finite;
+        let ways = ways_out(chain, &place, radius);
+        found.finite = ways.finite;
         let rays: Vec<Ray> = ways
+            .single
             .iter()
             .filter_map(|at| ray(chain, &place, at, radius))
             .collect();
-        let straight = rays.len() == ways.len();
+        let straight = rays.len() == ways.single.len();
         if straight || rays.len() > found.rays.len() {
+            found.lost = ways.lost.len() + ways.single.len() - rays.len();
             found.rays = rays;
+            widest = radius.max(RADII[0]);
         }
         if straight {
             break;
@@ -152,8 +214,15 @@ pub(super) fn change_point(
     }
     found.partner = partners(&found.rays);
     let hidden = found.rays.iter().map(|r| r.hidden).fold(0.0, f64::max);
-    if hidden < RADII[0] / LEAST_RADIUS {
+    if hidden < widest / LEAST_RADIUS {
         found.cut = found.cut.max(hidden);
+    }
+    if place.may_touch() {
+        let early = found
+            .rays
+            .iter()
+            .map(|r| r.hidden * (HIDDEN / HIDDEN_IN_TOUCH).powf(1.0 / r.power));
+        found.cut = found.cut.max(early.fold(0.0, f64::max).min(NEAR_TOUCH * widest));
     }
     Some(found)
 }
@@ -162,52 +231,91 @@ pub(super) fn change_point(
 /// motion the closure error is rounding, or that of redundant constraints, which is constant or falls in proportion.
 fn opens_with_distance(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> bool {
     let open = |at: &Configuration| chain.residual(&chain.place(at));
+    // so far out it does not close but for redundant constraints
+    if radius >= RADII[0] && !chain.is_redundant() {
+        return false;
+    }
     let inward = chain.difference(&place.at, at).map(|x| x / radius);
     open(at) > ROUNDED
         && on_sphere(chain, place, &inward, NEARER * radius)
             .is_some_and(|nearer| open(&nearer) < LEAST_FALL * open(at))
 }
 
-/// The poses at which curves cut a sphere about a place, each once, and the greatest mobility found on it. A surface has no separate
-/// ways out, but curves may run into it.
-fn ways_out(chain: &Chain, place: &Place, radius: f64) -> (Vec<Configuration>, usize) {
-    let mut found: Vec<Configuration> = Vec::new();
-    let mut finite = 0;
+/// What leads over a sphere about a place. A surface has no separate ways out, but curves may run into it.
+fn ways_out(chain: &Chain, place: &Place, radius: f64) -> Ways {
+    let mut found = Ways::default();
+    let near = |known: &[Configuration], at: &Configuration, part: f64| {
+        let near = |f: &Configuration| length(&chain.difference(f, at)) < part * radius;
+        known.iter().any(near)
+    };
     for (tried, direction) in directions(place).into_iter().enumerate() {
-        if tried == MOST_IN_VAIN && found.is_empty() && finite == 0 {
+        if tried == MOST_IN_VAIN && found.single.is_empty() && found.finite == 0 {
             break;
         }
         let Some(at) = on_sphere(chain, place, &direction, radius) else {
             continue;
         };
-        let known = |f: &Configuration| length(&chain.difference(f, &at)) < SAME_WAY * radius;
-        if found.iter().any(known) || opens_with_distance(chain, place, &at, radius) {
+        if near(&found.single, &at, SAME_WAY)
+            || near(&found.lost, &at, SAME_LOST_WAY)
+            || opens_with_distance(chain, place, &at, radius)
+        {
             continue;
         }
-        let (values, _) = singular_values(&chain.screws(&at));
-        let rank = values
-            .iter()
-            .take(6)
-            .filter(|&&v| v > NO_FREEDOM * radius * values[0])
-            .count();
+        let (values, vectors) = singular_values(&chain.screws(&at));
+        let redundant = chain.is_redundant();
+        let least = if redundant {
+            f64::INFINITY
+        } else {
+            NO_FREEDOM_AT_ALL
+        };
+        let zero = least.min(NO_FREEDOM * radius) * values[0];
+        let rank = values.iter().take(6).filter(|&&v| v > zero).count();
         let freedoms = chain.columns - rank;
-        finite = finite.max(freedoms);
         if freedoms == 1 {
-            found.push(at);
-        }
-        // one surface accounts for all free directions
-        if freedoms > 1 && freedoms == place.free.len() {
+            found.single.push(at);
+        } else if !redundant && !is_on_surface(chain, place, &at, &vectors[rank..], radius) {
+            found.lost.push(at);
+        } else if freedoms == place.free.len() {
+            // one surface accounts for all free directions
+            found.finite = freedoms;
             break;
+        } else {
+            found.finite = found.finite.max(freedoms);
+            continue;
         }
+        found.finite = found.finite.max(1);
     }
-    (found, finite)
+    found
+}
+
+/// Whether there are other solutions next to one on a sphere, in a direction that is free there.
+fn is_on_surface(chain: &Chain, place: &Place, at: &Configuration, free: &[Vec<f64>], radius: f64) -> bool {
+    let off = chain.difference(&place.at, at);
+    let distance = length(&off);
+    let along = |v: &[f64]| v.iter().zip(&off).map(|(a, b)| a * b).sum::<f64>() / distance;
+    // the freest direction along the sphere
+    let Some(least) = free
+        .iter()
+        .min_by(|a, b| along(a).abs().total_cmp(&along(b).abs()))
+    else {
+        return false;
+    };
+    let outward = along(least) / distance;
+    let start = std::array::from_fn(|c| {
+        let aside = least.get(c).map_or(0.0, |x| x - outward * off[c]);
+        off[c] / radius + ASIDE * aside
+    });
+    on_sphere(chain, place, &start, radius)
+        .is_some_and(|other| length(&chain.difference(at, &other)) > SURFACE * radius)
 }
 
 /// The solution of the closure at distance `radius` from a place that Newton's method finds, starting in a direction.
 fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> Option<Configuration> {
     let mut at = chain.moved(&place.at, &direction.map(|x| x * radius));
     let mut before = f64::INFINITY;
+    let first = if place.may_touch() { FIRST_STEPS } else { 0 };
     for step in 0..MOST_STEPS {
+        let zero = if step < first { radius } else { chain.no_rank() };
         let placed = chain.place(&at);
         let off = chain.difference(&place.at, &at);
         let seen: Vec<f64> = place.free.iter().map(|f| dot(f, &off)).collect();
@@ -231,7 +339,7 @@ fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> 
         let mut right: Vec<f64> = placed.error.iter().map(|e| -e).collect();
         right.push(radius - distance);
         let mut by = [0.0; COLUMNS];
-        by[..chain.columns].copy_from_slice(&least_squares(&columns, &right, chain.no_rank()));
+        by[..chain.columns].copy_from_slice(&least_squares(&columns, &right, zero));
         let size = length(&by);
         // where curves touch, each step is at most half the one before
         if !size.is_finite() || (step >= WANDERING_AFTER && size > WANDERING * radius) {
@@ -244,7 +352,7 @@ fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> 
         }
         let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
         before = size;
-        if steady {
+        if steady && step >= first {
             break;
         }
     }
@@ -281,7 +389,7 @@ fn ray(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> Option<
     let (far, near) = (norm(&values), norm(&singular_values(&chain.screws(&outer)).0));
     let power = ((near / far).log2() / 2.0).max(1.0);
     let hidden = radius * (far / HIDDEN).powf(1.0 / power);
-    Some(Ray { start: (*at, direction), seen: [seen[0], seen[1]], hidden })
+    Some(Ray { start: (*at, direction), seen: [seen[0], seen[1]], hidden, power })
 }
 
 impl Ray {
@@ -306,13 +414,37 @@ impl Ray {
 }
 
 impl ChangePoint {
+    /// Where a curve ends, and nothing is known of what begins there.
+    pub fn of_end(at: &Configuration) -> Self {
+        Self {
+            at: *at,
+            rays: Vec::new(),
+            partner: Vec::new(),
+            cut: SAME_END / AT_POINT,
+            finite: 1,
+            lost: 1,
+        }
+    }
+
+    /// Whether a pose is this one.
+    pub fn is_at(&self, chain: &Chain, pose: &Configuration) -> bool {
+        length(&chain.difference(&self.at, pose)) < AT_POINT * self.cut
+    }
+
     /// Whether a curve passes through it, or ends there.
     pub fn is_on(&self, chain: &Chain, curve: &Curve) -> bool {
-        let near = |n: &Node| length(&chain.difference(&self.at, &n.at)) < AT_POINT * self.cut;
+        let near = |n: &Node| self.is_at(chain, &n.at);
         let last = curve.nodes.len() - 1;
         curve.nodes.iter().any(|n| n.is_crossing() && near(n))
             || near(&curve.nodes[0])
             || near(&curve.nodes[last])
+    }
+
+    /// How many zeros the determinant has there, two for each pair of curves that cross.
+    pub fn zeros(&self) -> usize {
+        let smooth = self.lost == 0 && self.partner.iter().all(Option::is_some);
+        let powers: f64 = self.rays.iter().map(|r| r.power.round()).sum();
+        if smooth { (powers / 2.0) as usize } else { 0 }.max(ZEROS_OF_POSE)
     }
 
     /// Where a walk that runs into it ends.

@@ -98,6 +98,8 @@ pub(crate) enum End {
     Closed,
     /// It runs into a place where it is not smooth.
     Singular,
+    /// It nears such a place so slowly that it was followed no farther: curves touch there.
+    Narrow,
     /// Its redundant constraints disagree: it does not move.
     Open,
     /// A slide or screw left the range, or there were too many nodes.
@@ -131,7 +133,12 @@ impl Curve {
     /// The ends at which it runs into a place where it is not smooth.
     pub fn singular_ends(&self) -> impl Iterator<Item = &Configuration> {
         let ends = self.ends().into_iter().zip(self.why);
-        ends.filter_map(|(at, why)| (why == End::Singular).then_some(at))
+        ends.filter_map(|(at, why)| matches!(why, End::Singular | End::Narrow).then_some(at))
+    }
+
+    /// Whether it runs into a place where it is not smooth.
+    pub fn is_stuck(&self) -> bool {
+        self.singular_ends().next().is_some()
     }
 
     /// The place at which it is distinguished from others best: the farthest from any where it is not smooth.

@@ -18,6 +18,18 @@ const MOST_NODES: usize = 100_000;
 /// The same of a piece between starts, which many walk at once; a longer one is left to the ordinary way.
 const MOST_PIECE_NODES: usize = 5_000;
 
+/// Steps in a row, each to a greater norm of the screws' inverse beyond the second number, after which a curve is followed no farther until
+/// the place that it runs into has been searched for. Where curves cross they are some hundred; where they touch, as many more as it is nearer.
+const MOST_NARROWING: usize = 1_000;
+const NARROWING: f64 = 1e4;
+
+/// Where that place was not found, a curve is followed by so many times as many steps, up to the second number.
+const MORE_NARROWING: usize = 4;
+const MOST_NARROWING_AT_ALL: usize = 16_000;
+
+/// Nearer to a change point than this [rad, or relative to the size] steps are not counted: it is what the curve runs into.
+const NEAR_STOP: f64 = 0.1;
+
 /// Slides [share of the size] and screws [rad] are not followed farther than this.
 const FARTHEST: f64 = 50.0;
 
@@ -31,9 +43,54 @@ pub(crate) struct Stop {
     pub radius: f64,
 }
 
+/// How far curves are followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Until {
+    /// Until they come back, or end.
+    End,
+    /// The same, or until so many steps in a row lead to where they are shorter.
+    Narrow(usize),
+    /// Until they reach any of the starts.
+    Start,
+}
+
 /// Follows the motions through closed configurations until they come back; those that do not, from end to end.
 pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
-    let mut curves = walk(chain, starts, stops);
+    // what redundant constraints miss each other by hides how near a curve comes
+    let until = if chain.is_redundant() {
+        Until::End
+    } else {
+        Until::Narrow(MOST_NARROWING)
+    };
+    follow_until(chain, starts, stops, until)
+}
+
+/// Follows a curve again that nears a place so slowly that it was left, farther each time, until `search` finds that place or it ends;
+/// `patience` is how many more may be followed so in vain.
+pub(super) fn follow_on(
+    chain: &Chain,
+    start: Start,
+    curve: &mut Curve,
+    patience: &mut usize,
+    search: &mut dyn FnMut(&Curve) -> (bool, Vec<Stop>),
+) -> bool {
+    let mut most = MOST_NARROWING;
+    loop {
+        let (found, stops) = search(curve);
+        if found || !curve.ends_by(End::Narrow) || *patience == 0 {
+            return found;
+        }
+        if most >= MOST_NARROWING_AT_ALL {
+            *patience -= 1;
+            return found;
+        }
+        most *= MORE_NARROWING;
+        *curve = follow_until(chain, &[start], &stops, Until::Narrow(most)).swap_remove(0);
+    }
+}
+
+fn follow_until(chain: &Chain, starts: &[Start], stops: &[Stop], until: Until) -> Vec<Curve> {
+    let mut curves = walk_until(chain, starts, stops, until).0;
     let open: Vec<usize> = (0..curves.len())
         .filter(|&k| !curves[k].is_closed() && !curves[k].ends_by(End::Open))
         .collect();
@@ -42,7 +99,7 @@ pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Cur
     for &k in &open {
         curves[k].nodes = Vec::new();
     }
-    for (k, back) in open.into_iter().zip(walk(chain, &ends, stops)) {
+    for (k, back) in open.into_iter().zip(walk_until(chain, &ends, stops, until).0) {
         curves[k] = begun_for(curves[k].why[1], back);
     }
     curves
@@ -72,29 +129,35 @@ pub(super) fn is_far(chain: &Chain, at: &Configuration) -> bool {
 /// The curve walked the other way: its own nodes where each step is certain that way too.
 pub(crate) fn turned_round(chain: &Chain, curve: &Curve, stops: &[Stop]) -> Curve {
     curve::reversed(chain, curve).unwrap_or_else(|| {
-        let back = walk(chain, &[back_from_end(curve)], stops).swap_remove(0);
+        let (mut back, _) = walk_until(chain, &[back_from_end(curve)], stops, Until::End);
+        let back = back.swap_remove(0);
         begun_for(curve.why[1], back)
     })
 }
 
-fn walk(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
-    walk_until(chain, starts, stops, false).0
-}
-
 /// Each motion until it comes to the next of the starts, its own or another, and which that is.
 pub(super) fn pieces(chain: &Chain, starts: &[Start]) -> (Vec<Curve>, Vec<Option<usize>>) {
-    walk_until(chain, starts, &[], true)
+    walk_until(chain, starts, &[], Until::Start)
 }
 
 fn walk_until(
     chain: &Chain,
     starts: &[Start],
     stops: &[Stop],
-    any: bool,
+    until: Until,
 ) -> (Vec<Curve>, Vec<Option<usize>>) {
     let mut curves = vec![Curve { nodes: Vec::new(), why: [End::Far; 2] }; starts.len()];
     let mut reached = vec![None; starts.len()];
-    let walk = Walk { chain, starts, stops, any, curves: &mut curves, reached: &mut reached };
+    let mut narrowing = vec![0; starts.len()];
+    let walk = Walk {
+        chain,
+        starts,
+        stops,
+        until,
+        curves: &mut curves,
+        reached: &mut reached,
+        narrowing: &mut narrowing,
+    };
     match starts.len() {
         0 => {}
         // one curve has nothing beside it, and vector code would be slower
@@ -132,11 +195,12 @@ struct Walk<'a> {
     chain: &'a Chain,
     starts: &'a [Start],
     stops: &'a [Stop],
-    /// Whether any start ends a curve, or its own only.
-    any: bool,
+    until: Until,
     curves: &'a mut [Curve],
     /// The start to which each came.
     reached: &'a mut [Option<usize>],
+    /// How many of each one's last steps led to a greater norm of the screws' inverse.
+    narrowing: &'a mut [usize],
 }
 
 impl LaneKernel for Walk<'_> {
@@ -340,7 +404,7 @@ impl Walk<'_> {
         curve.nodes[last].step = step;
         curve.nodes[last].tube = tube;
         let mut nearest: Option<(f64, Node, usize)> = None;
-        let ends = if self.any {
+        let ends = if self.until == Until::Start {
             0..self.starts.len()
         } else {
             walker..walker + 1
@@ -365,14 +429,29 @@ impl Walk<'_> {
             self.reached[walker] = Some(end);
             return Some(End::Closed);
         }
+        let narrower = next.inverse_norm > NARROWING && next.inverse_norm > curve.nodes[last].inverse_norm;
         curve.nodes.push(next);
-        let stopped = |s: &Stop| {
-            let off = chain.difference(&next.at, &s.at);
+        let mut stopped = next.inverse_norm > BLIND;
+        let mut near = false;
+        for stop in self.stops {
+            let off = chain.difference(&next.at, &stop.at);
+            let distance = length(&off);
             // one that it has just left lies behind
-            length(&off) < s.radius && dot(&off, &next.rates[0]) > 0.0
-        };
-        if next.inverse_norm > BLIND || self.stops.iter().any(stopped) {
+            stopped |= distance < stop.radius && dot(&off, &next.rates[0]) > 0.0;
+            near |= distance < NEAR_STOP;
+        }
+        if stopped {
             return Some(End::Singular);
+        }
+        self.narrowing[walker] = if narrower && !near {
+            self.narrowing[walker] + 1
+        } else {
+            0
+        };
+        if let Until::Narrow(most) = self.until
+            && self.narrowing[walker] > most
+        {
+            return Some(End::Narrow);
         }
         let curve = &self.curves[walker];
         let start = &curve.nodes[0].at;
@@ -381,7 +460,11 @@ impl Walk<'_> {
             let farthest = FARTHEST.max(start.values[c].abs());
             !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > farthest
         });
-        let most = if self.any { MOST_PIECE_NODES } else { MOST_NODES };
+        let most = if self.until == Until::Start {
+            MOST_PIECE_NODES
+        } else {
+            MOST_NODES
+        };
         (far || curve.nodes.len() > most).then_some(End::Far)
     }
 }

@@ -52,7 +52,7 @@ impl Curves {
             curves: Vec::new(),
             search: Search::new(Completeness::Algebraic),
             change_points: Vec::new(),
-            arcs: Arcs::default(),
+            arcs: Arcs::new(),
             unfollowed: Vec::new(),
             last: false,
             wished: wished.to_vec(),
@@ -134,6 +134,8 @@ impl Curves {
         self.curves.extend(self.arcs.joined(chain, self.wished[0]));
         self.forget_parts(chain);
         self.change_points = std::mem::take(&mut self.arcs.points);
+        self.search.unfollowed += self.change_points.iter().map(|p| p.lost).sum::<usize>();
+        self.name_ends(chain);
         let finite = if self.curves.is_empty() {
             self.arcs.finite
         } else {
@@ -152,6 +154,20 @@ impl Curves {
         }
         if let Some(found) = &mut self.search.found {
             found.finite = found.finite.min(finite);
+        }
+    }
+
+    /// Calls the ends of curves change points where these were not found: more may begin there than was followed.
+    fn name_ends(&mut self, chain: &Chain) {
+        for curve in &self.curves {
+            for end in curve.singular_ends() {
+                if let Some(known) = self.change_points.iter_mut().find(|p| p.is_at(chain, end)) {
+                    known.lost += usize::from(known.rays.is_empty());
+                } else {
+                    self.change_points.push(ChangePoint::of_end(end));
+                    self.search.unfollowed += 1;
+                }
+            }
         }
     }
 
@@ -238,7 +254,7 @@ impl Curves {
         let mut followed = follow::follow(chain, &left, &self.arcs.stops()).into_iter();
         let mut fresh: Vec<Curve> = Vec::new();
         for (curve, start) in curves.into_iter().zip(&starts) {
-            let Some(curve) = curve.or_else(|| followed.next()) else {
+            let Some(mut curve) = curve.or_else(|| followed.next()) else {
                 unreachable!()
             };
             // two modes may lie on one circuit
@@ -249,14 +265,16 @@ impl Curves {
                 continue;
             }
             // one that could not be begun may lie on a curve that can be followed
-            let stuck = curve.ends_by(End::Singular) && curve.nodes.len() > 2;
-            let mut places = narrow_places(&curve);
-            places.extend(curve.singular_ends());
-            let mut branches = false;
-            for place in places {
-                branches |= self.branches(chain, &place, stuck);
-            }
-            if branches && (stuck || contains(chain, &curve, &self.arcs)) {
+            let mut patience = self.arcs.patience;
+            let branches = follow::follow_on(chain, *start, &mut curve, &mut patience, &mut |curve| {
+                (self.led_to(chain, curve), self.arcs.stops())
+            });
+            self.arcs.patience = self.arcs.patience.min(patience);
+            let stuck = curve.is_stuck() && curve.nodes.len() > 2;
+            // a way into a change point that none of its ways out leads back is kept as it is
+            let held = |at: &Configuration| self.arcs.hold(chain, at);
+            let by_arcs = || stuck && (chain.is_redundant() || held(&start.0) || held(curve.plainest()));
+            if branches && (by_arcs() || contains(chain, &curve, &self.arcs)) {
                 continue;
             }
             let lost = curve.ends_by(End::Singular) && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
@@ -269,6 +287,18 @@ impl Curves {
         // one that was followed over a change point that another has led to is known by its arcs, too
         fresh.retain(|c| !contains(chain, c, &self.arcs));
         self.curves.extend(fresh);
+    }
+
+    /// Whether a curve leads to change points, all branches of which are followed then.
+    fn led_to(&mut self, chain: &Chain, curve: &Curve) -> bool {
+        let stuck = curve.is_stuck() && curve.nodes.len() > 2;
+        let mut places = narrow_places(curve);
+        places.extend(curve.singular_ends());
+        let mut branches = false;
+        for place in places {
+            branches |= self.branches(chain, &place, stuck);
+        }
+        branches
     }
 
     /// Whether a curve with ends is known, though its start was not seen on one that is: beside a change point no step of a curve
