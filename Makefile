@@ -119,6 +119,10 @@ structure: $(VENV)/.installed-dev  ## Count lines, and the rooms, floors, arrows
 tutorial: $(VENV)/.installed-dev  ## Write the tutorial's outputs and pictures anew
 	$(BIN)/python tests/tutorial_pages.py
 
+.PHONY: pages
+pages: $(VENV)/.installed-dev  ## Write the tables of keys, commands, modules and the gallery into the pages
+	$(BIN)/python docs/_extensions/written_parts.py
+
 .PHONY: docs
 docs: $(VENV)/.installed-docs  ## The documentation site, into build/site; a warning fails it
 	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet --doctree-dir build/site-pages docs build/site

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import mpmath as mp
@@ -160,8 +161,10 @@ def test_an_error_in_a_row_is_seen() -> None:
     compare = gallery_rows.Comparison(linkage, circuit, against, rng=np.random.default_rng(1))
     clean = compare.errors(5, (1.0, 0.0, 0.0))
     assert max(clean["joints"] + clean["points"]) < 1e-12
-    circuit.ddq[5] *= 1 + 1e-8
-    spoilt = compare.errors(5, (1.0, 0.0, 0.0))["joints"]
+    ddq = circuit.ddq.copy()
+    ddq[5] *= 1 + 1e-8
+    wrong = gallery_rows.Comparison(linkage, replace(circuit, ddq=ddq), against, rng=np.random.default_rng(1))
+    spoilt = wrong.errors(5, (1.0, 0.0, 0.0))["joints"]
     assert 1e-9 < spoilt[2] < 2e-8
     assert spoilt[0] == clean["joints"][0]
 

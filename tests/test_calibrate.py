@@ -284,6 +284,17 @@ def test_differences_that_follow_each_other_are_told():
     assert not any("follow each other" in note for note in right.notes)
 
 
+def test_repeated_rows_do_not_follow_each_other():
+    inputs, angle = measured_rssr(replace(PAPER, L1=252.0))
+    places = np.linspace(0, len(angle) - 1, 24).astype(int)
+    noisy = angle[places] + 1e-4 * np.random.default_rng(5).normal(size=len(places))
+    for rows in (np.repeat(np.arange(24), 10), np.tile(np.arange(24), 10)):
+        measured = table(input=inputs[places][rows], angle=noisy[rows])
+        found = calibrate(sb.load("rssr"), measured, free=["L1"])
+        assert found.places == 24
+        assert not any("follow each other" in note for note in found.notes)
+
+
 @pytest.mark.parametrize("name", ["rssr", "seven_r"])
 def test_the_calibrated_file_is_the_old_one_with_new_dimensions(name):
     linkage = sb.load(name)

@@ -214,6 +214,9 @@ def test_a_closed_path_does_not_repeat_its_first_place(tmp_path):
 
 
 WRONG = {
+    "linkage outside": ("../planar.toml", FREE + PATH, "task.toml: linkage: '../planar.toml' is not below the folder of this file"),
+    "linkage from the root": ("/etc/passwd", FREE + PATH, "task.toml: linkage: '/etc/passwd' is not below the folder of this"),
+    "table outside": ("planar.toml", FREE + "[[want]]\nkind = 'poses'\nlink = 2\ntable = '../none.csv'\n", "task.toml: want[1].table: '../none.csv' is not below the folder of this file"),
     "no linkage": ("", FREE + PATH, "task.toml: linkage: is missing; give a file in the folder of this one"),
     "unknown linkage": ("planar_4rr", FREE + PATH, "task.toml: linkage: 'planar_4rr': no such file"),
     "unknown key": ("planar.toml", 'gaol = "minimax"\n' + FREE + PATH, "task.toml: gaol: is not known here; did you mean 'goal'?"),
@@ -281,6 +284,7 @@ WRONG = {
     "time ratio below 1": ("planar.toml", FREE + "[[want]]\nkind = 'figure'\nname = 'time_ratio'\nvalue = 0.5\n", "task.toml: want[1].value: 0.5 cannot be: time_ratio is never below 1"),
     "a swing over a turn": ("planar.toml", FREE + "[[want]]\nkind = 'figure'\nname = 'swing'\nvalue = 400\n", "task.toml: want[1].value: 400 cannot be: swing is never above 360"),
     "two values of a measure": ("planar.toml", FREE + "".join(f"[[want]]\nkind = 'figure'\nname = 'swing'\nvalue = {x}\n" for x in (40, 60)), "task.toml: want[2].name: want 1 wants swing, too, and another value; leave one out"),
+    "small and great of a measure": ("planar.toml", FREE + "".join(f"[[want]]\nkind = 'figure'\nname = 'swing'\nvalue = {x!r}\n" for x in ('small', 'great')), "task.toml: want[2].name: want 1 wants swing, too, and another value; leave one out"),
     "no poses given": ("planar.toml", FREE + "[[want]]\nkind = 'poses'\nlink = 2\nposes = []\n", "task.toml: want[1].poses: none given; give tables of at, axis and angle"),
     "a swing at most below 0": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'figure'\nname = 'swing'\nmost = -10\n", "task.toml: must[1].most: -10 cannot be: swing is never below 0"),
     "a swing at least over a turn": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'figure'\nname = 'swing'\nleast = 400\n", "task.toml: must[1].least: 400 cannot be: swing is never above 360"),
@@ -312,7 +316,7 @@ WRONG = {
     "most of no want": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'most'\nwant = 3\nmost = 1\n", "task.toml: must[1].want: 3 is not a want; give its place, 1 to 1"),
     "most of a figure": ("planar.toml", FREE + "[[want]]\nkind = 'figure'\nname = 'swing'\nvalue = 60\n[[must]]\nkind = 'most'\nwant = 1\nmost = 1\n", "task.toml: must[1].want: is a figure; bound it by a must"),
     "most below 0": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'most'\nwant = 1\nmost = '-1mm'\n", "task.toml: must[1].most: -0.025 is no bound; give a number > 0"),
-    "transmission of a planar 4R": ("planar.toml", FREE + PATH + "[limits]\ntransmission = 30\n", "task.toml: limits.transmission: its angle is that of an RSSR"),
+    "transmission of a Bennett": ("bennett", '[free]\nlength_1 = "40:60"\n' + FUNCTION + "[limits]\ntransmission = 30\n", "task.toml: limits.transmission: no transmission angle is defined from theta_1 to theta_4"),
     "a transmission angle of 100 deg": ("rssr", '[free]\nL1 = "200:300"\n' + FUNCTION + "[limits]\ntransmission = 100\n", "task.toml: limits.transmission: 100 deg is no limit"),
     "unknown motion type": ("planar.toml", FREE + PATH + "[limits]\nmotion_type = 'crank'\n", "task.toml: limits.motion_type: 'crank' is not a motion type; allowed: crank-rocker"),
     "size turned round": ("planar.toml", FREE + PATH + "[limits]\nsize = '90:10'\n", "task.toml: limits.size: 90:10 is no range of lengths"),
@@ -342,12 +346,11 @@ def test_each_mistake_has_its_place_and_what_to_do(tmp_path, case):
 def test_all_mistakes_come_at_once(tmp_path):
     found = message(
         tmp_path,
-        '[free]\nlength_1 = "90:80"\n' + PATH.replace('"P"', '"Q"') + "[limits]\ntransmission = 30\n",
+        '[free]\nlength_1 = "90:80"\n' + PATH.replace('"P"', '"Q"'),
     )
     assert [line.split(": ")[1] for line in found.splitlines()] == [
         "free.length_1",
         "want[1].point",
-        "limits.transmission",
     ]
 
 
@@ -385,3 +388,10 @@ def test_the_first_example_of_the_page_is_a_task(tmp_path):
     (tmp_path / "my_task.toml").write_text(text)
     task = read_task(tmp_path / "my_task.toml")
     assert task.names == ("M", "L1")
+
+
+def test_an_x_that_may_be_in_degrees_is_hinted_at_before_the_search(tmp_path):
+    want = "[[want]]\nkind = 'function'\ny = 'sin(x)'\nx = '0:90'\ninput = '0:60deg'\noutput = '0:40deg'\n"
+    (tmp_path / "task.toml").write_text("linkage = 'planar_4r'\n" + FREE + want, encoding="utf-8")
+    (hint,) = task_file(tmp_path / "task.toml").hints
+    assert hint.startswith("want[1].y: sin takes radians; x goes to 90: write sind(x) or x = 0:90deg")

@@ -107,6 +107,18 @@ def test_every_key_of_a_file_has_its_meaning_on_the_page():
     assert "| `L1` | number > 0 or text | length | required | crank |" in keys_of(DOCS, "rssr")
 
 
+def test_the_pages_have_the_tables_that_the_program_makes():
+    from written_parts import PAGES, written
+
+    stale = []
+    for page in sorted(PAGES.rglob("*.md")):
+        text = page.read_text(encoding="utf-8")
+        assert text.count("<!-- end -->") == len(re.findall(r"<!-- made: (?!schema|gallery )", text)), page
+        if written(text) != text:
+            stale.append(page.name)
+    assert not stale, f"{', '.join(stale)}: run make pages"
+
+
 def test_the_json_schema_takes_the_files_that_the_program_takes():
     schema = json_schema()
     jsonschema.Draft202012Validator.check_schema(schema)

@@ -55,6 +55,53 @@ def test_the_model_starts_closed_in_the_pose_asked_for_and_runs(name, tmp_path):
     assert gap(data) < 1e-3
 
 
+@pytest.mark.parametrize(
+    "name", ["planar_4r", "seven_r", "bennett", "rscr", "screw_drill", "rsur", "swash_plate"]
+)
+def test_the_model_is_closed_and_runs_when_it_is_opened(name, tmp_path):
+    """Without its key frame: as a viewer opens it."""
+    linkage = sb.load(name)
+    (path,) = export(linkage, "mjcf", tmp_path / "model.xml", samples=36)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert gap(data) < 1e-9
+    place = model.jnt_qposadr[model.actuator("drive").trnid[0]]
+    start = data.qpos[place]
+    for _ in range(200):
+        mujoco.mj_step(model, data)
+    assert data.qpos[place] - start == pytest.approx(0.2 * linkage.drive.speed, rel=0.15)
+    assert gap(data) < 1e-3
+
+
+def test_a_position_holds_and_a_motor_is_free(tmp_path):
+    for drive, control, moves in (
+        ("position", None, False),
+        ("position", 0.3, True),
+        ("motor", 0.0, False),
+        ("motor", 5.0, True),
+    ):
+        (path,) = export(
+            sb.load("planar_4r"), "mjcf", tmp_path / "model.xml", at=0.5, drive=drive, force=True
+        )
+        model = mujoco.MjModel.from_xml_path(str(path))
+        data = mujoco.MjData(model)
+        data.ctrl[0] = 0.5 if control is None else control
+        for _ in range(500):
+            mujoco.mj_step(model, data)
+        crank = float(data.joint("theta_1").qpos[0])
+        assert (abs(crank - 0.5) > 1e-2) == moves
+        if drive == "position":
+            assert crank == pytest.approx(data.ctrl[0], abs=1e-3)
+
+
+def test_only_a_model_with_an_actuator_has_a_drive(tmp_path):
+    with pytest.raises(RequestError, match="drive: glb has no actuator; leave it out, or give mjcf"):
+        export(sb.load("planar_4r"), "glb", tmp_path / "a.glb", drive="motor")
+    with pytest.raises(RequestError, match="'engine'"):
+        export(sb.load("planar_4r"), "mjcf", tmp_path / "a.xml", drive="engine")
+
+
 def test_a_dead_centre_has_no_velocities_to_start_with(tmp_path):
     motion = sb.load("rsur").motion(36, input="cross.2")
     with pytest.raises(RequestError, match="dead centre"):

@@ -1,5 +1,6 @@
 """The whole motion in tables of other programs: what pandas, NumPy, SciPy and Arrow read is what Sevenbar has."""
 
+import csv
 import json
 import subprocess
 import sys
@@ -8,11 +9,17 @@ import numpy as np
 import pandas as pd
 import pyarrow.parquet
 import pytest
+from openpyxl import load_workbook
 from scipy.io import loadmat
 
 import sevenbar as sb
+from commands import sevenbar
+from sevenbar.description.table_writer import linkage_table
 from sevenbar.errors import MissingExtraError, OutputError, RequestError
 from sevenbar.export import export
+from sevenbar.reporting.folder import write_columns, write_csv
+from sevenbar.text.csv_cells import NUMBER
+from sevenbar.text.table import read_table
 
 
 @pytest.fixture(scope="module")
@@ -223,3 +230,73 @@ def test_the_command_says_what_it_wrote_and_ends_mistakes_with_2(tmp_path):
     assert written == "written: rssr.xml"
     assert masses == "masses are assumed: 1 kg for every body; put in your own where forces matter"
     assert run("rssr", "--to", "urdf", "--force", "--samples", "24").returncode == 0
+
+
+def drawn(*names, points=()):
+    """A slider-crank whose joints have these names, and points on its rod."""
+    kinds, places, axes = (
+        "RRRP",
+        ((0, 0, 0), (40, 0, 0), (180, 0, 0), (180, 0, 0)),
+        ((0, 0, 1),) * 3 + ((1, 0, 0),),
+    )
+    joints = [
+        {"name": name, "kind": kind, "at": at, "axis": axis}
+        for name, kind, at, axis in zip(names, kinds, places, axes, strict=True)
+    ]
+    at = [{"name": name, "link": 3, "at": (50 + i, 10, 0)} for i, name in enumerate(points)]
+    return sb.from_axes(joints, points=at, name="=1+1")
+
+
+LONG = ("tool centre point", "x" * 60, "x" * 60 + "y", "spitze_ä", "spitze_ö", "P")
+
+
+def test_points_with_long_and_foreign_names_are_fields_of_their_own_in_matlab(tmp_path):
+    motion = drawn("crank", "pin", "wrist", "slider", points=LONG).motion(24)
+    export(motion, "mat", tmp_path / "m.mat")
+    matlab = loadmat(tmp_path / "m.mat", simplify_cells=True)
+    short = json.loads(matlab["note"])["fields"]
+    circuit = motion.circuits[0]
+    structure = np.atleast_1d(matlab["circuits"])[0]
+    assert all(len(name) <= 63 and name.isascii() for name in structure)
+    assert len(set(short.values())) == len(short) == 3 * 4
+    for point in motion.linkage.points:
+        for quantity in ("position", "velocity", "acceleration"):
+            name = f"point_{point.name}_{quantity}"
+            own = getattr(circuit.point(point.link, point.at), quantity)
+            np.testing.assert_allclose(structure[short.get(name, name)], own, rtol=1e-15)
+    assert "point_tool centre point_position" in structure
+    assert short["point_spitze_ä_position"] == "point_spitze___position"
+    assert short["point_spitze_ö_position"] == "point_spitze___1_position"
+
+
+RUN = ("=cmd|'/C calc'!A0", "+1+cmd", "-2+3", "@SUM(1)")
+SIGNS = ("=", "+", "-", "@", "＝")
+
+
+def test_no_cell_of_a_csv_file_is_run_and_names_are_read_as_they_were(tmp_path):
+    linkage = drawn(*RUN, points=("a;=b", "'=c"))
+    motion = linkage.motion(24)
+    export(motion, "csv", tmp_path / "m.csv")
+    for mark in (",", ";"):
+        for line in csv.reader((tmp_path / "m.csv").read_text().splitlines(), delimiter=mark):
+            assert not [cell for cell in line if cell.startswith(SIGNS) and not NUMBER.fullmatch(cell)]
+    names = read_table(tmp_path / "m.csv", "rows").names
+    assert list(names) == list(motion.columns())
+    columns = motion.columns()
+    write_columns(tmp_path / "law.csv", {name: columns[name][:20] for name in ("time_s", f"{RUN[0]}_deg")})
+    law = sb.load_law(tmp_path / "law.csv", linkage)
+    np.testing.assert_allclose(law.q, motion.circuits[0].q[:20, 0], rtol=1e-14)
+    found = sevenbar("analyze", "rssr", "--out", tmp_path / "rssr")
+    assert found.returncode == 0
+    assert "'" not in (tmp_path / "rssr" / "motion.csv").read_text()
+
+
+def test_a_linkage_table_with_names_like_formulas_is_written_harmless_and_read_alike(tmp_path):
+    linkage = drawn(*RUN)
+    head, rows = linkage_table(linkage)
+    write_csv(tmp_path / "loop.csv", head, rows)
+    assert sb.load(tmp_path / "loop.csv").columns == linkage.columns
+    export(linkage.motion(24), "xlsx", tmp_path / "m.xlsx")
+    book = load_workbook(tmp_path / "m.xlsx")
+    assert {cell.data_type for sheet in book for row in sheet for cell in row} <= {"s", "n"}
+    assert sb.load(tmp_path / "m.xlsx").columns == linkage.columns

@@ -7,6 +7,7 @@ import json
 import math
 import re
 import xml.etree.ElementTree as ET
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -237,7 +238,7 @@ def test_text_in_svg_is_text(tmp_path: Path) -> None:
 
 
 def film_of(page: str) -> Any:
-    return json.loads(re.search(r"const film = (.*);\n", page)[1].replace("<\\/", "</"))  # type: ignore[index]
+    return json.loads(re.search(r"const film = (.*);\n", page)[1])  # type: ignore[index]
 
 
 def test_an_html_film_holds_the_motions_numbers_and_needs_no_other_file(tmp_path: Path) -> None:
@@ -270,6 +271,24 @@ def test_a_name_cannot_end_the_script_of_a_film(tmp_path: Path) -> None:
     assert page.count("</script>") == 1
     assert "<b>" not in page.split("<script>")[0]
     assert any("</script><b>" in name["text"] for name in film_of(page)["linkage"]["names"])
+
+
+HOSTILE = ("<svg onload=alert(1)>", "<!--<script>", "@FILM@", "@HEADING@", "$& $` \\u003c")
+
+
+@pytest.mark.parametrize("name", ["@FILM@", "@HEADING@ @TITLE@", "<!--<script>", "{quantity} $'"])
+def test_a_name_in_a_film_is_put_where_it_belongs_and_read_for_nothing_else(
+    name: str, tmp_path: Path
+) -> None:
+    joints = [{**joint, "name": own} for joint, own in zip(SLIDER_CRANK, HOSTILE, strict=False)]
+    motion = sb.from_axes(joints, name=name).motion(samples=36)
+    page = animate(motion, tmp_path / "a.html", seconds=1, fps=4).read_text(encoding="utf-8")
+    assert page.count('{"fps"') == page.count("<script>") == page.count("</script>") == 1
+    assert "<!--" not in page
+    assert "<svg" not in page
+    assert re.findall("<h1>(.*)</h1>", page)[0].startswith(escape(name))
+    names = [text for one in film_of(page)["linkage"]["names"] for text in one["text"].split(", ")]
+    assert set(names) == {joint["name"] for joint in joints}
 
 
 def test_the_length_of_a_film_is_seconds_times_rate(tmp_path: Path) -> None:

@@ -70,7 +70,7 @@ def test_what_rigid_bodies_leave_open_is_named_by_the_redundant_constraints() ->
     assert "Mx, My, Fz of crank, crank_pin, wrist_pin; Mx, Mz, Fy of piston" in page
     # the side force of the piston is known
     side = np.abs(sb.load("engine").motion().circuits[0].forces().reactions["piston"].force[:, 0]).max()
-    assert f"Fx {side:.4g} N of piston" in page
+    assert f"Fx of piston, up to {side:.4g} N" in page
     assert "the linkage drives its input" in page
     assert "nothing" not in page
 
@@ -177,6 +177,11 @@ def test_a_file_without_masses_gets_an_example(tmp_path: Path) -> None:
         (("--branch", "1"), "--branch: 1 is not a pass of circuit 0; give 0"),
         (("--joint", "cranck", "--out", "forces"), "--joint: no joint 'cranck'"),
         (("--unevenness", "0"), "unevenness: 0.0 is not an unevenness; give a part of the mean speed > 0"),
+        (
+            ("--unevenness", "3"),
+            "unevenness: 3.0 is not an unevenness; give a part of the mean speed > 0 and up to 2",
+        ),
+        (("--counterweights", "1,1"), "--counterweights: '1' is given twice; leave one out"),
         (("--unevenness", "0.1", "--speed", "0"), "--unevenness: at rest nothing fluctuates"),
         (("--unevenness", "1%"), "--unevenness: '1%' is not a number; give one, as in 0.01"),
         (("--agree", "little"), "--agree: 'little' is not a number; give one, as in 1e-5"),
@@ -279,8 +284,8 @@ def test_forces_print_what_a_person_asks_first() -> None:
     assert "flywheel" in repr(forces.sizing(unevenness=0.1))
     assert "cubic mean" in repr(forces.sizing().bearings["crank"])
     open_one = sb.load("engine").motion(72).circuits[0].forces().reactions["piston"]
-    assert "not determined by equilibrium of rigid bodies" in repr(open_one)
-    assert "Mx  open" in repr(open_one)
+    assert "Fy  not determined" in repr(open_one)
+    assert "Mx  not determined" in repr(open_one)
 
 
 def test_counterweights_are_those_of_the_circuit() -> None:
@@ -312,7 +317,7 @@ def test_the_force_in_the_plane_is_in_the_table_the_json_and_the_csv(tmp_path: P
     sizing = sb.load("engine").motion().circuits[0].forces().sizing()
     piston = sizing.bearings["piston"].in_plane
     assert f"piston {piston.peak.value:.4g}" in page
-    assert "in plane: the force in the plane of motion, the whole is open" in page
+    assert "in plane: the force in the plane of motion; -: not determined" in page
     joints = json.loads((tmp_path / "out" / "forces.json").read_text())["joints"]
     assert joints["piston"]["in_plane"]["mean_cube"] == pytest.approx(piston.mean_cube, rel=1e-12)
     with (tmp_path / "out" / "forces.csv").open(newline="", encoding="utf-8-sig") as file:
@@ -380,3 +385,26 @@ def test_a_start_without_a_unit_is_in_degrees(tmp_path: Path) -> None:
     assert plain.returncode == 0, plain.stderr
     assert plain.stdout == degrees.stdout
     assert "--from: 'wide' is no value of theta_1, which turns; give" in mistake(*free, "wide")
+
+
+def test_a_sizing_prints_units_and_places_as_the_report_does() -> None:
+    circuit = sb.load("rssr_press").motion(samples=90).circuits[0]
+    forces = circuit.forces()
+    found = forces.sizing()
+    assert found is not None
+    text = str(found)
+    assert re.search(r"peak torque +-?[\d.]+ N m @ [\d.]+°", text)
+    assert re.search(r"rms, mean +[\d.]+ N m, -?[\d.]+ N m", text)
+    assert re.search(r"peak power +[\d.]+ W @ [\d.]+°", text)
+    assert re.search(r"radial +peak [\d.]+ N @ [\d.]+°", str(found.bearings["crank"]))
+
+
+def test_a_cone_takes_a_text_with_its_unit_wherever_it_is_given() -> None:
+    assert sb.Cone("45 deg") == sb.Cone(math.pi / 4)
+    rssr = sb.load("rssr")
+    assert (
+        rssr.stopped(cones={"ball_a": sb.Cone("45 deg")}).stops
+        == rssr.stopped(cones={"ball_a": "45 deg"}).stops
+    )
+    with pytest.raises(sb.errors.RequestError, match="cone: '45' is not a number with a unit that fits"):
+        sb.Cone("45")

@@ -1,5 +1,6 @@
 """Grashof's rule against the motions that the loops have: planar and spherical four-bars, slider-cranks."""
 
+import math
 from itertools import product
 from math import pi, radians
 
@@ -8,7 +9,15 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.kinematics.solvers.four_bar import four_bar_of
-from textbook_loops import four_bar_joints, linkage, moved, rotation, slider_crank_joints, spherical_joints
+from textbook_loops import (
+    four_bar_joints,
+    linkage,
+    moved,
+    rewritten,
+    rotation,
+    slider_crank_joints,
+    spherical_joints,
+)
 
 NAMES = ("crank", "coupler_pin", "rocker_pin", "rocker")
 
@@ -200,6 +209,48 @@ def test_links_have_the_same_names_wherever_and_however_the_loop_is_described():
     bar = four_bar_of(linkage(spherical_joints(*arcs)), "crank", "rocker")
     assert tuple(bar.links.values()) == pytest.approx(arcs)
     assert bar.excess == pytest.approx(radians(30 + 85 - 80 - 70))
+
+
+def pin(kind, at, axis=(0, 0, 1)):
+    return {"kind": kind, "at": list(at), **({"axis": list(axis)} if kind != "S" else {})}
+
+
+GROUND, A, B, C = (0, 0, 0), (1, 0, 0), (4, 2.5, 0), (4, 0, 0)
+SLIDER = (3, 0.5, 0)
+
+#: Lengths of the first three links and the ground, or of the two and the offset.
+BARS = [1, math.hypot(3, 2.5), 2.5, 4]
+CRANKS = [1, math.hypot(2, 0.5), 0.5]
+
+#: Planar loops whose turns are joints of other kinds.
+WITH_BALLS = {
+    "RSSR": ([pin("R", GROUND), pin("S", A), pin("S", B), pin("R", C)], BARS),
+    "RSSR, the rod slopes": (
+        [pin("R", GROUND), pin("S", A), pin("S", (4, 2.5, 1)), pin("R", (4, 0, 3))],
+        BARS,
+    ),
+    "RRSR": ([pin("R", GROUND), pin("R", A), pin("S", B), pin("R", C)], BARS),
+    "RRRS": ([pin("R", GROUND), pin("R", A), pin("R", B), pin("S", C)], BARS),
+    "RSCR": ([pin("R", GROUND), pin("S", A), pin("C", B), pin("R", C)], BARS),
+    "RSSP": ([pin("R", GROUND), pin("S", A), pin("S", SLIDER), pin("P", SLIDER, (1, 0, 0))], CRANKS),
+    "RSSP, the rod slopes": (
+        [pin("R", GROUND), pin("S", A), pin("S", (3, 0.5, 1)), pin("P", (3, 0.5, 1), (1, 0, 0))],
+        CRANKS,
+    ),
+    "RRSP": ([pin("R", GROUND), pin("R", A), pin("S", SLIDER), pin("P", (7, 7, 7), (1, 0, 0))], CRANKS),
+}
+
+
+@pytest.mark.parametrize("name", WITH_BALLS)
+def test_links_of_a_planar_loop_with_balls_are_those_in_its_plane_however_it_is_written(name):
+    joints, expected_links = WITH_BALLS[name]
+    classes = set()
+    for way, scale, written in rewritten(joints):
+        bar = linkage(written).as_four_bar()
+        found = [*bar.links.values()] + ([] if bar.offset is None else [bar.offset])
+        assert sorted(found) == pytest.approx(sorted(scale * x for x in expected_links), rel=1e-9), way
+        classes.add(bar.grashof in ("triple rocker", "non-Grashof"))
+    assert classes == {False}
 
 
 #: What of the gallery has four links in a plane or on a sphere.

@@ -59,7 +59,7 @@ def test_every_sentence_has_its_translation():
 def test_every_word_that_is_put_into_a_sentence_has_one():
     ends = ("crank", "rocker", "slider", "spindle")
     types = {f"double-{a}" if a == b else f"{a}-{b}" for a, b in product(ends, ends)}
-    types |= {"change-point", "mixed", "rigid", "two-inputs", "cannot-assemble"}
+    types |= {"change-point", "mixed", "rigid", "not-followed", "two-inputs", "cannot-assemble"}
     tables = [
         types, facts.COMPLETE, facts.COMPLETE.values(), how_found._MODES.values(), how_found._UNCOUNTED.values(),
         [kind.legend for kind in KINDS.values()], [measure.title for measure in MEASURES.values()],

@@ -204,6 +204,43 @@ def test_what_is_wrong_in_a_table_is_told_with_its_line(tmp_path, text, message)
     assert problem.message == f"{tmp_path / 'press.csv'}: {message}"
 
 
+PRESS_ROWS = "crank [deg],factor\n0,0\n30,1\n60,0\n"
+
+
+def test_a_table_below_the_folder_is_read_and_one_outside_is_refused_whether_it_exists_or_not(tmp_path):
+    folder, outside = tmp_path / "mine", tmp_path / "press.csv"
+    (folder / "deep").mkdir(parents=True)
+    for path in (outside, folder / "deep" / "press.csv"):
+        path.write_text(PRESS_ROWS, encoding="utf-8")
+    (folder / "link.csv").symlink_to(outside)
+    (folder / "up").symlink_to(tmp_path)
+    (folder / "inner.csv").symlink_to(folder / "deep" / "press.csv")
+    (folder / "loop.csv").symlink_to(folder / "loop.csv")
+    file = folder / "a.toml"
+    for name in ("deep/press.csv", "./deep/../deep/press.csv", "inner.csv"):
+        file.write_text(rssr(PRESS.format(name)), encoding="utf-8")
+        assert len(sb.load(file).loading.loads[0].table[0]) == 3
+    for name in (
+        str(outside), str(folder / "deep" / "press.csv"), "../press.csv", "../none.csv", "deep/../../press.csv", "link.csv",
+        "up/press.csv", "/etc/passwd", "/none", "C:\\\\press.csv", "C:press.csv", "\\\\\\\\host\\\\share\\\\press.csv",
+        "\\\\press.csv", "//host/share/press.csv",
+    ):  # fmt: skip
+        file.write_text(rssr(PRESS.format("X").replace("'X'", f'"{name}"')), encoding="utf-8")
+        for read in (sb.load, lambda path: Draft.of(path.read_text(encoding="utf-8"), str(path))):
+            with pytest.raises(DescriptionError) as caught:
+                read(file)
+            (problem,) = caught.value.problems
+            assert problem.place == "load[1].table"
+            assert (
+                "is not below the folder of this file, which reads no other files; put it there and"
+                in problem.message
+            )
+    for name in ("loop.csv", "none.csv"):
+        file.write_text(rssr(PRESS.format(name)), encoding="utf-8")
+        with pytest.raises(DescriptionError):
+            sb.load(file)
+
+
 def test_a_written_file_holds_the_rows_of_its_table_and_opens_anywhere(tmp_path):
     degrees = np.linspace(0, 350.1, 400)
     rows = "".join(f"{x!r},{math.sin(x)!r}\n" for x in map(float, degrees))

@@ -79,7 +79,10 @@ KNOWN = (
         ),
         (
             BODY + "mass = 2\ncentre = [1, 2, 3]\ninertia = [1, 2, 3]\n",
-            ["body[1].inertia: [1, 2, 3] is not an inertia; give six numbers, xx yy zz yz xz xy of the tensor"],
+            [
+                "body[1].inertia: [1, 2, 3] is not an inertia; give six numbers, xx yy zz yz xz xy of the "
+                "tensor, or of a planar linkage one, about the axis across its plane"
+            ],
         ),
         (
             BODY + "mass = 2\nsolid = 'rod'\ncenter = 3\n",

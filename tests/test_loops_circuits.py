@@ -36,7 +36,7 @@ NARROW = np.radians(15)
 RARE = 0.05
 
 #: Kinds of answers that have no circuits to compare.
-STILL = {"rigid", "two-inputs", "cannot-assemble"}
+STILL = {"rigid", "not-followed", "two-inputs", "cannot-assemble"}
 
 FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {
     "general": general,

@@ -90,7 +90,7 @@ def test_rounding_of_a_joint_that_follows_evenly_is_reported_as_zero():
     ("name", "given", "head"),
     [
         ("rssr", {}, "mechanical_advantage"),
-        ("rssp", {}, "mechanical_advantage_1_mm"),
+        ("rssp", {}, "mechanical_advantage_per_mm"),
         ("rssp", {"input": "slider"}, "mechanical_advantage_mm"),
     ],
 )
@@ -108,7 +108,9 @@ def test_the_mechanical_advantage_is_a_column_with_its_unit(name, given, head):
     good = np.isfinite(rows) & (rows != 0)
     np.testing.assert_allclose(rows[good] * follows[good], speed[good], rtol=1e-12)
     si = motion.columns(si=True)
-    scale = {"mechanical_advantage": 1.0, "mechanical_advantage_1_mm": 1e3, "mechanical_advantage_mm": 1e-3}[
-        head
-    ]
+    scale = {
+        "mechanical_advantage": 1.0,
+        "mechanical_advantage_per_mm": 1e3,
+        "mechanical_advantage_mm": 1e-3,
+    }[head]
     np.testing.assert_allclose(si[head.replace("mm", "m")], rows * scale, rtol=1e-15)

@@ -11,6 +11,7 @@ from textbook_loops import (
     four_bar_joints,
     linkage,
     moved,
+    rewritten,
     rotation,
     slider_crank_joints,
     spherical_joints,
@@ -254,6 +255,30 @@ def test_the_radius_reaches_the_joints_as_drawn_or_the_points():
         "  centre  (0, 0, 0)",
         "  radius  1",
     ]
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (0.1, 0.2, 0.3), (1e6, -2e6, 1 / 3), (1e-6, 0.0, 1e-7)])
+def test_a_sphere_drawn_in_one_point_is_one_wherever_that_is(place):
+    joints = spherical_joints(*map(radians, (30, 80, 70, 85)))
+    for seed in range(8):
+        turned = moved(joints, rotation(np.random.default_rng(seed)), np.zeros(3))
+        for _, _, written in rewritten([{**joint, "at": list(place)} for joint in turned], seed):
+            found = linkage([{**joint, "at": list(place)} for joint in written])
+            np.testing.assert_allclose(found.sphere.centre, place, rtol=1e-12, atol=1e-12)
+            assert found.sphere.radius == 1.0
+            assert found.as_four_bar().grashof in ("crank-rocker", "double-crank", "double-rocker")
+
+
+def test_a_sphere_is_one_in_every_size_and_place():
+    for _, scale, written in rewritten(spherical_joints(*map(radians, (30, 80, 70, 85)), radius=2.0)):
+        assert linkage(written).sphere is not None, scale
+
+
+def test_slides_drawn_in_one_point_have_a_plane_wherever_that_is():
+    for seed in range(8):
+        turned = moved(PLANAR["wedge"], rotation(np.random.default_rng(seed)), np.zeros(3))
+        for place in ((0.1, 0.2, 0.3), (1e6, -2e6, 1 / 3)):
+            assert linkage([{**joint, "at": list(place)} for joint in turned]).is_planar
 
 
 def test_balls_off_the_centre_make_no_sphere():

@@ -19,9 +19,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import sevenbar as sb
+from sevenbar.description.draft import Draft
 from sevenbar.drawing import animate as animation
-from sevenbar.drawing import output_curves, plot, skeleton
+from sevenbar.drawing import output_curves, plot, scene, skeleton
 from sevenbar.drawing.animate import animate
+from sevenbar.drawing.style import COUPLER, GROUND, INPUT, OUTPUT, paler
 from sevenbar.errors import MissingExtraError, OutputError, RequestError
 from sevenbar.kinematics.circuits.poses import walk
 
@@ -207,6 +209,16 @@ def test_a_named_point_gets_its_path_and_its_entry() -> None:
         max(np.abs(path - row).max(axis=1).min() for row in middle) for path in drawn if len(path) > 360
     ]
     assert min(missed) < 1e-9
+
+
+def test_a_named_point_is_tied_to_its_link_in_that_links_colour() -> None:
+    """Of the crank blue, of the coupler green, of the output orange, of the ground grey."""
+    draft = Draft.of_linkage(sb.load("planar_4r"))
+    for link, name in ((3, "O"), (1, "I"), (2, "K"), (4, "G")):
+        draft = draft.with_point(name, link, (10.0, 20.0, 0.0))
+    motion = draft.linkage.motion(12)
+    drawn = scene.stays(skeleton.skeleton(motion, motion.circuits[0]), ("theta_1", "theta_4"))
+    assert [colour for _, colour in drawn] == [OUTPUT, INPUT, COUPLER, paler(GROUND, 0.35)]
 
 
 def test_names_are_shown_as_they_are_written() -> None:

@@ -6,7 +6,7 @@ import io
 import pytest
 import typer
 
-from sevenbar.commands.progress import STOPPED, progress_bar
+from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from tests.commands import sevenbar
 
@@ -70,7 +70,7 @@ def test_a_total_that_is_not_known_is_none(monkeypatch):
 def test_ctrl_c_says_what_is_kept(capsys):
     with pytest.raises(typer.Exit) as end:
         ended_by(KeyboardInterrupt(), kept="two parts are kept")
-    assert end.value.exit_code == STOPPED == 130
+    assert end.value.exit_code == 130
     assert capsys.readouterr().err == "searching ..\nsevenbar: stopped; two parts are kept\n"
 
 

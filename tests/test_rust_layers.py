@@ -13,7 +13,7 @@ SOURCE = CORE / "src"
 
 #: From below; a folder is followed by its files. Its own module comes after them: it only hands on what they hold.
 IN_ORDER = """
-error outcome one_pose number simd vector_math vectors random taylor twofold trigonometric rigid parallel piecewise driven
+error outcome one_pose number simd vector_math vectors random taylor twofold trigonometric rigid stopping parallel piecewise driven
 
 rssr: linkage pair rates domain extremes frames motion circuits batch lines classify measures
 

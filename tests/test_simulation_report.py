@@ -114,7 +114,11 @@ def test_the_rest_works_without_any_engine():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["rssr", "--engine", "adams"], "engine: 'adams' is not an engine; give exudyn or mujoco"),
+        (
+            ["rssr", "--engine", "adams"],
+            "engine: 'adams' is not an engine; give exudyn or mujoco; a file for another program is written by "
+            "'sevenbar export .. --to', as in --to adams",
+        ),
         (["rssr", "--circuit", "5"], "circuit: 5 is not a circuit of this motion; give 0 to 1"),
         (
             ["rssr", "--input", "rocker", "--steps", "72"],

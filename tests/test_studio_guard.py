@@ -115,7 +115,7 @@ def test_a_socket_without_an_origin_is_refused_and_that_of_the_page_is_opened(se
 
 @pytest.mark.parametrize(
     "host", ["evil.example", "evil.example:80", "127.0.0.1.evil.example", "localhost.evil.example", "", "a b",
-             "127.0.0.1:x", "x@127.0.0.1", "[::1", "127.0.0.1/", ["127.0.0.1", "evil.example"]],
+             "127.0.0.1:x", "x@127.0.0.1", "[::1", "127.0.0.1/", "[::1].evil.com", "[::1]x:80", "[::1]@evil.com", ["127.0.0.1", "evil.example"]],
 )  # fmt: skip
 def test_a_name_that_was_made_to_lead_here_is_refused(served, host):
     # the page of evil.example, whose name now leads to 127.0.0.1, is of the same origin as what it asks for
@@ -163,8 +163,10 @@ def test_the_names_of_a_server_are_its_address_numbers_and_localhost(host, own, 
     guard = Guard(host, KEY)
     for name in own:
         assert guard.path(f"/{KEY}/", {"Host": [f"{name}:8077"]}) == "/", name
-    for name in others:
+    for name in (*others, "[::1].evil.com", "[::1]evil.com", "127.0.0.1.evil.com", "[evil.com]"):
         assert guard.path(f"/{KEY}/", {"Host": [f"{name}:8077"]}) is None, name
+        assert guard.path(f"/{KEY}/", {"Host": [name]}) is None, name
+    assert guard.path(f"/{KEY}/{'a' * 5_000}", {"Host": ["localhost:1"]}) is None
 
 
 def test_what_is_no_request_leaves_the_terminal_quiet_and_the_server_up(served, capfd):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -361,3 +362,29 @@ def test_the_own_points_of_an_rssr_keep_their_names() -> None:
     session = opened("rssr")
     with pytest.raises(RequestError, match="there is a point 'A' already"):
         session.add_point("A", 1, (0.0, 0.0, 0.0))
+
+
+# --- files of this machine
+
+
+def test_a_text_that_comes_through_the_page_reads_no_file_of_this_machine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "press.csv").write_text("crank [deg],factor\n0,0\n30,1\n60,0\n", encoding="utf-8")
+    loaded = text("rssr") + "[[load]]\nlink = 3\ntorque = [0, 0, 1]\ntable = {}\n"
+    (tmp_path / "mine.toml").write_text(loaded.format("'press.csv'"), encoding="utf-8")
+    session = opened("rssr")
+    before = session.draft
+    for source in ("mine.toml", str(tmp_path / "mine.toml"), "other.toml"):
+        for name in ("press.csv", "none.csv", str(tmp_path / "press.csv"), "../press.csv"):
+            with pytest.raises(
+                DescriptionError, match=r"load\[1\].table: .* is the name of a file, and a text"
+            ):
+                session.open(loaded.format(f"'{name}'"), source)
+            assert session.draft is before
+    session.open(loaded.format("[[0, 0], [30, 1], [60, 0]]"), "mine.toml")
+    assert session.draft.linkage.loading.loads[0].table[1] == (0, 1, 0)
+    # the file of the command line is one's own
+    own = Session((tmp_path / "mine.toml").read_text(encoding="utf-8"), "mine.toml")
+    assert own.draft.linkage.loading.loads[0].table[1] == (0, 1, 0)

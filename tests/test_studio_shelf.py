@@ -72,7 +72,10 @@ def test_the_ends_of_lines_and_the_mark_of_windows_stay(tmp_path):
     assert path.read_bytes() == b"\xef\xbb\xbf" + NEW.replace("\n", "\r\n").encode()
 
 
-@pytest.mark.parametrize("name", ["", "  ", "../up", "a/b", "/etc/x", ".hidden", "..", "a\\b", "a\0b"])
+@pytest.mark.parametrize(
+    "name", ["", "  ", "../up", "a/b", "/etc/x", ".hidden", "..", "a\\b", "a\0b", "a\nb.toml", "\x1b[31m", "CON",
+         "con.toml", "lpt1.x", "a:b", "a*b", "\u202eb"],
+)  # fmt: skip
 def test_only_names_of_files_of_the_folder_are_taken(tmp_path, name):
     home = tmp_path / "home"
     home.mkdir()
@@ -92,6 +95,25 @@ def test_a_link_to_a_file_stays_a_link(tmp_path):
     shelf.save("mine.toml", NEW)
     assert (tmp_path / "mine.toml").is_symlink()
     assert (there / "real.toml").read_text() == NEW
+
+
+def test_a_link_that_leads_out_of_the_folder_is_not_followed_unless_it_was_opened(tmp_path):
+    folder, out = tmp_path / "home", tmp_path / "there"
+    folder.mkdir()
+    out.mkdir()
+    (out / "real.toml").write_bytes(b"mine")
+    (folder / "nowhere.toml").symlink_to(out / "new.toml")
+    (folder / "real.toml").symlink_to(out / "real.toml")
+    for name in ("nowhere.toml", "real.toml"):
+        for replace in (False, True):
+            with pytest.raises(OutputError, match="is a link out of"):
+                Shelf(folder).save(name, NEW, replace=replace)
+    assert not (out / "new.toml").exists()
+    assert (out / "real.toml").read_bytes() == b"mine"
+    shelf = Shelf(folder)
+    shelf.read(folder / "real.toml")
+    shelf.save("real.toml", NEW)
+    assert (out / "real.toml").read_bytes() == NEW.encode()
 
 
 def test_what_cannot_be_written_is_left_as_it_was(tmp_path, monkeypatch):

@@ -2,6 +2,8 @@
 
 import json
 import math
+import random
+import re
 from functools import reduce
 from operator import add
 from typing import Any, NamedTuple
@@ -240,6 +242,32 @@ def test_a_journal_cut_anywhere_is_gone_on_with(tmp_path, monkeypatch):
         journal.write_bytes(line)
         with pytest.raises(OutputError, match="is no part of this survey"):
             survey(task, out=tmp_path / "a", resume=True)
+
+
+def test_a_line_of_a_journal_is_taken_as_the_part_it_was_written_for_or_not_at_all(tmp_path, monkeypatch):
+    monkeypatch.setattr(SurveyTask, "part_size", 2000)
+    task = SurveyTask(FLAP, count=9000)
+    whole = survey(task, designs_wanted=0, out=tmp_path / "a", threads=1).tally.line()
+    journal = tmp_path / "a" / JOURNAL
+    first, second, *rest = journal.read_bytes().splitlines(keepends=True)
+    flipped, chance = [], random.Random(5)
+    for place in [chance.randrange(8 * (len(second) - 1)) for _ in range(50)]:
+        line = bytearray(second)
+        line[place // 8] ^= 1 << place % 8
+        flipped.append(bytes(line))
+    wrong = (
+        first.replace(b'"part":0', b'"part":1'),
+        re.sub(rb',"check":"\w+"', b"", second),
+        b"[" * 100_000 + b"\n",
+        *flipped,
+    )
+    for line in wrong:
+        journal.write_bytes(b"".join([first, line, *rest]))
+        with pytest.raises(OutputError, match=r"journal.jsonl: line 2 is no part of this survey, or damaged"):
+            survey(task, designs_wanted=0, out=tmp_path / "a", resume=True)
+    # in another order, and one twice
+    journal.write_bytes(b"".join([*rest, second, first, second]))
+    assert survey(task, designs_wanted=0, out=tmp_path / "a", resume=True).tally.line() == whole
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import random
+import shutil
 import subprocess
 import sys
 import time
@@ -18,6 +19,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.errors import OutputError
 from sevenbar.sweep import Sweep, run, span
 from sevenbar.sweep import plan as plan_module
+from sevenbar.sweep.parts import read_description, read_part
 
 AXES = {"L1": span(100, 900), "L2": span(20, 1200)}
 ASKED = {"measures": ["motion_type", "limits", "swing"], "count": 300, "part_size": 25}
@@ -124,15 +126,77 @@ def test_a_part_that_is_none_of_this_sweep_is_not_mixed_in(whole: Path, tmp_path
     swept(tmp_path / "other", seed=9)
     swept(tmp_path / "mine")
     mine = tmp_path / "mine" / "part-000003.parquet"
-    for content in ((tmp_path / "other" / mine.name).read_bytes(), mine.read_bytes()[:-100], b""):
+    own = mine.read_bytes()
+    for content, message in (
+        ((tmp_path / "other" / mine.name).read_bytes(), "is no part of this sweep"),
+        (mine.with_name("part-000004.parquet").read_bytes(), "is part 4 of this sweep, not part 3"),
+        (own[:-100], "is damaged or was changed"),
+        (own + b"0", "is damaged or was changed"),
+        (b"", "is damaged or was changed"),
+    ):
         mine.write_bytes(content)
-        with pytest.raises(
-            OutputError, match=r"part-000003.parquet: is no part of this sweep; move it away and"
+        for read in (
+            lambda: swept(tmp_path / "mine", resume=True),
+            lambda: swept(tmp_path / "mine"),
+            Sweep.of_folder(tmp_path / "mine").table,
+            lambda: Sweep.of_folder(tmp_path / "mine").totals,
         ):
-            swept(tmp_path / "mine", resume=True)
+            with pytest.raises(OutputError, match=f"part-000003.parquet: {message}.*; move it away and give"):
+                read()
     mine.unlink()
     swept(tmp_path / "mine", resume=True)
     assert bits(tmp_path / "mine") == bits(whole)
+
+
+def test_each_of_200_flipped_bits_of_a_part_is_noticed(whole: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "mine"
+    shutil.copytree(whole, folder)
+    path, chance = folder / "part-000007.parquet", random.Random(7)
+    own = path.read_bytes()
+    kept = Sweep.of_folder(folder)
+    for place in (0, 8 * len(own) - 1, *(chance.randrange(8 * len(own)) for _ in range(198))):
+        flipped = bytearray(own)
+        flipped[place // 8] ^= 1 << place % 8
+        path.write_bytes(flipped)
+        with pytest.raises(
+            OutputError, match=r"part-000007.parquet: is damaged or was changed: its checksum"
+        ):
+            read_part(folder, 7, kept.description)
+    path.write_bytes(own)
+    assert kept.table().equals(Sweep.of_folder(whole).table())
+
+
+def test_each_flipped_bit_of_the_description_is_noticed(whole: Path, tmp_path: Path) -> None:
+    path, chance = tmp_path / "sweep.json", random.Random(8)
+    own = (whole / path.name).read_bytes()
+    noticed = 0
+    for place in [chance.randrange(8 * len(own)) for _ in range(200)]:
+        flipped = bytearray(own)
+        flipped[place // 8] ^= 1 << place % 8
+        path.write_bytes(flipped)
+        try:
+            found = read_description(tmp_path)
+        except OutputError:
+            noticed += 1
+        else:  # space for a tab, between values
+            assert found == json.loads(own)
+    assert noticed > 150
+
+
+def test_a_sweep_without_checksums_is_refused_in_one_line(whole: Path, tmp_path: Path) -> None:
+    told = json.loads((whole / "sweep.json").read_text(encoding="utf-8"))
+    for content, message in (
+        (told | {"format": 1}, "is a sweep of format 1, whose parts carry no checksums; sweep into another"),
+        ({"format": 1, "made_by": []}, "is a sweep of format 1, whose parts"),
+        ({"format": 2, "made_by": []}, "is damaged or was changed"),
+        (told | {"linkages": 299}, "is damaged or was changed: its checksum is that of other values; give"),
+    ):
+        (tmp_path / "sweep.json").write_text(json.dumps(content), encoding="utf-8")
+        with pytest.raises(OutputError, match=f"sweep.json: {message}"):
+            Sweep.of_folder(tmp_path)
+    (tmp_path / "sweep.json").write_text("[" * 100_000, encoding="utf-8")
+    with pytest.raises(OutputError, match=r"sweep.json: is no description of a sweep of format 2; give"):
+        Sweep.of_folder(tmp_path)
 
 
 def test_parts_of_another_vector_unit_are_mixed_only_where_that_is_asked_for(
@@ -166,7 +230,7 @@ def test_a_folder_of_other_things_is_left_alone(tmp_path: Path) -> None:
         swept(tmp_path / "notes.txt")
     (tmp_path / "torn").mkdir()
     (tmp_path / "torn" / "sweep.json").write_text('{"format": 1')
-    with pytest.raises(OutputError, match=r"torn/sweep.json: is no description of a sweep of format 1"):
+    with pytest.raises(OutputError, match=r"torn/sweep.json: is no description of a sweep of format 2"):
         swept(tmp_path / "torn", resume=True)
     with pytest.raises(OutputError, match=r"none/sweep.json: cannot be read: no such file or directory"):
         Sweep.of_folder(tmp_path / "none")

@@ -170,7 +170,8 @@ def test_a_sine_of_degrees_is_found(y, x, tmp_path):
 @pytest.mark.slow
 def test_a_sine_of_degrees_taken_for_radians_is_hinted_at():
     told = mistake("design", "function", "--y", "sin(x)", "--x", "0:90", "--designs", "1")
-    assert "sin takes radians; x goes to 90: write sind(x) or --x 0:90deg if these are degrees" in told
+    assert "sin takes radians; x goes to 90: write sind(x) or x = 0:90deg if these are degrees" in told
+    assert told.index("sin takes radians") < told.index("searching RSSRs")
     for way in ("a smaller least transmission angle", "a greater tolerance", "a narrower range of the input"):
         assert way in told
 

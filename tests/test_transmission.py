@@ -8,7 +8,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.kinematics.circuits.poses import frames_of
-from sevenbar.kinematics.transmission import coupling_of
+from sevenbar.kinematics.transmission.angle import coupling_of
 from textbook_loops import (
     four_bar_joints,
     linkage,

@@ -86,6 +86,36 @@ def moved(joints, rotation, shift):
     return found
 
 
+def rewritten(joints, seed=0):
+    """The same linkage written in other ways: what was done, by what it is larger, and its joints."""
+    rng = np.random.default_rng(seed)
+    yield "as it is", 1.0, joints
+    for shift in (0.0, 1.0, 1e3):
+        yield f"moved by {shift}", 1.0, moved(joints, rotation(rng), shift * rng.normal(size=3))
+    yield "mirrored", 1.0, moved(joints, -rotation(rng), rng.normal(size=3))
+    for scale in (1e-6, 1 / 3, 1e3, 1e6):
+        larger = [{**joint, "at": [scale * x for x in joint["at"]]} for joint in joints]
+        yield f"times {scale}", scale, moved(larger, rotation(rng), scale * rng.normal(size=3))
+    yield (
+        "axes reversed",
+        1.0,
+        [
+            {**j, "axis": [-x for x in j["axis"]]} if "axis" in j and i % 2 else j
+            for i, j in enumerate(joints)
+        ],
+    )
+    along = [
+        {**j, "at": (np.array(j["at"]) + 0.7 * (i + 1) * np.array(j["axis"])).tolist()}
+        if j["kind"] in "RC"
+        else j
+        for i, j in enumerate(joints)
+    ]
+    yield "places moved along axes", 1.0, along
+    yield "from the other end", 1.0, joints[::-1]
+    for k in range(1, len(joints)):
+        yield f"from joint {k + 1} on", 1.0, joints[k:] + joints[:k]
+
+
 def rotation(rng):
     """A random rotation (3, 3)."""
     matrix, _ = np.linalg.qr(rng.normal(size=(3, 3)))

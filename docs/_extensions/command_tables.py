@@ -59,12 +59,17 @@ def _below(group: Any, words: str) -> Iterator[tuple[str, Any]]:
             yield f"{words}{name}", command
 
 
-def all_commands(_pages: Path, _: str) -> str:
+def all_commands(pages: Path, _: str) -> str:
     """A section for each command."""
-    return "\n".join(_section(words, command) for words, command in commands().items())
+    return "\n".join(_section(words, command, pages) for words, command in commands().items())
 
 
-def _section(words: str, command: Any) -> str:
+def _title(page: Path) -> str:
+    """The title of a page."""
+    return page.read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
+
+
+def _section(words: str, command: Any, pages: Path) -> str:
     # those of the shared options are texts
     kinds = defaultdict(lambda: str, get_type_hints(command.callback))
     arguments = [param for param in command.params if param.param_type_name == "argument"]
@@ -74,7 +79,7 @@ def _section(words: str, command: Any) -> str:
         f"## sevenbar {words}\n\n{command.help}\n\n"
         f"    sevenbar {words} {usage}\n\n"
         f"{_examples(words)}"
-        f"How to use it: []({PAGES[words]}).\n\n"
+        f"How to use it: [{_title(pages / PAGES[words].partition('#')[0])}]({PAGES[words]}).\n\n"
         f"{table(('', 'value', 'meaning'), [_row(param, kinds[param.name]) for param in shown])}"
     )
 

@@ -18,31 +18,19 @@ LEFT_OUT = {"dimensions", "how found", "mobility", "closure error"}
 
 
 def all_entries(pages: Path, _: str) -> str:
-    """A table of all linkages and a section for each."""
+    """A section for each linkage."""
     (pages / PICTURES).mkdir(parents=True, exist_ok=True)
-    motions = {name: sb.load(name).motion() for name in gallery.names()}
-    head = ("linkage", "name", "loop", "motion type", "circuits")
-    rows = [
-        (
-            f"[{motion.linkage.name}](#{name})",
-            f"`{name}`",
-            _loop(motion),
-            motion.motion_type,
-            str(len(motion.circuits)),
-        )
-        for name, motion in motions.items()
-    ]
-    sections = [_section(name, motion, pages) for name, motion in motions.items()]
-    return table(head, rows) + "\n" + "\n".join(sections)
+    return "\n".join(_section(name, sb.load(name).motion(), pages) for name in gallery.names())
 
 
-def _link(name: str, motion: sb.Motion) -> str:
-    """A link to a linkage's section."""
-    return f"[{motion.linkage.name}](#{name})"
-
-
-def _loop(motion: sb.Motion) -> str:
-    return " ".join(motion.linkage.kind)
+def table_of_all(_pages: Path, _: str) -> str:
+    """A table of all linkages."""
+    rows = []
+    for name in gallery.names():
+        motion = sb.load(name).motion(36)
+        loop, count = " ".join(motion.linkage.kind), str(len(motion.circuits))
+        rows.append((motion.linkage.name, code(name), loop, motion.motion_type, count))
+    return table(("linkage", "name", "loop", "motion type", "circuits"), rows)
 
 
 def _section(name: str, motion: sb.Motion, pages: Path) -> str:

@@ -1,7 +1,7 @@
-"""Parts of pages that are made from the program when the site is built.
+"""Parts of pages that are made from the program when the site is built: pictures and files.
 
 A page has `<!-- made: gallery -->` where a part goes. A forge shows nothing there, so the page's own words
-stand for themselves.
+stand for themselves. Tables are written into the pages instead (`written_parts`).
 """
 
 import re
@@ -11,19 +11,14 @@ from pathlib import Path
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
-import command_tables
 import gallery_entries
 import key_tables
-import module_map
+import written_parts
 
 #: What makes each part, from the folder of the pages; the rest of the mark is handed on.
 PARTS: dict[str, Callable[[Path, str], str]] = {
-    "commands": command_tables.all_commands,
     "gallery": gallery_entries.all_entries,
-    "keys": key_tables.keys_of,
-    "modules": module_map.module_map,
     "schema": key_tables.written_schema,
-    "task_keys": key_tables.task_keys_of,
 }
 
 _MARK = re.compile(r"<!-- made: (\w+)(?: (\w+))? -->")
@@ -31,6 +26,8 @@ _MARK = re.compile(r"<!-- made: (\w+)(?: (\w+))? -->")
 
 def _make(app: Sphinx, docname: str, content: list[str]) -> None:
     def part(mark: re.Match[str]) -> str:
+        if mark[1] in written_parts.PARTS:
+            return mark[0]
         if mark[1] not in PARTS:
             raise ExtensionError(f"{docname}: no part {mark[1]!r} is made; there are {', '.join(PARTS)}")
         return PARTS[mark[1]](Path(app.srcdir), mark[2] or "")

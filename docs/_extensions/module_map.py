@@ -1,10 +1,6 @@
-"""The module map: each module of the package and of the core with the first line of its docstring.
-
-`python docs/_extensions/module_map.py` prints it.
-"""
+"""The module map: each module of the package and of the core with the first line of its docstring."""
 
 import ast
-import sys
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -69,7 +65,3 @@ def rust_line(path: Path) -> str:
     """The first line of a Rust module's documentation."""
     first = path.read_text(encoding="utf-8").partition("\n")[0]
     return first.removeprefix("//! ") if first.startswith("//! ") else ""
-
-
-if __name__ == "__main__":
-    sys.stdout.write(module_map())

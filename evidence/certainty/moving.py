@@ -33,7 +33,7 @@ ROWS = 24
 STARTS = 12
 
 #: Words of loops that have no motion.
-STILL = {"rigid", "cannot-assemble", "two-inputs"}
+STILL = {"rigid", "not-followed", "cannot-assemble", "two-inputs"}
 
 
 def second_order(linkage: sb.Linkage) -> tuple[int, float]:

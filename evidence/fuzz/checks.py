@@ -56,7 +56,7 @@ SAMPLES = 24
 POSED, RATED = ("ok", "dead-centre", "change-point"), ("ok",)
 
 #: Words of motion types that come with circuits and without them.
-WITHOUT = {"rigid", "two-inputs", "cannot-assemble"}
+WITHOUT = {"rigid", "not-followed", "two-inputs", "cannot-assemble"}
 SINGLE = {"crank", "rocker", "slider", "spindle"}
 
 

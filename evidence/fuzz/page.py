@@ -76,8 +76,7 @@ def written(plain: Mapping[str, Any]) -> str:
         "## Not covered",
         "Nothing here proves that an answer is right: the tests do that, against closed forms, 40 digits "
         "and other programs. "
-        "A motion that is interrupted ends when the core's call returns; an interrupt does not cut a "
-        "batch short. "
+        "An interrupt stops the core within some hundredths of a second, batches too. "
         "Constraints that are redundant are taken to agree while the loop closes to 1e-9 of its size, so "
         "a row of such a loop may "
         f"keep {checks.CLOSED_REDUNDANT:g}; all other well-conditioned rows are held to {checks.CLOSED:g}.",

@@ -10,6 +10,10 @@ print(motion.motion_type)
 from __future__ import annotations
 
 import importlib
+import sys
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import spec_from_loader
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -52,6 +56,7 @@ if TYPE_CHECKING:
     from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Loading
     from sevenbar.kinematics.circuits.instant_centres import InstantCentre, InstantCentres
+    from sevenbar.kinematics.circuits.one_pose import OnePose
     from sevenbar.kinematics.loop.grashof import FourBar
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.screw_axes import ScrewAxes
@@ -81,6 +86,7 @@ __all__ = [
     "Motion",
     "MotionPlane",
     "MotionSphere",
+    "OnePose",
     "OpenRange",
     "Output",
     "PartAxis",
@@ -139,6 +145,7 @@ _NAMES_OF_MODULES = {
     "forces.free_motion.result": "FreeMotion",
     "forces.loading": "Loading",
     "kinematics.circuits.instant_centres": "InstantCentre InstantCentres",
+    "kinematics.circuits.one_pose": "OnePose",
     "kinematics.loop.grashof": "FourBar",
     "kinematics.loop.law": "Law",
     "kinematics.loop.screw_axes": "ScrewAxes",
@@ -168,6 +175,28 @@ def _offered(module: ModuleType) -> list[str]:
         if not name.startswith("_") and getattr(value, "__module__", None) == module.__name__
     ]
     return list(getattr(module, "__all__", own))
+
+
+class _OnDemand(MetaPathFinder, Loader):
+    """`from sevenbar.plot import curves`: a module on demand by its public name is the module that has it."""
+
+    def find_spec(self, fullname: str, path: object = None, target: object = None) -> ModuleSpec | None:  # noqa: ARG002
+        parent, _, name = fullname.rpartition(".")
+        own = parent == __name__ and _ON_DEMAND.get(name, fullname) != fullname
+        return spec_from_loader(fullname, self) if own else None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        module = importlib.import_module(_ON_DEMAND[spec.name.rpartition(".")[2]])
+        spec.loader_state = module.__spec__
+        return module
+
+    def exec_module(self, module: ModuleType) -> None:
+        # it has been, under the name that it keeps
+        assert module.__spec__ is not None
+        module.__spec__ = module.__spec__.loader_state
+
+
+sys.meta_path.append(_OnDemand())
 
 
 def __getattr__(name: str) -> Any:

@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 __all__ = [
     "AGREE",
+    "NO_SIZE",
     "Acting",
     "Carried",
     "CoreError",
@@ -28,6 +29,7 @@ __all__ = [
     "Rssr",
     "RssrBatch",
     "Survey",
+    "WorkStop",
     "__version__",
     "classify_rssr",
     "driven",
@@ -47,10 +49,31 @@ _Ends = tuple[float, float, float, float]
 
 #: The closure error [rad, or parts of the size] up to which redundant constraints agree.
 AGREE: float
+#: Below this share of the way from the origin to a loop, its size is rounding.
+NO_SIZE: float
 __version__: str
 
 class CoreError(ValueError):
     """A request that the core cannot take."""
+
+@final
+class WorkStop:
+    """Stops the work of the core from another thread.
+
+    Within a `with` block of it the core's calls of this thread raise KeyboardInterrupt once `stop()` was
+    called.
+    """
+
+    def __new__(cls) -> WorkStop: ...
+    def stop(self) -> None:
+        """Ends what is at work, and all that follows."""
+
+    @property
+    def stopped(self) -> bool:
+        """Whether it was stopped."""
+
+    def __enter__(self) -> WorkStop: ...
+    def __exit__(self, kind: object, value: object, traceback: object) -> None: ...
 
 @final
 class Rssr:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sized
+from collections.abc import Mapping, Sized
 from decimal import Decimal
 from numbers import Real
 from typing import Any, TypeGuard
@@ -29,6 +29,21 @@ Words = npt.NDArray[np.str_]
 
 #: An angle [rad] short of a full turn by less is zero.
 ROUNDING = 1e-12
+
+
+class ReadOnly:
+    """A result whose arrays cannot be written, nor those of its copies: they are what was computed."""
+
+    def __post_init__(self) -> None:
+        for value in list(vars(self).values()):
+            for array in value.values() if isinstance(value, Mapping) else (value,):
+                if isinstance(array, np.ndarray):
+                    array.setflags(write=False)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # arrays come out of a pickle, and out of a deep copy, as writable ones
+        self.__dict__.update(state)
+        ReadOnly.__post_init__(self)
 
 
 def finite_array(name: str, values: npt.ArrayLike) -> Floats:
@@ -97,6 +112,26 @@ def real_array(name: str, values: npt.ArrayLike) -> Floats:
     if given.ndim > 1:
         raise RequestError(f"{name}: an array of shape {given.shape} does not fit; give one dimension")
     return array
+
+
+def places_array(name: str, values: npt.ArrayLike) -> Floats:
+    """Places (..., 3), numbers or NaN, or `RequestError`."""
+    try:
+        given = np.asarray(values)
+        array = given.astype(np.float64) if given.shape[-1:] == (3,) and _is_real(given) else None
+    except (TypeError, ValueError, OverflowError):
+        array = None
+    if array is None:
+        raise RequestError(f"{name}: {shown(values)} is no array of places; give three numbers for each")
+    return array
+
+
+def truth(name: str, value: object) -> bool:
+    """Whether a switch is on, or `RequestError` for what is neither on nor off."""
+    try:
+        return bool(value)
+    except (TypeError, ValueError):
+        raise RequestError(f"{name}: {shown(value)} is neither true nor false; give one of them") from None
 
 
 def whole_number(name: str, value: object, low: int, high: int | None, what: str, hint: str = "") -> int:

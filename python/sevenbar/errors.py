@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -78,6 +79,9 @@ class Problem:
         return f"{self.place}: {self.message}" if self.place else self.message
 
 
+#: Letters of the longest path that a system has.
+LONGEST_PATH = 4_096
+
 #: Mistakes that one message lists; more of them come from a program, and all from one cause.
 MOST_LISTED = 50
 
@@ -152,8 +156,10 @@ def bare(word: str) -> str:
     return word if word.isprintable() and len(word) <= 60 else shown(word)
 
 
-def suggestion(word: str, known: Iterable[str]) -> str:
+def suggestion(word: object, known: Iterable[str]) -> str:
     """`did you mean 'L1'? ` for a word near a known one, else nothing."""
+    if not isinstance(word, str):
+        return ""
     # of words that are wrong only
     from difflib import get_close_matches
 
@@ -169,13 +175,31 @@ def check_word(key: str, word: object, known: Iterable[str], what: str = "offere
     >>> check_word("measure", "rms", ("greatest", "rms"))
     """
     *most, last = known
-    if word not in (*most, last):
+    # an array is equal to no word, and to each in every place
+    if not isinstance(word, str) or word not in (*most, last):
         listed = f"{', '.join(most)} or {last}" if most else last
-        near = suggestion(str(word), [*most, last])
+        near = suggestion(word, [*most, last])
         raise RequestError(f"{key}: {shown(word)} is not {what}; {near}give {listed}")
+
+
+def check_kind(key: str, value: object, kind: type | tuple[type, ...], what: str) -> None:
+    """Raises `RequestError` for a value that is not of a kind: it is not `what`, with what to give.
+
+    >>> check_kind("content", "format = 1", str, "a text; give one")
+    """
+    if not isinstance(value, kind):
+        raise RequestError(f"{key}: {shown(value)} is not {what}")
+
+
+def given_path(key: str, value: str | os.PathLike[str]) -> Path:
+    """The path that a caller gives, or `RequestError`."""
+    check_kind(key, value, (str, os.PathLike), "a path; give that of a file")
+    if len(str(value)) > LONGEST_PATH:
+        raise RequestError(f"{key}: {shown(value)} is longer than any path; give that of a file")
+    return Path(value)
 
 
 def no_joint(name: object, names: Sequence[str]) -> str:
     """The message for a joint that does not exist."""
     known = ", ".join(map(bare, names))
-    return f"no joint {shown(name)}; {suggestion(str(name), names)}this linkage has {known}"
+    return f"no joint {shown(name)}; {suggestion(name, names)}this linkage has {known}"

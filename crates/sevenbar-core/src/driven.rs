@@ -7,6 +7,7 @@
 //! times. Source: docs/theory_free.md, (12).
 
 use crate::piecewise::Piecewise;
+use crate::stopping;
 use std::f64::consts::PI;
 
 /// Nodes of a step.
@@ -181,6 +182,7 @@ impl Along<'_> {
         let mut last: Option<(f64, [f64; NODES])> = None;
         let mut cut = false;
         while time < until {
+            stopping::piece();
             // no end that rounding makes a step of its own
             if !cut && until - time < step * 1.01 {
                 step = until - time;

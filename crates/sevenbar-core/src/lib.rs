@@ -1,6 +1,6 @@
 //! Sevenbar's core: closing spatial loops, following them, differentiating them.
 //!
-//! No input or output, no printing, no clock; the only state is a cache of start systems. Angles are radians; lengths are in
+//! No input or output, no printing, no clock; the only state is a cache of start systems, and who may stop the work of a thread. Angles are radians; lengths are in
 //! whatever unit the caller uses, the same in and out.
 
 pub mod driven;
@@ -15,6 +15,7 @@ mod random;
 pub mod rigid;
 pub mod rssr;
 pub mod simd;
+pub mod stopping;
 pub mod survey;
 pub mod taylor;
 mod trigonometric;

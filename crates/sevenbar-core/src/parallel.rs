@@ -1,10 +1,31 @@
 //! Work shared out among threads.
 
+use crate::stopping;
+use core::time::Duration;
 use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::thread::Thread;
 
 /// Chunks that a thread takes on the average: enough of them that all threads end at about the same time.
 const CHUNKS_PER_THREAD: usize = 32;
+
+/// How long the caller's thread rests while others work, before it asks whether the work is still wanted.
+const REST: Duration = Duration::from_millis(20);
+
+/// A thread that works: the caller's is woken as the last one ends, be it by a panic.
+struct Working<'a> {
+    left: &'a AtomicUsize,
+    caller: &'a Thread,
+}
+
+impl Drop for Working<'_> {
+    fn drop(&mut self) {
+        if self.left.fetch_sub(1, Ordering::Release) == 1 {
+            self.caller.unpark();
+        }
+    }
+}
 
 /// Does some work on each item, on as many threads; 0 and 1 mean the caller's own.
 ///
@@ -16,14 +37,31 @@ pub fn for_each<T: Send>(
 ) {
     let threads = threads.min(items.len());
     if threads < 2 {
-        return items.for_each(work);
+        return items.for_each(|item| {
+            stopping::ask();
+            work(item);
+        });
     }
     let items = Mutex::new(items);
     // nothing can go wrong while it is held
     let take = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
-    let run = || std::iter::from_fn(take).for_each(&work);
+    let (asked, caller) = (stopping::asked(), std::thread::current());
+    let left = AtomicUsize::new(threads);
+    let run = || {
+        let _working = Working { left: &left, caller: &caller };
+        stopping::asking(asked.clone(), || {
+            std::iter::from_fn(take).for_each(|item| {
+                stopping::ask();
+                work(item);
+            });
+        });
+    };
     std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(run)).collect();
+        while left.load(Ordering::Acquire) > 0 {
+            std::thread::park_timeout(REST);
+            stopping::ask();
+        }
         for worker in workers {
             worker.join().unwrap_or_else(|cause| resume_unwind(cause));
         }
@@ -39,6 +77,7 @@ pub fn in_order<T: Send>(count: usize, threads: usize, compute: impl Fn(usize) -
         threads,
         |(chunk, results)| {
             for (k, result) in results.iter_mut().enumerate() {
+                stopping::piece();
                 *result = Some(compute(chunk * size + k));
             }
         },

@@ -1,6 +1,7 @@
 //! Polynomials along a path, and the motion that they drive, for Python.
 
 use crate::numbers::{Array, shaped};
+use crate::working::working;
 use crate::{CoreError, in_rows};
 use numpy::{PyReadonlyArray1, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -103,7 +104,7 @@ pub(crate) fn driven<'py>(
     let along = Along { quantities: own, lap };
     let mut raised = None;
     let found = match motor {
-        None => py.detach(|| along.driven(begin, bounds, None)),
+        None => working(py, || along.driven(begin, bounds, None))?,
         Some(Motor::Table(by_time, across, torques)) => {
             if across.is_empty() || across.len() != torques.len() {
                 return Err(CoreError::new_err(
@@ -111,7 +112,7 @@ pub(crate) fn driven<'py>(
                 ));
             }
             let mut read = |t: f64, speed: f64| between(&across, &torques, if by_time { t } else { speed });
-            py.detach(|| along.driven(begin, bounds, Some(&mut read)))
+            working(py, || along.driven(begin, bounds, Some(&mut read)))?
         }
         Some(Motor::Function(torque)) => {
             let mut asked = |t: f64, speed: f64| {

@@ -1,6 +1,7 @@
 //! Many linkages at once, for Python.
 
 use crate::loops::{kinds, pose};
+use crate::working::working;
 use crate::{CoreError, in_rows, input_named, raise};
 use numpy::ndarray::Axis;
 use numpy::{
@@ -139,8 +140,10 @@ pub(crate) fn classify_rssr<'py>(
     let (columns, input) = (columns(&numbers, dimensions.shape())?, input_named(input)?);
     let count = columns[0].len();
     let (mut codes, mut limits) = (vec![0; count], vec![[0.0; MOST_LIMITS]; count]);
-    py.detach(|| rssr::classify(columns, input, threads, &mut codes, &mut limits))
-        .map_err(raise)?;
+    working(py, || {
+        rssr::classify(columns, input, threads, &mut codes, &mut limits)
+    })?
+    .map_err(raise)?;
     Ok((codes.into_pyarray(py), table(py, limits.into_iter())?))
 }
 
@@ -156,9 +159,7 @@ pub(crate) fn measure_rssr<'py>(
     let (numbers, speeds) = (in_rows(&dimensions), in_rows(&speed));
     let (columns, input) = (columns(&numbers, dimensions.shape())?, input_named(input)?);
     checked("speed", speed.shape(), &[columns[0].len()])?;
-    let motions = py
-        .detach(|| rssr::measure(columns, input, &speeds, threads))
-        .map_err(raise)?;
+    let motions = working(py, || rssr::measure(columns, input, &speeds, threads))?.map_err(raise)?;
     RssrBatch::new(py, &motions)
 }
 
@@ -243,12 +244,12 @@ pub(crate) fn measure_loops<'py>(
             Ok((kinds, base, ground, links))
         })
         .collect::<PyResult<Vec<_>>>()?;
-    let measures = py.detach(|| {
+    let measures = working(py, || {
         in_order(count, threads, |n| {
             let (kinds, base, ground, links) = &described[n];
             let linkage = Loop::new(kinds, *base, *ground, links);
             loops::measures(&linkage, input, output, samples, speed[n])
         })
-    });
+    })?;
     LoopBatch::new(py, &measures)
 }

@@ -1,6 +1,7 @@
 //! Torque and reactions of a loop with its numbers, for Python.
 
 use crate::numbers::{Array, Numbers, shaped};
+use crate::working::working;
 use crate::{CoreError, in_rows, loops::pose};
 use numpy::ndarray::Axis;
 use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
@@ -123,7 +124,7 @@ pub(crate) fn reactions<'py>(
         .zip(frames.as_array().axis_iter(Axis(0)))
         .map(|(&joint, frame)| Seat { joint, frame: pose(frame) })
         .collect();
-    let found = py.detach(|| {
+    let found = working(py, || {
         loops::reactions(
             &numbers.0,
             &values,
@@ -133,7 +134,7 @@ pub(crate) fn reactions<'py>(
             &seats,
             with_numbers,
         )
-    });
+    })?;
     let (count, all) = (seats.len(), if with_numbers { numbers.0.numbers() } else { 0 });
     Ok(vec![
         shaped(py, found.torque, &[rows])?,

@@ -9,6 +9,7 @@ mod rows;
 mod rssr;
 mod survey;
 mod values;
+mod working;
 
 use numpy::ndarray::Dimension;
 use numpy::{PyReadonlyArray, PyReadonlyArray2};
@@ -87,12 +88,15 @@ mod _core {
     #[pymodule_export]
     use super::values::{RawCircuit, RawCount, RawFound, RawMotion, RawSearch};
     #[pymodule_export]
+    use super::working::WorkStop;
+    #[pymodule_export]
     use super::{CoreError, simd_level};
 
     #[pymodule_init]
     fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
         use pyo3::types::PyModuleMethods;
         module.add("AGREE", sevenbar_core::loops::AGREE)?;
+        module.add("NO_SIZE", sevenbar_core::loops::NO_SIZE)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::rows::{Course, Rows};
 use crate::values::{RawCircuit, RawFound, RawMotion, RawSearch, RowArrays, change_point};
+use crate::working::working;
 use crate::{CoreError, in_rows, law_rows};
 use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{
@@ -133,9 +134,7 @@ impl Loop {
     /// Joint values (m, columns) and closure errors (m,) of every assembly mode at one value of a column, how complete they are,
     /// by how much redundant constraints keep other poses open, and a pose on a curve of poses that close there, if one was found.
     fn assembly_modes<'py>(&self, py: Python<'py>, column: usize, value: f64) -> PyResult<Modes<'py>> {
-        let found = py
-            .detach(|| loops::modes(&self.0, column, value))
-            .ok_or_else(|| no_input(column))?;
+        let found = working(py, || loops::modes(&self.0, column, value))?.ok_or_else(|| no_input(column))?;
         let (values, residuals): (Vec<Vec<f64>>, Vec<f64>) = found.modes.into_iter().unzip();
         Ok((
             PyArray1::from_vec(py, values.concat()).reshape([values.len(), self.0.columns()])?,
@@ -148,7 +147,7 @@ impl Loop {
 
     /// How freely it moves, from the first poses found over the values of a column; none where there are none.
     fn mobility(&self, py: Python<'_>, column: usize) -> PyResult<Option<RawFound>> {
-        py.detach(|| loops::mobility(&self.0, column))
+        working(py, || loops::mobility(&self.0, column))?
             .map(|found| RawFound::new(py, &found))
             .transpose()
     }
@@ -167,9 +166,10 @@ impl Loop {
         keep: bool,
     ) -> PyResult<RawMotion> {
         let law = law_rows(law);
-        let motion = py
-            .detach(|| loops::motion(&self.0, input, output, samples, speed, law.as_deref(), keep))
-            .ok_or_else(|| no_input(input))?;
+        let motion = working(py, || {
+            loops::motion(&self.0, input, output, samples, speed, law.as_deref(), keep)
+        })?
+        .ok_or_else(|| no_input(input))?;
         let circuits = motion.circuits.into_iter();
         Ok(RawMotion {
             motion_type: motion.motion_type,
@@ -185,7 +185,7 @@ impl Loop {
 
     /// The rows of a course: arrays as those of a circuit, and the rows as the loop has them.
     fn rows(&self, py: Python<'_>, course: &Course) -> PyResult<RawRows> {
-        let rows = py.detach(|| course.0.rows(&self.0));
+        let rows = working(py, || course.0.rows(&self.0))?;
         let RowArrays { joints, status, branch, residual, condition, .. } = self.arrays(py, &rows)?;
         Ok((
             joints,
@@ -216,9 +216,10 @@ impl Loop {
         if pose.len() != self.0.columns() {
             return Err(CoreError::new_err("pose needs one value for each column"));
         }
-        let through = py
-            .detach(|| loops::circuit_through(&self.0, &pose, input, output, samples, speed, law.as_deref()))
-            .ok_or_else(|| no_input(input))?;
+        let through = working(py, || {
+            loops::circuit_through(&self.0, &pose, input, output, samples, speed, law.as_deref())
+        })?
+        .ok_or_else(|| no_input(input))?;
         Ok(match through {
             Through::Circuit(circuit) => RawThrough::Circuit(Py::new(py, self.circuit(py, *circuit)?)?),
             Through::Apart(gap) => RawThrough::Apart(gap),
@@ -236,7 +237,7 @@ impl Loop {
         link: usize,
         at: [f64; 3],
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let out = py.detach(|| loops::point(&self.0, &rows.0, link, at));
+        let out = working(py, || loops::point(&self.0, &rows.0, link, at))?;
         PyArray1::from_vec(py, out).reshape([4, rows.0.len(), 3])
     }
 }
@@ -260,7 +261,7 @@ impl Loop {
     }
 
     fn arrays(&self, py: Python<'_>, rows: &loops::Rows) -> PyResult<RowArrays> {
-        let table = py.detach(|| loops::joint_table(&self.0, rows));
+        let table = working(py, || loops::joint_table(&self.0, rows))?;
         Ok(RowArrays {
             joints: PyArray1::from_vec(py, table)
                 .reshape([4, rows.len(), self.0.columns()])?

@@ -1,5 +1,6 @@
 //! Derivatives of a loop by the numbers of its description, for Python.
 
+use crate::working::working;
 use crate::{CoreError, in_rows, loops::pose};
 use numpy::{
     IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
@@ -214,7 +215,7 @@ impl Numbers {
             ));
         }
         let values = in_rows(&values);
-        let found = py.detach(|| slopes(&self.0, &values, order));
+        let found = working(py, || slopes(&self.0, &values, order))?;
         let (all, points, idle) = (self.0.numbers() + 1, self.0.points(), self.0.idle());
         Ok(vec![
             shaped(py, found.rates, &[rows, 3, width])?,
@@ -234,7 +235,7 @@ impl Numbers {
             return Err(CoreError::new_err("places: give rows of all columns"));
         }
         let values = in_rows(&values);
-        let found = py.detach(|| self.0.places(&values));
+        let found = working(py, || self.0.places(&values))?;
         shaped(py, found, &[rows, self.0.points(), 3])
     }
 
@@ -267,10 +268,10 @@ impl Numbers {
         }
         let (values, inputs) = (in_rows(&values), in_rows(&inputs));
         let (numbers, steps) = (numbers.as_ref().map(in_rows), steps.as_ref().map(in_rows));
-        let found = py.detach(|| {
+        let found = working(py, || {
             self.0
                 .follow(&values, &inputs, steps.as_deref(), numbers.as_deref())
-        });
+        })?;
         Ok((
             shaped(py, found.values, &[designs, rows, width])?,
             shaped(py, found.sides, &[designs, rows])?,

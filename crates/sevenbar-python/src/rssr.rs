@@ -2,6 +2,7 @@
 
 use crate::loops::pose;
 use crate::values::{RawCircuit, RawMotion, RowArrays};
+use crate::working::working;
 use crate::{CoreError, in_rows, input_named, law_rows, raise};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
@@ -107,7 +108,7 @@ impl Rssr {
     ) -> PyResult<RawMotion> {
         let input = input_named(input)?;
         let law = law_rows(law);
-        let motion = py.detach(|| self.0.motion(input));
+        let motion = working(py, || self.0.motion(input))?;
         let rows = |circuit: &rssr::Circuit| match &law {
             None => self.0.rows(&motion, circuit, samples, speed),
             Some(law) => self.0.law_rows(&motion, circuit, law).concat(),
@@ -127,7 +128,7 @@ impl Rssr {
             .iter()
             .map(|circuit| {
                 // the rows of one circuit at a time, for a million take room
-                let rows = py.detach(|| rows(circuit));
+                let rows = working(py, || rows(circuit))?;
                 let mut measures = rssr::measures_with_rows(circuit.clone(), &rows, input);
                 if law.is_none() {
                     measures = measures.at_speed(speed);

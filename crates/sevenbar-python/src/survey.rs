@@ -1,5 +1,6 @@
 //! Surveys of many RSSRs, for Python.
 
+use crate::working::working;
 use crate::{CoreError, in_rows};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
@@ -181,8 +182,8 @@ impl Survey {
     }
 
     /// Judges `count` linkages from index `first` on.
-    fn tally(&self, py: Python<'_>, first: u64, count: u64) -> RawTally {
-        RawTally(py.detach(|| survey::survey(&self.draw, &self.wish, first, count)))
+    fn tally(&self, py: Python<'_>, first: u64, count: u64) -> PyResult<RawTally> {
+        working(py, || survey::survey(&self.draw, &self.wish, first, count)).map(RawTally)
     }
 
     /// The numbers (n, 7) of linkages by their indices.
@@ -217,7 +218,7 @@ pub(crate) fn survey_figures<'py>(
 ) -> PyResult<Figures<'py>> {
     let numbers = in_rows(&numbers);
     let (rows, _) = numbers.as_chunks::<NUMBERS>();
-    let found = py.detach(|| survey::figures(rows));
+    let found = working(py, || survey::figures(rows))?;
     let count = found.len();
     let table = |values: Vec<f64>, columns: usize| PyArray1::from_vec(py, values).reshape([count, columns]);
     Ok((

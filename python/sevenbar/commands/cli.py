@@ -23,7 +23,10 @@ from sevenbar.commands.command import Command
 from sevenbar.commands.consent import confirm, long_motion, table_ahead
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
 from sevenbar.commands.given import check_law, film_of, input_value, law_of, look_of, opened, point_of
-from sevenbar.commands.progress import STOPPED, progress_bar
+from sevenbar.commands.output import safe_output
+from sevenbar.commands.poses import rates_at
+from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.signals import NOTHING, at_work, has_just_come, heed_signals, stopped
 from sevenbar.errors import (
     AngleUnitWarning,
     MissingFontWarning,
@@ -80,10 +83,13 @@ class _Commands(typer.core.TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Runs the command; Ctrl+C outside of what has a bar of its own has written nothing."""
         try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt:
-            typer.echo("sevenbar: stopped; nothing is written", err=True)
-            raise typer.Exit(STOPPED) from None
+            with at_work():
+                return super().invoke(ctx)
+        except (KeyboardInterrupt, Exception) as error:
+            if isinstance(error, KeyboardInterrupt) or (_is_fault(error) and has_just_come()):
+                typer.echo(f"sevenbar: {NOTHING}", err=True)
+                raise typer.Exit(stopped()) from None
+            raise
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         from sevenbar.description.files import TABLE_ENDINGS
@@ -96,6 +102,11 @@ class _Commands(typer.core.TyperGroup):
                 f"{word}: is a linkage, where a command should stand; give: sevenbar analyze {word}"
             )
         return super().resolve_command(ctx, args)
+
+
+def _is_fault(error: Exception) -> bool:
+    """Whether an error is none that ends a command in good order."""
+    return not isinstance(error, SevenbarError | typer.Exit | typer.Abort) and not hasattr(error, "exit_code")
 
 
 app = typer.Typer(
@@ -125,6 +136,8 @@ def analyze(
     output: options.OutputJoint = None,
     speed: options.Speed = None,
     law: options.Law = None,
+    law_joint: options.LawJoint = None,
+    law_circuit: options.LawCircuit = None,
     agree: options.Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for report.md, report.json, motion.csv and the figures.")
@@ -166,7 +179,7 @@ def analyze(
     loaded = opened(linkage, agree)
     report = motion_report(formats)
     check_out(report, out, force=force)
-    read = law_of(law, loaded, input_joint)
+    read = law_of(law, loaded, input_joint, law_joint, law_circuit)
     moved = partial(loaded.motion, input=input_joint, output=output, speed=speed, law=read)
     if out is not None and read is None:
         confirm(table_ahead(moved, samples, "motion.csv"), yes=yes)
@@ -230,30 +243,39 @@ def _same_folder(folder: Path, other: Path) -> bool:
 @app.command(cls=Command)
 def modes(
     linkage: options.Source,
-    at: options.InputValue = "0",
+    at: Annotated[
+        str | None,
+        typer.Option(
+            help="Value of the input: '30deg', '0.5rad', '12mm'; a plain number is in degrees or lengths. "
+            "Where it is given, rates of joints, points and links are printed, too; else it is 0."
+        ),
+    ] = None,
     input_joint: Annotated[
         str | None, typer.Option("--input", help="The joint that is held; the file's input by default.")
     ] = None,
+    speed: options.Speed = None,
     agree: options.Agree = None,
     out: Annotated[Path | None, typer.Option(help="Draw all modes into this .png, .svg or .pdf.")] = None,
     force: options.Force = False,
     json: options.Json = False,
 ) -> None:
-    """Every assembly mode at one value of the input: each way the loop can be put together."""
+    """Every assembly mode at one value of the input, each way the loop can be put together; its rates."""
     from sevenbar.reporting.report import modes_report
 
     loaded = opened(linkage, agree)
     column = loaded.input_column(input_joint, "--input")
     check_targets([] if out is None else [out], force=force)
-    value = input_value("--at", at, loaded, input_joint)
+    value = input_value("--at", "0" if at is None else at, loaded, input_joint)
     found = loaded.assembly_modes(value, input=loaded.columns[column])
+    poses, limit = rates_at(loaded, column, value, speed, found)
 
     def draw(path: Path) -> None:
         from sevenbar.drawing import plot
 
         plot.save(plot.modes_overview(loaded, found, input=loaded.columns[column]), path)
 
-    deliver(found, modes_report(loaded, column), json=json, also={} if out is None else {out: draw})
+    report = modes_report(loaded, column, poses, limit=limit, rates=at is not None)
+    deliver(found, report, json=json, also={} if out is None else {out: draw})
 
 
 @app.command("plot", cls=Command)
@@ -371,15 +393,21 @@ def main() -> NoReturn:
     """The program: exit 0 well, 2 the caller's mistake, 1 our own fault."""
     # looking for plugins reads the metadata of every package that is installed
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    # no window is opened, whatever backend matplotlib is set to
+    os.environ["MPLBACKEND"] = "agg"
+    heed_signals()
     with warnings.catch_warnings():
         warnings.showwarning = _tell_warning
         warnings.simplefilter("always", AngleUnitWarning)
+        # every figure would say it anew
+        warnings.simplefilter("once", MissingFontWarning)
         _run()
 
 
 def _run() -> NoReturn:
     try:
-        app(standalone_mode=True, prog_name="sevenbar")
+        with safe_output():
+            app(standalone_mode=True, prog_name="sevenbar")
     except SevenbarError as error:
         sys.stderr.write("".join(f"sevenbar: {line}\n" for line in str(error).splitlines()))
         sys.exit(2)

@@ -27,6 +27,7 @@ EXAMPLES = {
     "forces": (
         "sevenbar forces rssr_press",
         "sevenbar forces press.toml --speed '90 rpm' --unevenness 0.02 -o forces",
+        "sevenbar forces engine --at 45deg",
         "sevenbar forces engine --speed 0 --json",
     ),
     "analyze": (

@@ -11,7 +11,8 @@ from typing import TypeVar
 
 import typer
 
-from sevenbar.commands.progress import STOPPED, progress_bar
+from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.signals import stopped
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.folder import check_targets
 
@@ -56,7 +57,7 @@ def deliver(
     else:
         tell_written(written)
     if unfinished:
-        raise typer.Exit(STOPPED)
+        raise typer.Exit(stopped())
 
 
 def write_files(report: Report[T], found: T, out: Path, *, force: bool) -> list[Path]:

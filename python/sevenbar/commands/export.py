@@ -65,6 +65,12 @@ def export(
     units: Annotated[
         str | None, typer.Option(help="Of tables: file (the default), or si for metres and radians.")
     ] = None,
+    drive: Annotated[
+        str | None,
+        typer.Option(
+            help="How mjcf drives the input: velocity (the default), position, motor (a torque), or flywheel."
+        ),
+    ] = None,
     force: options.Force = False,
     yes: options.Yes = False,
 ) -> None:
@@ -98,6 +104,7 @@ def export(
             at=value,
             branch=branch,
             units=units,  # type: ignore[arg-type]
+            drive=drive,
             force=force,
             progress=progress,
         )

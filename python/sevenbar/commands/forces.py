@@ -13,6 +13,7 @@ from sevenbar.arrays import whole_number
 from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import agreed, check_law, law_of, look_of
+from sevenbar.commands.poses import forces_at, refuse_at
 from sevenbar.errors import RequestError, no_joint, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import chosen_circuit
@@ -21,7 +22,17 @@ from sevenbar.text.units import split_quantity
 
 def forces(
     linkage: options.Source,
-    circuit: Annotated[int, typer.Option(help="The circuit whose forces are reported, from 0.")] = 0,
+    circuit: Annotated[
+        int | None,
+        typer.Option(help="The circuit whose forces are reported, from 0, the default; with --at all."),
+    ] = None,
+    at: Annotated[
+        str | None,
+        typer.Option(
+            help="Value of the input, as in '45deg' or '12mm': torque and reactions in this pose alone, on "
+            "each circuit that has it."
+        ),
+    ] = None,
     branch: Annotated[
         int | None,
         typer.Option(help="The pass of a circuit that rocks; of a law's 0 by default."),
@@ -36,6 +47,8 @@ def forces(
         ),
     ] = None,
     law: options.Law = None,
+    law_joint: options.LawJoint = None,
+    law_circuit: options.LawCircuit = None,
     unevenness: Annotated[
         float | None,
         options.number_option(
@@ -74,6 +87,7 @@ def forces(
     """Torque of the input and what every joint bears, from bodies, loads and springs of the file."""
     from sevenbar.reporting.force_words import NOTHING_ACTS
     from sevenbar.reporting.forces import CircuitForces, forces_report
+    from sevenbar.reporting.pose_forces import pose_forces_report
 
     look = look_of(None, size, style)
     formats = options.figure_formats(figures, out)
@@ -95,13 +109,21 @@ def forces(
         raise RequestError(
             "--unevenness: a flywheel is found for a constant speed; give --speed in place of --law"
         )
-    links = [_link(name) for name in options.words(counterweights, "--counterweights")]
+    links = [_link(name) for name in options.words(counterweights, "--counterweights", twice=False)]
     if radius is not None and not links:
         raise RequestError("--radius: it is that of counterweights; give --counterweights, as in 1,3")
     if links and (at_rest or law is not None):
         raise RequestError(
             "--counterweights: they are found for a constant speed; leave out --law and --speed 0"
         )
+    if at is not None:
+        unused = {"--law": law, "--unevenness": unevenness, "--counterweights": links, "--out": out}
+        refuse_at(unused)
+        rate = f"1 {unit}" if unit else None if at_rest else speed
+        found_at = forces_at(loaded, at, input_joint, rate, circuit, branch, agree=agree, at_rest=at_rest)
+        deliver(found_at, pose_forces_report(), json=json)
+        return
+    circuit = circuit or 0
     report = forces_report(formats, look, names)
     check_out(report, out, force=force)
     motion = loaded.motion(
@@ -109,7 +131,7 @@ def forces(
         input=input_joint,
         # any speed does at rest, but its unit must be one
         speed=f"1 {unit}" if unit else None if at_rest else speed,
-        law=law_of(law, loaded, input_joint),
+        law=law_of(law, loaded, input_joint, law_joint, law_circuit),
         agree=agreed(agree),
     )
     chosen = chosen_circuit(motion, circuit)

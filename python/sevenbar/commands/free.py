@@ -27,7 +27,7 @@ def free(
         typer.Option(
             "--from",
             help="Value of the input at the start: '30deg', '12mm'; a plain number is in degrees or lengths; "
-            "the first row by default.",
+            "by default the drawn pose, or the first one.",
         ),
     ] = None,
     speed: Annotated[
@@ -43,6 +43,12 @@ def free(
     branch: Annotated[
         int | None, typer.Option(help="Which of the poses with this start, counted along the circuit.")
     ] = None,
+    restitution: Annotated[
+        float | None,
+        typer.Option(
+            help="What part of its speed a stop gives back: 0, the default, takes all, 1 gives all back."
+        ),
+    ] = None,
     rows: options.Samples = 361,
     input_joint: options.InputJoint = None,
     agree: options.Agree = None,
@@ -56,20 +62,30 @@ def free(
 ) -> None:
     """How the linkage moves by itself: falling, swinging, coasting, starting up; and where it can rest."""
     from sevenbar.drawing.animate import animate
+    from sevenbar.reporting.force_words import NOTHING_ACTS
     from sevenbar.reporting.free_motion import free_report
 
     report = free_report(options.figure_formats(figures, out))
     seconds = amount_in(duration, "s")
     if seconds is None or seconds <= 0:
-        raise RequestError(f"--time: {shown(duration)} is not a time; give seconds > 0, as in 10s")
+        raise RequestError(f"--time: {shown(duration)} is not a time; give one > 0, as in 10s or 500ms")
     check_out(report, out, force=force)
     if film is not None:
         check_targets([film], force=force)
     loaded = sb.load(linkage, agree=agreed(agree))
+    if loaded.loading.is_empty:
+        raise RequestError(f"{linkage}: {NOTHING_ACTS.format(place='it')}")
     chosen = chosen_circuit(loaded.motion(input=input_joint), circuit)
     place = None if start is None else input_value("--from", start, loaded, input_joint)
     found = chosen.free_motion(
-        seconds, start=place, speed=speed, energy=energy, branch=branch, torque=torque, samples=rows
+        seconds,
+        start=place,
+        speed=speed,
+        energy=energy,
+        branch=branch,
+        torque=torque,
+        samples=rows,
+        restitution=restitution,
     )
     places = chosen.equilibria(torque=torque or 0.0)
     also = {}

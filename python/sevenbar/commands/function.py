@@ -62,7 +62,7 @@ def function(
         raise RequestError("--points: pairs of a table are the points themselves; leave it out")
     x_range = numbers("--x", x)
     if y is not None:
-        options.refuse_degrees_twice(y, x)
+        options.check_degrees(y, x, x_range)
     wanted = f"y = {y}" if table is None else f"pairs of {table.name}"
     with progress_bar(f"searching RSSRs for {wanted}") as progress:
         found = function_generation(

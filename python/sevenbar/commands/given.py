@@ -45,9 +45,20 @@ def drafted(source: str, agree: float | None) -> Draft:
     return Draft.of(toml_text(source), source, agree=agreed(agree))
 
 
-def law_of(law: Path | None, linkage: sb.Linkage, input_joint: str | None) -> Law | None:
-    """The law of --law, if one is given."""
-    return None if law is None else sb.load_law(law, linkage, input=input_joint)
+def law_of(
+    law: Path | None,
+    linkage: sb.Linkage,
+    input_joint: str | None,
+    joint: str | None = None,
+    circuit: int | None = None,
+) -> Law | None:
+    """The law of --law, if one is given, of the --law-joint and --law-circuit of its table."""
+    if law is None:
+        for option, value in (("--law-joint", joint), ("--law-circuit", circuit)):
+            if value is not None:
+                raise RequestError(f"{option}: there is no table of a law; give --law, too")
+        return None
+    return sb.load_law(law, linkage, input=input_joint, joint=joint, circuit=circuit)
 
 
 def input_value(option: str, text: str, linkage: sb.Linkage, input_joint: str | None) -> float:

@@ -101,6 +101,16 @@ Law = Annotated[
         help="CSV file of an input law: time, value of the input, perhaps its rates; in place of --speed."
     ),
 ]
+LawJoint = Annotated[
+    str | None,
+    typer.Option("--law-joint", help="The joint whose columns are the law, where its table has several."),
+]
+LawCircuit = Annotated[
+    int | None,
+    typer.Option(
+        "--law-circuit", help="The circuit that is the law, where its table is a motion of several."
+    ),
+]
 PointName = Annotated[str | None, typer.Option("--point", help="A named point of the linkage.")]
 PointLink = Annotated[
     int | None, typer.Option("--link", help="The link of a point given by --at, counted from 1.")
@@ -137,13 +147,16 @@ OutFigures = Annotated[
 ]
 
 
-def words(given: list[str] | None, option: str = "") -> list[str]:
+def words(given: list[str] | None, option: str = "", *, twice: bool = True) -> list[str]:
     """The words of an option that is repeated, or has several parted by commas; each once.
 
-    Raises `RequestError` for an `option` that is given without any.
+    Raises `RequestError` for an `option` that is given without any, and unless one may come `twice` for that.
     """
     parts = [part.strip() for word in given or () for part in word.split(",")]
     found = list(dict.fromkeys(part for part in parts if part))
+    if not twice and len(found) < len([part for part in parts if part]):
+        several = next(part for part in found if parts.count(part) > 1)
+        raise RequestError(f"{option}: {shown(several)} is given twice; leave one out")
     if given and option and not found:
         raise RequestError(f"{option}: is empty; give what it lists, or leave it out")
     return found
@@ -185,11 +198,18 @@ def checked_designs(count: int, most: int = MOST_DESIGNS) -> None:
         raise RequestError(f"--designs: {count} designs are not offered; give 1 to {most}")
 
 
-def refuse_degrees_twice(y: str, x: str) -> None:
-    """Raises `RequestError` where sind and the like would take an x in radians."""
+def check_degrees(y: str, x: str, ends: tuple[float, float]) -> None:
+    """Raises `RequestError` where sind and the like would take an x in radians.
+
+    States on the error stream, before the search begins, that the sine of an x in degrees was perhaps meant.
+    """
+    from sevenbar.design.wish import degrees_hint
+
     with_unit = any(unit in x for unit in (*ANGLES, "\u00b0"))
     if with_unit and (called := sorted(calls_in(y) & IN_DEGREES.keys())):
         raise RequestError(
             f"--x: {shown(x)} counts in radians, and {called[0]} takes degrees; "
             f"write {IN_DEGREES[called[0]]}, or leave the unit of x out"
         )
+    if hint := degrees_hint(y, ends):
+        typer.echo(f"--y: {hint}", err=True)

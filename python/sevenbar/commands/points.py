@@ -44,7 +44,7 @@ def point(
     ] = None,
     curve: Annotated[
         Path | None,
-        typer.Option(help="CSV file of a curve, x, y, z, perhaps the input: the nearest path is looked for."),
+        typer.Option(help="CSV file of a curve, x, y, z, perhaps the input: the nearest path is searched."),
     ] = None,
     name: Annotated[str | None, typer.Option(help="The name of the point in the new file.")] = None,
     circuit: ChosenCircuit = 0,

@@ -18,13 +18,11 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from sevenbar.commands.signals import stopped
 from sevenbar.reporting.folder import Stopped
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
-
-#: How a shell sees a command that Ctrl+C ended.
-STOPPED = 130
 
 
 class WorkBar:
@@ -65,7 +63,7 @@ class WorkBar:
 def progress_bar(title: str, *, rate: bool = False, kept: str = "nothing is written") -> Iterator[WorkBar]:
     """Shows how far work is; with `rate` how many steps a second.
 
-    Ctrl+C ends the command with the line "stopped; " and what is `kept`.
+    Ctrl+C, as any signal that ends a program, ends the command with "stopped; " and what is `kept`.
     """
     shown = WorkBar(title, rate=rate)
     try:
@@ -73,7 +71,7 @@ def progress_bar(title: str, *, rate: bool = False, kept: str = "nothing is writ
     except KeyboardInterrupt as stop:
         shown.end(erase=False)
         typer.echo(f"sevenbar: stopped; {stop.kept if isinstance(stop, Stopped) else kept}", err=True)
-        raise typer.Exit(STOPPED) from None
+        raise typer.Exit(stopped()) from None
     except BaseException:
         # a message is alone
         shown.end(erase=True)

@@ -11,8 +11,10 @@ import typer
 
 from sevenbar.commands import options
 from sevenbar.commands.given import agreed
+from sevenbar.commands.signals import CTRL_C, stopped
 from sevenbar.description.files import toml_text
 from sevenbar.errors import MissingExtraError, RequestError
+from sevenbar.text.paths import is_file
 
 #: Where the studio is served by default.
 HOST, PORT = "127.0.0.1", 8077
@@ -42,7 +44,7 @@ def studio(
     from sevenbar.studio.server import StudioServer
 
     # the folder of the file that was opened, else that in which the command was called
-    folder = Path(linkage).resolve().parent if Path(linkage).is_file() else Path.cwd()
+    folder = Path(linkage).resolve().parent if is_file(linkage) else Path.cwd()
     try:
         server = StudioServer(text, linkage, host, port, folder, agree=error_taken)
     except OSError as error:
@@ -63,3 +65,5 @@ def studio(
         server.wait()
     finally:
         server.stop()
+    if (code := stopped()) != CTRL_C:
+        raise typer.Exit(code)

@@ -159,7 +159,7 @@ def _readings(y: str | None, x: str, table: Path | None, input_range: str, outpu
     if table is not None:
         return wish_of_pairs(*read_pairs(table), title=f"pairs of {table.name}")
     assert y is not None
-    options.refuse_degrees_twice(y, x)
+    options.check_degrees(y, x, numbers("--x", x))
     ends = angles("--input-range", input_range), angles("--output-range", output_range)
     return wish_of_function(y, numbers("--x", x), *ends)
 

@@ -26,7 +26,13 @@ class TaskGroup(typer.core.TyperGroup):
 
 
 def task(
-    file: Annotated[Path, typer.Argument(metavar="TASK", help="A task file (TOML).")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="TASK",
+            help="A task file (TOML); [limits] transmission holds for any loop that has the angle.",
+        ),
+    ],
     designs: options.Designs = 5,
     starts: options.Starts = 256,
     seed: options.Seed = 0,
@@ -58,6 +64,8 @@ def task(
     formats = options.figure_formats(figures, out)
     check_counts(designs, starts, seed)
     read = task_file(file, agree=agreed(agree))
+    for hint in read.hints:
+        typer.echo(f"{read.source}: {hint}", err=True)
     if pareto is not None:
         from sevenbar.design.task.front import pareto as front_of
         from sevenbar.design.task.front_report import FrontFound, front_report

@@ -88,10 +88,14 @@ class Along:
         places = np.sort(np.concatenate(found)) if found else np.empty(0)
         return places[np.diff(places, prepend=-np.inf) > SAME * self.length]
 
-    def crossings(self, column: int, value: float, marks: Floats) -> Floats:
-        """Places (j,) where one quantity has a value; `marks` are the edges and all stationary places."""
+    def crossings(self, column: int, value: float, marks: Floats, touch: float = 0.0) -> Floats:
+        """Places (j,) where one quantity has a value; `marks` are the edges and all stationary places.
+
+        At a mark where it misses the value by `touch` at most it has it.
+        """
         own = self.part(column)
         heights = own.at(marks)[:, 0] - value
+        heights[np.abs(heights) <= touch] = 0.0
         # an edge belongs to the piece on its left as well
         found = [marks[heights == 0.0]]
         for i in np.flatnonzero(heights[:-1] * heights[1:] < 0):

@@ -90,13 +90,35 @@ class CycleSeries:
         return float(np.abs(self.rows).max())
 
     @property
-    def tail(self) -> float:
-        """The greatest wave in the last eighth of the spectrum, as a part of the greatest value.
+    def last_waves(self) -> float:
+        """The greatest wave in the last eighth of the spectrum, as a part of the greatest value."""
+        return self._waves_in(1)
 
-        About this part of a value is unknown between the rows; above `ENOUGH` the rows are too few.
+    @property
+    def tail(self) -> float:
+        """What the waves that the rows do not show add up to, as a part of the greatest value; 1 at most.
+
+        They are taken to fall on as they do over the last eighth of the spectrum, and to be no more than it
+        has: waves that do not fall are those of single rows. Above `ENOUGH` the rows are too few.
         """
-        last = self.spectrum[-max(2, len(self.spectrum) // TAIL_PART) :]
-        return float(np.abs(last).max() / self.scale) if self.scale else 0.0
+        last, before = self._waves_in(1), self._waves_in(2)
+        if last <= RESOLVED:
+            # rounding, which does not fall
+            return last
+        fall = (last / before) ** (1 / self._share)
+        most = len(self.spectrum)
+        return min(1.0, last * (min(most, 1 / (1 - fall)) if fall < 1 else most))
+
+    @property
+    def _share(self) -> int:
+        """How many waves the last eighth has."""
+        return max(2, len(self.spectrum) // TAIL_PART)
+
+    def _waves_in(self, place: int) -> float:
+        """The greatest wave of an eighth of the spectrum, from its end, as a part of the greatest value."""
+        end = len(self.spectrum) - (place - 1) * self._share
+        waves = self.spectrum[max(0, end - self._share) : max(1, end)]
+        return float(np.abs(waves).max() / self.scale) if self.scale else 0.0
 
     @property
     def _is_constant(self) -> bool:

@@ -1,16 +1,17 @@
 """A quantity that jumps or kinks at known inputs: polynomials between these, each as exact as rounding.
 
 Between two breaks the quantity is smooth. Every stretch is divided until the Chebyshev series through values
-at 16 nodes of each piece ends in rounding. Nodes never lie on a break, so nobody has to say what the value
-there is: the two polynomials give the limits from both sides.
+at 16 nodes of each piece ends in rounding, so pieces are small where the quantity is sharp. Nodes never lie
+on a break, so nobody has to say what the value there is: the two polynomials give the limits from both sides.
 
 Source: docs/theory_forces.md, (13).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -19,6 +20,7 @@ from numpy.polynomial import Chebyshev, chebyshev, legendre
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Peak, highest_of
+from sevenbar.curves.cycle_series import ENOUGH, CycleSeries, cycle_series
 from sevenbar.curves.stationary import AT_END, nodes, nodes_between, real_roots, series_through
 
 #: Pieces of a cycle before any is halved.
@@ -27,8 +29,13 @@ FIRST_PIECES = 12
 #: A piece is fine enough where the last terms of its series are below this part of the greatest value.
 RESOLVED = 1e-12
 
-#: Most halvings of a piece; what is left then is the tail.
-HALVINGS = 5
+#: Most halvings of a piece, and most values in all; what is left then is the tail.
+HALVINGS, MOST_VALUES = 40, 60_000
+
+#: Below this part of the greatest value the last terms of a piece may be noise: next to a limit of the input
+#: values have lost digits. They are where halving does not bring them below `FALLS` of what they were; of a
+#: smooth quantity it does by far.
+NOISY, FALLS = 1e-6, 0.25
 
 #: Points of Gauss's rule on each piece for the mean of a power.
 GAUSS = 32
@@ -42,7 +49,8 @@ class Pieces:
     """A quantity along a cycle in m pieces: from `starts` to `ends` (m,) [rad, or length], along the cycle.
 
     `series` (m, terms) or (m, terms, k) are the Chebyshev coefficients of each piece, `breaks` those of the
-    starts at which the quantity may jump; `rows` as the caller has them.
+    starts at which the quantity may jump; `rows` as the caller has them, `off` how far the pieces are from
+    these, as a part of the greatest value.
     """
 
     rows: Floats
@@ -50,6 +58,7 @@ class Pieces:
     ends: Floats
     series: Floats
     breaks: Floats
+    off: float = 0.0
 
     @cached_property
     def scale(self) -> float:
@@ -60,12 +69,25 @@ class Pieces:
 
     @property
     def tail(self) -> float:
-        """The greatest of the last two terms of a piece, as a part of the greatest value."""
-        return float(np.abs(self.series[:, -2:]).max() / self.scale) if self.scale else 0.0
+        """The greatest of the last two terms of a piece, or `off`, as a part of the greatest value."""
+        last = float(np.abs(self.series[:, -2:]).max() / self.scale) if self.scale else 0.0
+        return max(last, self.off)
+
+    def at(self, inputs: Floats) -> Floats:
+        """The quantity at inputs (j,) of the cycle: (j,) or (j, k)."""
+        period = float(self.ends[-1] - self.starts[0])
+        share = (np.asarray(inputs, dtype=np.float64) - self.starts[0]) / period % 1.0
+        edges = (self.starts - self.starts[0]) / period
+        own = np.searchsorted(edges, share, "right") - 1
+        ends = (self.ends[own] - self.starts[0]) / period
+        u = (2 * share - edges[own] - ends) / (ends - edges[own])
+        terms = np.cos(np.arange(self.series.shape[1]) * np.arccos(np.clip(u, -1.0, 1.0))[:, None])
+        return np.asarray(np.einsum("jt,jt...->j...", terms, self.series[own]))
 
     def part(self, columns: int | tuple[int, ...]) -> Pieces:
         """One column of a vector as a number, or some as a vector."""
-        return Pieces(self.rows[:, columns], self.starts, self.ends, self.series[:, :, columns], self.breaks)
+        series = self.series[:, :, columns]
+        return Pieces(self.rows[:, columns], self.starts, self.ends, series, self.breaks, self.off)
 
     def extremes(self) -> tuple[Floats, Floats]:
         """Inputs and values (j,) of the local extremes, along the cycle; at a break those of both sides.
@@ -161,23 +183,47 @@ def pieces(
     origin = first + cut * period
     todo = np.column_stack([edges[:-1], edges[1:]])
     found: list[tuple[float, float, Floats]] = []
-    scale = float(np.abs(rows).max())
+    scale, count = float(np.abs(rows).max()), 0
+    # the last terms of the piece that was halved
+    before = np.full(len(todo), math.inf)
     for halving in range(HALVINGS + 1):
         middle, grid = todo.mean(axis=1), nodes_between(todo[:, 0], todo[:, 1])
         values = evaluate(origin + period * grid.ravel())
         values = values.reshape(*grid.shape, *values.shape[1:])
         scale = max(scale, float(np.abs(values).max()))
         series = series_through(values)
-        rough = np.abs(series[:, -2:]).reshape(len(todo), -1).max(axis=1) > RESOLVED * scale
-        if halving == HALVINGS:
+        last = np.abs(series[:, -2:]).reshape(len(todo), -1).max(axis=1)
+        noise = (last <= NOISY * scale) & (last > FALLS * before)
+        rough = (last > RESOLVED * scale) & ~noise
+        count += grid.size
+        if halving == HALVINGS or count + 2 * rough.sum() * grid.shape[1] > MOST_VALUES:
             rough[:] = False
         found += [(a, b, own) for (a, b), own in zip(todo[~rough], series[~rough], strict=True)]
-        todo = np.concatenate([np.column_stack([todo[:, 0], middle]), np.column_stack([middle, todo[:, 1]])])[
-            np.concatenate([rough, rough])
-        ]
+        halves = [np.column_stack([todo[:, 0], middle]), np.column_stack([middle, todo[:, 1]])]
+        todo, before = np.concatenate(halves)[np.tile(rough, 2)], np.tile(last[rough], 2)
         if not len(todo):
             break
     found.sort(key=lambda piece: piece[0])
     starts, ends = (origin + period * np.array([piece[i] for piece in found]) for i in (0, 1))
     jumps = starts[np.isin([piece[0] for piece in found], marks[:-1])] if shares.size else np.empty(0)
     return Pieces(rows, starts, ends, np.stack([piece[2] for piece in found]), jumps)
+
+
+def smooth_pieces(evaluate: Callable[[Floats], Floats], rows: Floats, first: float, period: float) -> Pieces:
+    """A quantity without jumps along the cycle, compared with its rows (n,) or (n, k) at equal steps."""
+    made = pieces(evaluate, rows, first, period)
+    inputs = first + period * np.arange(len(rows)) / len(rows)
+    scale = max(made.scale, float(np.abs(rows).max()))
+    off = float(np.abs(made.at(np.asarray(inputs)) - rows).max()) / scale if scale else 0.0
+    return replace(made, off=off)
+
+
+def cycle_curve(
+    evaluate: Callable[[Floats], Floats] | None, rows: Floats, first: float, period: float
+) -> CycleSeries | Pieces:
+    """The series through rows (n,) or (n, k) of a cycle, or pieces where they are too sharp for it."""
+    series = cycle_series(evaluate, rows, first, period)
+    if evaluate is None or series.tail <= ENOUGH:
+        return series
+    finer = smooth_pieces(evaluate, rows, first, period)
+    return finer if finer.tail < series.tail else series

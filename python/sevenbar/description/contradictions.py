@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from sevenbar.description.not_covered import not_covered
 from sevenbar.description.written import (
     Written,
     drive_of,
@@ -31,6 +32,10 @@ def other_file(raw: Mapping[str, Any]) -> str:
     """What to say of tables that describe no linkage at all: an empty file, a design task; else nothing."""
     if not raw:
         return "is empty; begin with a linkage of the gallery, as in 'sevenbar gallery rssr > mine.toml'"
+    if not raw.keys() & set(FORMS):
+        for word in raw:
+            if lacking := not_covered(word):
+                return f"{word}: {lacking}"
     if "want" in raw and not raw.keys() & set(FORMS):
         return "is a design task and not a linkage; 'sevenbar design task' takes it"
     return ""

@@ -8,22 +8,25 @@ digit. Lengths are in `length_unit`, or texts with a unit ("6 cm"); angles are i
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from sevenbar.arrays import finite_number
+from sevenbar.arrays import finite_number, whole_number
 from sevenbar.description.forms import from_description, head_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.text.amounts import value_of
 from sevenbar.text.expression import cosd, sind
-from sevenbar.text.units import as_written
+from sevenbar.text.units import LENGTHS, as_written
 
 #: A length or an angle as a caller gives it: a number, or a text with a unit.
 Given = float | str
+
+#: Points by name: the link of each, and its place along the link and to its left [length].
+Points = Mapping[str, tuple[int, Sequence[Given]]]
 
 #: A sine below this is rounding: the angle is 0 or half a turn.
 NO_SINE = 1e-15
@@ -212,12 +215,14 @@ def four_bar(
     name: str = "Planar four-bar",
     length_unit: str = "mm",
     speed: float | str = 1.0,
+    points: Points | None = None,
 ) -> Linkage:
     """The planar four-bar, as a spatial loop of four parallel axes.
 
     It lies in the xy plane as in textbooks: the crank's pivot is the origin, the ground goes along +x to the
     rocker's pivot, and theta_1 of the crank and theta_4 of the rocker count counter-clockwise from +x. The
-    links are rows without twist, in this order. Raises `RequestError` where a length is not > 0.
+    links are rows without twist, in this order. `points` are named, each (link, (u, v)): u along the link
+    from its first joint, v to its left. Raises `RequestError` where a length is not > 0.
 
         >>> import numpy as np
         >>> import sevenbar as sb
@@ -233,7 +238,10 @@ def four_bar(
     others = head_of(name, length_unit, speed)
     given = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
     lengths = [_length(what, value, others) for what, value in given.items()]
-    return _rows([(length, 0.0) for length in lengths], {**others, "layout": "planar"})
+    named = [
+        {"name": of, "link": link, "at": [0.0, u, v]} for of, link, u, v in _in_links(points or {}, 3, others)
+    ]
+    return _rows([(length, 0.0) for length in lengths], {**others, "layout": "planar", "point": named})
 
 
 def spherical_four_bar(
@@ -270,6 +278,7 @@ def slider_crank(
     name: str = "Slider-crank",
     length_unit: str = "mm",
     speed: float | str = 1.0,
+    points: Points | None = None,
 ) -> Linkage:
     """The planar slider-crank in the xy plane: the crank turns about z, the slider moves along x.
 
@@ -277,6 +286,8 @@ def slider_crank(
 
     is the place of the pin on the slider, whose guide lies `offset` above the crank's pivot. Drawn with the
     crank along x, theta = 0; the slider's value is the change of x from there. The pin is the point `pin`.
+    Other `points` are named as those of `four_bar`, each (link, (u, v)): u along crank or rod from its first
+    joint, of the slider along x from the pin. `Circuit.point(link, at)` takes the coordinates of the drawing.
     Raises `RequestError` where the rod does not reach the guide.
 
         >>> import sevenbar as sb
@@ -300,8 +311,13 @@ def slider_crank(
         {"name": "wrist_pin", "kind": "R", "at": pin, "axis": up},
         {"name": "slider", "kind": "P", "at": pin, "axis": [1, 0, 0]},
     ]
-    points = [{"name": "pin", "link": 3, "at": pin}]
-    return _drawn(joints, points, others)
+    starts = ([0.0, 0.0], [arm, 0.0], pin[:2])
+    along = ((1.0, 0.0), ((pin[0] - arm) / length, pin[1] / length), (1.0, 0.0))
+    named = [{"name": "pin", "link": 3, "at": pin}]
+    for of, link, u, v in _in_links(points or {}, 3, others):
+        (x, y), (c, s) = starts[link - 1], along[link - 1]
+        named.append({"name": of, "link": link, "at": [x + u * c - v * s, y + u * s + v * c, 0.0]})
+    return _drawn(joints, named, others)
 
 
 def universal_joint(
@@ -395,9 +411,13 @@ def sarrus(
     others = head_of(name, length_unit, speed)
     legs = []
     for which, leg in (("first", first), ("second", second)):
-        if len(leg) != 3 or any(len(place) != 2 for place in leg):
-            raise RequestError(f"{which}: {shown(leg)} is no leg; give three places (distance, height)")
-        legs.append([[_number(which, value, "length", others) for value in place] for place in leg])
+        try:
+            ends = [_several(which, place, 2) for place in _several(which, leg, 3)]
+        except RequestError:
+            raise RequestError(
+                f"{which}: {shown(leg)} is no leg; give three places (distance, height)"
+            ) from None
+        legs.append([[_number(which, value, "length", others) for value in place] for place in ends])
     one, other = legs
     names = ("crank", "knee_1", "platform_1", "platform_2", "knee_2", "rocker")
     places = [[0.0, y, z] for y, z in one] + [[x, 0.0, z] for x, z in reversed(other)]
@@ -415,8 +435,11 @@ def _number(name: str, value: Given, kind: Any, others: Mapping[str, Any]) -> fl
     if not isinstance(value, str):
         return finite_number(name, value)
     try:
-        return value_of(value, kind, length_unit=str(others.get("length_unit", "mm")))
-    except (RequestError, KeyError) as error:
+        # one that is no unit is refused by the description
+        unit = others.get("length_unit")
+        known = isinstance(unit, str) and unit in LENGTHS
+        return value_of(value, kind, length_unit=str(unit) if known else "mm")
+    except RequestError as error:
         raise RequestError(f"{name}: {error}") from None
 
 
@@ -440,8 +463,9 @@ def _angle(name: str, value: Given) -> float:
     return as_written(math.degrees(radians))
 
 
-def _several(name: str, values: Sequence[Given], count: int) -> list[Given]:
-    found = [] if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) else list(values)
+def _several(name: str, values: Any, count: int) -> list[Any]:
+    several = values.ndim > 0 if isinstance(values, np.ndarray) else isinstance(values, Sequence)
+    found = list(values) if several and not isinstance(values, str) else []
     if len(found) != count:
         raise RequestError(f"{name}: {shown(values)} does not fit; give {count} numbers")
     return found
@@ -464,6 +488,22 @@ def _proportional(a: float, name: str, alpha: float, beta: float) -> float:
             f"{name}: {alpha:g} deg: its sine is 0, so no other length follows; give another angle"
         )
     return a * float(sind(beta)) / sine
+
+
+def _in_links(
+    points: Points, links: int, others: Mapping[str, Any]
+) -> Iterator[tuple[str, int, float, float]]:
+    """The points of a planar linkage by name, link and place, once checked."""
+    for name, given in points.items():
+        if not isinstance(given, Sequence) or len(given) != 2 or not hasattr(given[1], "__len__"):
+            raise RequestError(
+                f"points.{name}: {shown(given)} is no point; give (link, (u, v)), as in (2, (50, 20))"
+            )
+        link = whole_number(f"points.{name}", given[0], 1, links, "a link")
+        if len(given[1]) != 2 or isinstance(given[1], str):
+            raise RequestError(f"points.{name}: {shown(given[1])} is no place in the plane; give (u, v)")
+        u, v = (_number(f"points.{name}", part, "length", others) for part in given[1])
+        yield name, link, u, v
 
 
 def _rows(

@@ -13,8 +13,17 @@ from typing import TYPE_CHECKING, Any
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
-from sevenbar.errors import DescriptionError, SevenbarError, ends_here, read_start, shown
+from sevenbar.errors import (
+    DescriptionError,
+    SevenbarError,
+    check_kind,
+    ends_here,
+    given_path,
+    read_start,
+    shown,
+)
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.paths import is_file
 
 if TYPE_CHECKING:
     from sevenbar.description.table_reader import TableDescription
@@ -44,11 +53,15 @@ def load(source: str | os.PathLike[str], *, agree: float | None = None) -> Linka
         >>> sb.load("rssr").kind
         'RSSR'
     """
-    path = Path(source)
+    path = given_path("source", source)
     if _in_gallery(source):
         return loads(text(str(source)), str(source)).agreeing(agree)
     content = _read(path)
-    if _is_table(content, path) and len(content) <= LARGEST_TABLE:
+    if (
+        _is_table(content, path)
+        and not _of_other_program(content, str(path))
+        and len(content) <= LARGEST_TABLE
+    ):
         return _table(content, str(source)).linkage(from_description, str(source)).agreeing(agree)
     return loads(decoded(content, str(path)), str(source)).agreeing(agree)
 
@@ -66,9 +79,9 @@ def toml_text(source: str | os.PathLike[str]) -> str:
 
 def note_of(source: str | os.PathLike[str]) -> str:
     """How a table was read, in a sentence; empty for other files, and for one that is wrong."""
-    path = Path(source)
+    path = given_path("source", source)
     # of the gallery or not, what is no file is no table
-    if not path.is_file():
+    if not is_file(path):
         return ""
     content = _read(path)
     if not _is_table(content, path):
@@ -90,6 +103,8 @@ def loads(content: str, source: str = "text") -> Linkage:
     >>> sb.loads(gallery.text("bennett")).name
     'Bennett linkage'
     """
+    check_kind("content", content, str, "a text; give that of a TOML file, or load(path)")
+    check_kind("source", source, str, "a name; give a text")
     return checked(toml_tables(content, source), source)
 
 
@@ -126,8 +141,30 @@ _OTHER_KINDS = {
     b"%PDF": "a PDF file; give a TOML file of format 1, or a table (.csv, .xlsx)",
 }
 
+#: Files of other programs by the ends of their names, as texts begin alike.
+_OTHER_ENDINGS = {
+    ".urdf": "URDF",
+    ".xacro": "URDF",
+    ".sdf": "SDF",
+    ".mjcf": "MJCF",
+    ".xml": "XML (MJCF, Simscape)",
+    ".fcstd": "a FreeCAD file",
+    ".sldasm": "a SolidWorks file",
+    ".slx": "a Simulink file",
+    ".cmd": "an ADAMS file",
+}
+
+#: The same by the heads of their texts.
+_OTHER_HEADS = {b"<robot": "URDF", b"<sdf": "SDF", b"<mujoco": "MJCF", b"<?xml": "XML"}
+
+#: Bytes of a file that give its kind.
+_HEAD = 2000
+
 #: What TOML's reader says of a place.
 _PLACE = r"(.*) \(at (?:line (\d+), column \d+|end of document)\)"
+
+#: Tables of which a file may have several.
+LISTED = ("joint", "link", "point", "body", "load", "spring", "stop", "rod")
 
 #: Slips that people make in TOML, by how the line looks: a unit next to a number, a decimal comma, a text or
 #: a sign of another language.
@@ -159,7 +196,10 @@ def _syntax_problem(error: ValueError, lines: list[str]) -> str:
         return f"not valid TOML: {reason}, at the end of the file; {example}"
     line = lines[int(match[2]) - 1]
     if reason.startswith(("cannot overwrite", "cannot declare")):
-        return f"line {match[2]}: {shown(line.strip())} stands twice; leave one of them out"
+        head = re.fullmatch(r"\s*\[\s*(\w+)\s*\]\s*(#.*)?", line)
+        listed = head is not None and head[1] in LISTED
+        remedy = f"write [[{head[1]}]] before each one" if head and listed else "leave one of them out"
+        return f"line {match[2]}: {shown(line.strip())} stands twice; {remedy}"
     remedy = next((hint for slip, hint in _SLIPS if re.fullmatch(slip, line)), example)
     return f"line {match[2]}: {shown(line.strip())} is not valid TOML: {reason}; {remedy}"
 
@@ -195,7 +235,8 @@ def decoded(content: bytes, place: str) -> str:
     """The TOML text of a file's bytes; `place` is its name in messages. Raises as `load` does."""
     table = _is_table(content, Path(place))
     kind = next((what for mark, what in _OTHER_KINDS.items() if content.startswith(mark)), "")
-    if kind and not table:
+    kind = kind or _of_other_program(content, place)
+    if kind and (not table or Path(place).suffix.lower() in _OTHER_ENDINGS):
         raise DescriptionError.of_all(place, kind)
     largest = LARGEST_TABLE if table else LARGEST_FILE
     if len(content) > largest:
@@ -206,14 +247,44 @@ def decoded(content: bytes, place: str) -> str:
         found = _table(content, place)
         found.linkage(from_description, place)  # its mistakes, with their places in the table
         return found.toml(Path(place).name)
-    # the mark of UTF-16, as Notepad's "Unicode" writes it
-    wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
+    # UTF-16, as Notepad's "Unicode" writes it
+    wide = _wide(content)
     try:
-        return content.decode("utf-16" if wide else "utf-8-sig").replace("\r\n", "\n")
+        return content.decode(wide or "utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
         damaged = "damaged UTF-16 text; save the file as UTF-8"
         flaw = damaged if wide else _not_utf8(content, error.start)
         raise DescriptionError.of_all(place, flaw) from None
+
+
+def _of_other_program(content: bytes, place: str) -> str:
+    """What to say of a file of a robot or CAD program; empty for others."""
+    head = content[:_HEAD].lstrip()
+    word = next((what for mark, what in _OTHER_HEADS.items() if mark in head and head[:1] == b"<"), "")
+    word = _OTHER_ENDINGS.get(Path(place).suffix.lower(), "") or word
+    if word:
+        return (
+            f"{word} cannot be read; write the joints of its loop as [[joint]] with place and axis in one "
+            "pose, or as a table (.csv, .xlsx); 'sevenbar axes' reads axes from STEP"
+        )
+    if head[:1] == b"{":
+        return (
+            'line 1: JSON cannot be read; write TOML, a key as in name = "rocker"; '
+            "'sevenbar gallery rssr' prints a file that is right"
+        )
+    return ""
+
+
+def _wide(content: bytes) -> str:
+    """The kind of UTF-16 of a text; empty for another. Without a mark plain letters have a zero byte each."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    head = content[:_HEAD]
+    for first, name in ((1, "utf-16-le"), (0, "utf-16-be")):
+        zeros, others = head[first::2], head[1 - first :: 2]
+        if zeros and not any(zeros) and all(others):
+            return name
+    return ""
 
 
 def _not_utf8(content: bytes, start: int) -> str:

@@ -13,7 +13,16 @@ import numpy.typing as npt
 
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.proportions import disproportions
-from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
+from sevenbar.errors import (
+    DescriptionError,
+    Problem,
+    RequestError,
+    bare,
+    check_kind,
+    ends_here,
+    shown,
+    suggestion,
+)
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Drive, Form, Joint, Place, Point
@@ -95,6 +104,8 @@ def from_axes(
         'crank-rocker'
     """
     tables = {"joint": _plain(joints), "point": _plain(points)}
+    for key, rows in (("joints", tables["joint"]), ("points", tables["point"])):
+        check_kind(key, rows, list, f"a list; give one with a mapping for each of the {key}")
     return from_description(head_of(name, length_unit, speed) | tables)
 
 
@@ -254,13 +265,22 @@ def _miscounted(values: object, count: int) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Arrays and NumPy numbers as the lists and numbers that a file would hold."""
+    """Arrays and NumPy numbers as the lists and numbers that a file would hold; `RequestError` for a nest."""
+    try:
+        return _listed(value)
+    except RecursionError:
+        raise RequestError(
+            "a list or a mapping is nested without end; give numbers, and lists and mappings of numbers"
+        ) from None
+
+
+def _listed(value: Any) -> Any:
     if not isinstance(value, str | Mapping):
         value = listed(value)
     if isinstance(value, Mapping):
-        return {key: _plain(v) for key, v in value.items()}
+        return {key: _listed(v) for key, v in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
+        return [_listed(v) for v in value]
     return value
 
 
@@ -277,6 +297,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     context = context_of(raw, source)
     raw = with_numbers(raw, context)
     form, more = loop_alone(raw, context), dict[str, Any]()
+    whole: LinkageForm | None = None
     if form is None:
         # few files have more, or are wrong
         from sevenbar.description.schema import check
@@ -291,12 +312,18 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
         linkage = _from_drawing(form, form.joint, source)
     else:
         linkage = _from_rows(form, form.link or (), source)
-    return replace(
+    made = replace(
         linkage,
         points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
         description=raw,
         **more,
     )
+    if whole is not None and whole.body:
+        from sevenbar.description.loads import planar_flaws
+
+        if problems := planar_flaws(whole.body, made, whole.forces.mass_unit):
+            raise DescriptionError(problems, source)
+    return made
 
 
 def _loading(form: LinkageForm) -> Loading:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping, Sequence
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import ends_here, of_extra
+from sevenbar.errors import check_kind, ends_here, given_path, of_extra
 from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
+from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.law import Law
 from sevenbar.text.table import TextTable, read_table
 
@@ -27,13 +28,23 @@ QUANTITIES = ("value", "velocity", "acceleration", "jerk")
 
 
 @ends_here
-def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | None = None) -> Law:
+def load_law(
+    path: str | os.PathLike[str],
+    linkage: Linkage,
+    *,
+    input: str | None = None,
+    joint: str | None = None,
+    circuit: int | None = None,
+) -> Law:
     r"""The law of a table of text for a joint of a linkage: its drive's, or `input`.
 
     A header names each column and its unit, as in `time [s], crank [deg], crank [rad/s]` or
     `time_s,crank_deg,crank_rad_s`. The unit says what a column is. Needed are a time and the value of the
     input; velocity, acceleration and jerk are taken where they are given. What is not given is differentiated
     from a spline of degree five through the highest derivative that is (extra `[law]`).
+
+    The table may be the motion of another linkage, whose output drives this one: `joint` is the name that the
+    input has there, and `circuit` the one that is taken where the table has several.
 
     Raises `TableError` for a file that is no such table, `RequestError` for a joint that cannot drive,
     `MissingExtraError` where a spline is needed and SciPy is missing.
@@ -49,11 +60,12 @@ def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | Non
         >>> law.q.round(6).tolist()
         [0.0, 0.785398]
     """
+    check_kind("linkage", linkage, Loop, "a linkage; give one, as load(..) has it")
     column = linkage.input_column(input)
-    table = read_table(Path(path), "an input law")
+    table = _of_circuit(read_table(given_path("path", path), "an input law"), circuit)
     if len(table.rows) > MOST_SAMPLES:
         raise table.wrong(f"has more than {MOST_SAMPLES} rows; give every tenth of them, say")
-    places = _places(table, linkage, column)
+    places = _places(table, linkage, column, joint)
     written = {quantity: table.numbers(place) for quantity, place in places.items()}
     table.refuse_gaps(
         {places[quantity]: numbers for quantity, numbers in written.items()}, "leave such rows out"
@@ -65,12 +77,35 @@ def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | Non
     numbers = {quantity: written[quantity] * size for quantity, size in sizes.items()}
     t = numbers.pop("time")
     if linkage.turns(column):
+        if "velocity" in numbers:
+            # by which a jump of a turn is none
+            numbers["value"] = np.unwrap(numbers["value"])
         _refuse_jumps(table, numbers, places["value"])
     _refuse_other_rates(table, t, numbers, places)
     return Law.of(t, *_completed(table, t, [numbers[q] for q in QUANTITIES if q in numbers]))
 
 
-def _places(table: TextTable, linkage: Linkage, column: int) -> dict[str, int]:
+def _of_circuit(table: TextTable, circuit: int | None) -> TextTable:
+    """The rows of one circuit of a motion's table; of any other table all rows."""
+    place = table.column("circuit")
+    if place is None:
+        if circuit is not None:
+            raise table.wrong(f"has no column of circuits, of which {circuit} is asked; leave that out")
+        return table
+    numbers = table.numbers(place)
+    known = sorted({int(number) for number in numbers[np.isfinite(numbers)]})
+    if circuit is None and len(known) == 1:
+        return table
+    if circuit not in known:
+        what = "has rows of" if circuit is None else f"has no circuit {circuit}, but"
+        listed = ", ".join(map(str, known))
+        raise table.wrong(f"{what} circuits {listed}; say which, as in --law-circuit {known[0]}")
+    kept = np.flatnonzero(numbers == circuit)
+    rows, lines = tuple(table.rows[row] for row in kept), tuple(table.lines[row] for row in kept)
+    return replace(table, rows=rows, lines=lines)
+
+
+def _places(table: TextTable, linkage: Linkage, column: int, joint: str | None) -> dict[str, int]:
     """The column of each quantity, known by its unit; by its name, too, where several have such a unit."""
     name, kind = linkage.columns[column], linkage.column_kinds[column]
     owners = [joint.name for joint in linkage.joints for _ in joint.columns]
@@ -85,13 +120,16 @@ def _places(table: TextTable, linkage: Linkage, column: int) -> dict[str, int]:
             ]
         if len(fitting) > 1:
             what = {"value": "angle" if linkage.turns(column) else "position"}.get(quantity, quantity)
-            own = {word.lower() for word in (name, owners[column], "input", what, "time", "t")}
+            words = (name, owners[column], "input", what) if joint is None else (joint,)
+            own = {word.lower() for word in (*words, "time", "t")}
             named = [place for place in fitting if heads[place][0].lower() in own]
             if len(named) != 1:
                 several = ", ".join(table.labels[place] for place in fitting)
+                motion = table.column("circuit") is not None
+                which = f", or say which, as in --law-joint {heads[fitting[0]][0]}" if motion else ""
                 raise table.wrong(
                     f"line {table.header_line}: {several} may each be the {what}; "
-                    f"keep the one of the input, or name it '{name}' and its unit"
+                    f"keep the one of the input, or name it '{name}' and its unit{which}"
                 )
             fitting = named
         if fitting:

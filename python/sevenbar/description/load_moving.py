@@ -31,7 +31,8 @@ def _moved(table: Mapping[str, Any], put: Callable[[Floats], Floats], rotation: 
     found = dict(table)
     for key in table.keys() & {"centre", "at"}:
         found[key] = put(np.array(table[key], dtype=np.float64)).tolist()
-    if "inertia" in table:
+    # that across the plane turns with it
+    if isinstance(table.get("inertia"), (list, tuple)):
         found["inertia"] = entries_of(rotation @ tensor_of(table["inertia"]) @ rotation.T)
     for key in table.keys() & {"force", "torque"} if table.get("axes") == "link" else ():
         found[key] = (rotation @ np.array(table[key], dtype=np.float64)).tolist()

@@ -39,8 +39,18 @@ def _mass(value: object, info: ValidationInfo) -> float:
     return number
 
 
-def _inertia(value: object, info: ValidationInfo) -> tuple[float, ...]:
-    parts = parts_of(value, 6, f"is not an inertia; give six numbers, {ENTRIES} of the tensor")
+def _inertia(value: object, info: ValidationInfo) -> float | tuple[float, ...]:
+    if isinstance(value, (int, float, str)) and not isinstance(value, bool):
+        moment = number_for(value, info, "inertia")
+        if moment < 0:
+            raise refuse(f"{shown(value)} is not a moment of inertia; give a number >= 0")
+        return moment
+    parts = parts_of(
+        value,
+        6,
+        f"is not an inertia; give six numbers, {ENTRIES} of the tensor, or of a planar linkage one, about "
+        "the axis across its plane",
+    )
     entries = tuple(number_for(part, info, "inertia") for part in parts)
     if flaw := flaw_of_inertia(tensor_of(entries)):
         raise refuse(flaw)
@@ -97,7 +107,8 @@ _Vector = tuple[Component, Component, Component]
 
 Mass = Annotated[float, BeforeValidator(_mass), POSITIVE]
 Inertia = Annotated[
-    tuple[Component, Component, Component, Component, Component, Component], BeforeValidator(_inertia)
+    Component | tuple[Component, Component, Component, Component, Component, Component],
+    BeforeValidator(_inertia),
 ]
 Acceleration = Annotated[_Vector, BeforeValidator(partial(three, kind="acceleration"))]
 Force = Annotated[_Vector, BeforeValidator(partial(three, kind="force"))]
@@ -135,7 +146,8 @@ class BodyForm(TableForm):
     inertia: Annotated[
         Inertia | None,
         key(
-            f"entries {ENTRIES} of the tensor about the centre, along the axes of points; left out, none",
+            f"entries {ENTRIES} of the tensor about the centre, along the axes of points; of a planar "
+            "linkage one number, about the axis across its plane; left out, none",
             "mass_unit length_unit^2",
         ),
     ] = None
@@ -164,13 +176,14 @@ class LoadForm(TableForm):
     between: Annotated[
         Between | None,
         key(
-            "from where to where of the input it acts, rising; left out, everywhere", "angle_unit, or length"
+            "from where to where of the input it acts, rising, a turn at most; left out, everywhere",
+            "angle_unit, or length",
         ),
     ] = None
     table: Annotated[
         Table | None,
         key(
-            "its factor along the input: a CSV file in the folder of this one, "
+            "its factor along the input: a CSV file below the folder of this one, "
             "or rows of input (angle_unit, or length) and factor"
         ),
     ] = None

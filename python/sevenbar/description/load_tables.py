@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sevenbar.description.named_files import file_below
 from sevenbar.description.written import entries
-from sevenbar.errors import RequestError, SevenbarError, TableError, shown
+from sevenbar.errors import DescriptionError, Problem, RequestError, SevenbarError, TableError, shown
+from sevenbar.text.paths import is_file
 from sevenbar.text.units import ANGLES
 
 # most descriptions have none
@@ -40,10 +42,25 @@ def _with_rows(load: Any, context: Mapping[str, Any]) -> Any:
         return load
 
 
+def refuse_tables(raw: Mapping[str, Any], source: str) -> None:
+    """`DescriptionError` for a text from another machine that names a file of this one."""
+    problems = [
+        Problem(
+            f"load[{i}].table",
+            f"{shown(load['table'])} is the name of a file, and a text from the browser reads none; "
+            "give its rows, as in [[0, 0], [30, 1]], or open the file with sevenbar studio FILE",
+        )
+        for i, load in enumerate(entries(raw, "load"), 1)
+        if isinstance(load.get("table"), str)
+    ]
+    if problems:
+        raise DescriptionError(problems, source)
+
+
 def folder_of(source: str) -> Path:
     """The folder of a description's file; of a text without one the folder in which the program runs."""
     try:
-        return Path(source).parent if source and Path(source).is_file() else Path()
+        return Path(source).parent if source and is_file(source) else Path()
     except (OSError, ValueError):  # a name that no file can have
         return Path()
 
@@ -58,7 +75,8 @@ def rows_of(name: str, context: Mapping[str, Any]) -> list[list[float]]:
     if not name.strip() or len(name) > 200 or not name.isprintable():
         raise RequestError(f"{shown(name)} is not the name of a table; give a CSV file, as in 'press.csv'")
     try:
-        table = read_table(context.get("folder", Path()) / name, "the factor of a load along the input")
+        path = file_below(context.get("folder", Path()), name, "press.csv")
+        table = read_table(path, "the factor of a load along the input")
         if len(table.rows) > MOST_ROWS:
             raise table.wrong(f"{len(table.rows)} rows; give at most {MOST_ROWS}")
         at, size, factor = _columns(table, context)

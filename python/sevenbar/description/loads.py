@@ -11,15 +11,28 @@ from sevenbar.description.written import Written, named_column, unknown_link
 from sevenbar.errors import Problem
 from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body, Solid, tensor_of
+from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.dynamics.link_bodies import flaw_in_plane
 from sevenbar.text.units import LENGTHS, MASSES
 
 
 def body_of(body: BodyForm, mass_unit: str, length_unit: str) -> Body:
     """A body in kg and kg m^2; raises `RequestError` for keys that do not go together."""
     kilogram, metre = MASSES[mass_unit], LENGTHS[length_unit]
-    inertia = None if body.inertia is None else tensor_of(body.inertia) * (kilogram * metre**2)
+    own = body.inertia
+    entries = tensor_of(own) if isinstance(own, tuple) else own
+    inertia = None if entries is None else entries * (kilogram * metre**2)
     mass = 0.0 if body.mass is None else body.mass * kilogram
     return Body(mass, body.centre, inertia, cast("Solid | None", body.solid))
+
+
+def planar_flaws(bodies: Sequence[BodyForm], linkage: Solvable, mass_unit: str) -> list[Problem]:
+    """What is wrong with inertias about one axis alone, which say enough of a planar linkage only."""
+    found = []
+    for i, form in enumerate(bodies, 1):
+        if flaw := flaw_in_plane(body_of(form, mass_unit, linkage.length_unit), form.link, linkage):
+            found.append(Problem(f"body[{i}].inertia", flaw))
+    return found
 
 
 def load_of(load: LoadForm) -> Load:
@@ -53,6 +66,7 @@ def load_contradictions(
 ) -> list[Problem]:
     """What is wrong with tables whose values are each right; wrong values are reported elsewhere."""
     problems: list[Problem] = []
+    turns = not context["slides"]
     units = str(context["mass_unit"]), str(context["length_unit"])
     for place, body in valid_tables(raw, "body", BodyForm, context):
         problems += _on_ground(place, body.link, joints, "a body there moves nothing, leave it out")
@@ -66,7 +80,7 @@ def load_contradictions(
             problems += flaws_of_value(place, lambda body=body: body_of(body, *units))
     for place, load in valid_tables(raw, "load", LoadForm, context):
         problems += _on_ground(place, load.link, joints, "a load on it moves nothing, leave it out")
-        problems += flaws_of_value(place, lambda load=load: load_of(load))
+        problems += flaws_of_value(place, lambda load=load: load_of(load).check_input(turns=turns))
     for place, spring in valid_tables(raw, "spring", SpringForm, context):
         problems += _of_spring(place, spring, joints)
     return problems

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from pydantic_core import ErrorDetails
 
+from sevenbar.description.not_covered import not_covered
 from sevenbar.description.values import EXAMPLE_OF_AXES, TableForm
 from sevenbar.errors import Problem, bare, shown, suggestion
 
@@ -44,7 +45,8 @@ class FileForms:
                 message = _missing(location, owner)
             case "extra_forbidden":
                 near = suggestion(str(location[-1]), owner.model_fields if owner else ())
-                home = "" if near else self._home(str(location[-1]))
+                home = not_covered(location[-1], of_joint=location[0] == "joint" and len(location) > 1)
+                home = home or ("" if near else self._home(str(location[-1])))
                 message = home or f"is not known here; {near}allowed: {keys}"
             case "literal_error" | "int_parsing_size":
                 message = f"{value} is not a format of this version; give format = 1"
@@ -74,7 +76,7 @@ class FileForms:
         """What is wrong with the key that decides what a table is."""
         known = self.kinds[head]
         given = table.get("kind") if isinstance(table, Mapping) else None
-        what = "is missing; " if given is None else f"{shown(given)} is none; {suggestion(str(given), known)}"
+        what = "is missing; " if given is None else f"{shown(given)} is none; {suggestion(given, known)}"
         return f"{what}give one of {', '.join(known)}"
 
     def _home(self, key: str) -> str:

@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import TableError, of_extra, read_start
+from sevenbar.errors import TableError, given_path, of_extra, read_start
 
 #: Cylinders are on one axis where their directions agree to this [rad] and their lines to this [mm]: the
 #: digits that CAD programs write.
@@ -67,7 +67,7 @@ def axes_of_step(path: str | os.PathLike[str]) -> list[PartAxis]:
 
     Raises `TableError` for a file that is no STEP file, `MissingExtraError` without build123d.
     """
-    faces = list(_faces(Path(path)))
+    faces = list(_faces(given_path("path", path)))
     groups: list[list[_Face]] = []
     for face in sorted(faces, key=lambda face: face.reach[0] - face.reach[1]):
         group = next((group for group in groups if _together(group[0], face)), None)

@@ -272,7 +272,10 @@ class _Reader(TableCells):
         kind, key = self._kind_of(row)
         place = f"joint[{i + 1}]"
         if not kind:
-            self.wrong(f"no kind of joint; give one of {', '.join(KINDS)}", row, self.columns.get("kind"))
+            named = ", ".join(shown(name) for name in self.unread)
+            unread = f" in a column 'kind'; not read: {named}" if named else ""
+            text = f"no kind of joint; give one of {', '.join(KINDS)}{unread}"
+            self.wrong(text, row, self.columns.get("kind"))
         table: dict[str, Any] = self._head(row, place, name, "kind", kind, key)
         table["at"] = self.vector(row, "", "length")
         for key, wanted in (("axis", "axis "), ("axis 2", "axis 2 ")):

@@ -6,6 +6,7 @@ line and its column.
 
 from __future__ import annotations
 
+import csv
 import os
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from sevenbar.description.table_reader import (
     described,
     described_frame,
 )
-from sevenbar.errors import DescriptionError, shown
+from sevenbar.errors import DescriptionError, given_path, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.grid import grid_of_sheet, grid_of_text
 from sevenbar.text.table import read_bytes, text_of_bytes
@@ -46,7 +47,7 @@ def from_table(
         'double-crank'
     """
     if isinstance(source, str | os.PathLike):
-        path, place = Path(source), str(source)
+        path, place = given_path("source", source), str(source)
         found = description_of_bytes(read_bytes(path, "a linkage"), str(path))
     else:
         found, place = described_frame(source), "table"
@@ -63,7 +64,12 @@ def description_of_bytes(content: bytes, source: str) -> TableDescription:
         raise DescriptionError.of_all(source, "is empty; give a table with a header and a row for each joint")
     if not content.startswith(ZIP):
         text = text_of_bytes(content, source).replace("\r\n", "\n").replace("\r", "\n")
-        grid = grid_of_text(text, is_header)
+        try:
+            grid = grid_of_text(text, is_header)
+        except csv.Error:  # a cell of many thousand characters
+            raise DescriptionError.of_all(
+                source, "a cell goes on over many lines; close the quotes of its text, or leave them out"
+            ) from None
         if grid is None:
             raise DescriptionError.of_all(
                 source, f"no header of a linkage's table; name the columns as in {EXAMPLES}"

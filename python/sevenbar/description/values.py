@@ -18,6 +18,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from sevenbar.description.not_covered import not_covered
 from sevenbar.description.written import entries, meant_kind
 from sevenbar.errors import Problem, RequestError, shown, suggestion
 from sevenbar.kinematics.loop.joint_text import drive_speed
@@ -167,7 +168,10 @@ def one_of(what: str, known: Mapping[str, object] | tuple[str, ...]) -> tuple[An
         if what == "unit":
             raise refuse(unknown_unit(value, known))
         meant = meant_kind(value) if what == "joint kind" else ""
-        near = f"did you mean '{meant}'? " if meant in known else suggestion(str(value), known)
+        near = f"did you mean '{meant}'? " if meant in known else suggestion(value, known)
+        lacking = not_covered(value) if what == "joint kind" else ""
+        if lacking:
+            raise refuse(f"{shown(value)} is not a {what}: {lacking}; allowed: {', '.join(known)}")
         raise refuse(f"{shown(value)} is not a {what}; {near}allowed: {', '.join(known)}")
 
     return BeforeValidator(choose), WithJsonSchema({"enum": list(known)})

@@ -18,6 +18,7 @@ from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.law import Law
 from sevenbar.text.printing import Printed, brief, lines, text_of
 from sevenbar.text.words import language, say
 
@@ -33,6 +34,9 @@ PLACE_SLACK = 0.1
 
 #: Inputs over the used range at which the transmission angle is checked.
 RANGE_SAMPLES = 361
+
+#: Times that the samples about the least are taken closer, after which it is exact to 1e-9.
+CLOSER = 2
 
 #: Halvings between two of them, down to rounding.
 MOST_HALVINGS = 50
@@ -56,6 +60,7 @@ Fault = Literal[
     "cone",
     "box",
     "distance",
+    "length",
     "figure",
 ]
 
@@ -292,11 +297,13 @@ def _forwards(steps: Floats, around: int) -> Floats:
 def used_transmission(linkage: Linkage, circuit: Circuit, inputs: Floats, position: Floats) -> float | None:
     """The least transmission angle [rad] over the used part of a pass.
 
-    Of an RSSR given by its dimensions over the inputs from the first to the last; else that of the circuit.
-    The least sample within the range is followed to where the angle is least.
+    Of an RSSR given by its dimensions the least sample within the range is followed to where the angle is
+    least. Of another loop the circuit's own least counts where it is used, else the least on many rows.
     """
+    if circuit.transmission is None:
+        return None
     if linkage.form != "rssr" or circuit.input_column != 0:
-        return None if circuit.transmission is None else circuit.transmission.lowest
+        return _used_of_rows(linkage, circuit, inputs, position)
     ends = inputs[0] + np.array([0.0, _travel(circuit, inputs, position)])
     used = np.linspace(ends.min(), ends.max(), RANGE_SAMPLES)
     row = row_of(linkage.dimensions)[None]
@@ -309,6 +316,36 @@ def used_transmission(linkage: Linkage, circuit: Circuit, inputs: Floats, positi
         low, high = (middle, high) if falls else (low, middle)
     least = transmissions(row, np.array([used[place], low, high]))[0].min()
     return math.asin(math.sqrt(min(max(float(least), 0.0), 1.0)))
+
+
+def _used_of_rows(linkage: Linkage, circuit: Circuit, inputs: Floats, position: Floats) -> float | None:
+    """The least angle [rad] over the used part of a pass, on rows of it."""
+    extremes = circuit.transmission
+    assert extremes is not None
+    low, high = np.sort(inputs[0] + np.array([0.0, _travel(circuit, inputs, position)]))
+    whole = math.tau * max(circuit.turns, 1)
+    past = (extremes.lowest_at - low) % whole if circuit.goes_round else extremes.lowest_at - low
+    if 0 <= past <= high - low:
+        return extremes.lowest
+    column = linkage.columns[circuit.input_column], linkage.columns[circuit.output_column]
+    rows = np.arange(len(circuit.q))
+    first = int(rows[np.abs(rows - position[0]).argmin()])
+    least = math.inf
+    for _ in range(CLOSER):
+        used = np.linspace(low, high, RANGE_SAMPLES)
+        law = Law.of(np.arange(float(RANGE_SAMPLES)), used, 1.0, 0.0)
+        try:
+            found = linkage.circuit(circuit.q[first], input=column[0], output=column[1], law=law)
+        except RequestError:
+            return extremes.lowest
+        angle = found.transmission_angle
+        on = found.branch == circuit.branch[first]
+        if angle is None or int(on.sum()) != RANGE_SAMPLES or not np.isfinite(angle[on]).any():
+            return extremes.lowest
+        place = int(np.nanargmin(angle[on]))
+        least = min(least, float(angle[on][place]))
+        low, high = used[max(place - 1, 0)], used[min(place + 1, RANGE_SAMPLES - 1)]
+    return least
 
 
 def _travel(circuit: Circuit, inputs: Floats, position: Floats) -> float:

@@ -64,7 +64,10 @@ class Limits:
         """What is wrong with the transmission angle for linkages of a form; empty where nothing is."""
         if self.transmission_lowest == 0.0 or form == "rssr":
             return ""
-        return "its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out"
+        return (
+            "its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out, or write a "
+            "task for `sevenbar design task`, whose [limits] hold it for any loop that has the angle"
+        )
 
     @property
     def ratio(self) -> float:

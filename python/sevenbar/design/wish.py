@@ -164,18 +164,19 @@ def wish_of_function(
     samples = middle - half * np.cos(np.linspace(0.0, math.pi, FIT_SAMPLES))
     at = np.empty(0) if points is None else chebyshev(first, last, points)
     dials = Dials((low, high), (least, most), input_range, output_range)
-    hint = None if formula is None else _hint(formula, x)
+    hint = None if formula is None else degrees_hint(formula, (low, high))
     return Wish(title, samples, reading(samples), at, reading(at), reading, dials=dials, hint=hint)
 
 
-def _hint(formula: str, x: Floats) -> str | None:
-    """That an angle in degrees may have been taken for radians, where a sine goes round more than once."""
-    found = greatest_angle(formula, x)
+def degrees_hint(formula: str, x: tuple[float, float]) -> str | None:
+    """That x may be in degrees and counts in radians: a sine of the formula goes round more than once."""
+    low, high = x
+    found = greatest_angle(formula, np.linspace(low, high, DENSE_SAMPLES))
     if found is None or found[2] <= math.tau:
         return None
     name, argument, _ = found
     return (
-        f"{name} takes radians; x goes to {x[-1]:g}: write {name}d({argument}) or --x {x[0]:g}:{x[-1]:g}deg "
+        f"{name} takes radians; x goes to {high:g}: write {name}d({argument}) or x = {low:g}:{high:g}deg "
         "if these are degrees"
     )
 

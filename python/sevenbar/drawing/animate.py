@@ -34,7 +34,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
 from sevenbar.kinematics.circuits.poses import Walk, walk
 from sevenbar.kinematics.circuits.timed_walk import TimedWalk
-from sevenbar.kinematics.ranges.reach import reaches
+from sevenbar.kinematics.ranges.reach import used_reach
 from sevenbar.text.progress import Progress, silent
 from sevenbar.text.words import say
 
@@ -71,10 +71,10 @@ def animate(
 
     The film shows `frames` pictures at `fps` [1/s], or takes `seconds`; 120 pictures where neither is given.
     A rocking circuit goes forth and back; the last picture leads over to the first, save where a law drives:
-    then the law is run once. Stops of the linkage end the way: it goes from stop to stop and back, on the
-    first stretch where there are several. An HTML page plays by itself in any browser: it can be stopped, and
-    a spatial linkage turned with the mouse. `view`, `figsize`, `style` and `title` are those of
-    `plot.configuration`.
+    then the law is run once. Stops of the linkage end the way: it goes from stop to stop and back, where
+    there are several stretches on that of the drawn pose, else of the first row. An HTML page plays by itself
+    in any browser: it can be stopped, and a spatial linkage turned with the mouse. `view`, `figsize`, `style`
+    and `title` are those of `plot.configuration`.
     `progress(done, total)` is called after each picture.
 
     Raises `RequestError` for a circuit, count, rate or view that is not offered, `OutputError` for another
@@ -168,9 +168,9 @@ def _reported(pictures: Iterator[Picture], total: int, progress: Progress | None
 def _course(motion: Motion, circuit: Circuit, frames: int) -> tuple[Floats, Floats]:
     """Where on the walk each picture is (frames,), and its time [s]; between stops where there are some."""
     path = walk(circuit)
-    found = reaches(TimedWalk(motion, circuit)) if motion.law is None else ()
-    if found:
-        return next((one for one in found if one.holds(0.0)), found[0]).forth_and_back(frames)
+    found = used_reach(TimedWalk(motion, circuit)) if motion.law is None else None
+    if found is not None:
+        return found.forth_and_back(frames)
     rows = _rows(motion, path, frames)
     return rows, np.interp(rows, np.arange(len(path.time)), path.time)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,9 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
 from sevenbar.kinematics.circuits.poses import frames_of, walk
+from sevenbar.kinematics.circuits.timed_walk import TimedWalk
 from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.ranges.reach import Reach, drawn_row, used_reach
 from sevenbar.text.words import say
 
 #: Width [inch] of a picture, of one mode in a row of two, and in a row of more.
@@ -48,9 +51,10 @@ def configuration(
 ) -> Figure:
     """The linkage in several positions spread over a circuit: one strong, the others faint.
 
-    A planar loop is drawn in its plane, a spherical one on its sphere, any other in space. `circuit` is its
-    index in `motion.circuits`, `positions` how many poses (1 to 100; six for up to four joints, else three).
-    Lengths are in the linkage's unit, equal along all axes.
+    Of a linkage with stops they are spread from stop to stop, both among them, and the strong one is the
+    drawn pose where that is between them. A planar loop is drawn in its plane, a spherical one on its sphere,
+    any other in space. `circuit` is its index in `motion.circuits`, `positions` how many poses (1 to 100; six
+    for up to four joints, else three). Lengths are in the linkage's unit, equal along all axes.
 
     `ax`: axes of matplotlib to draw in, without title and legend; made with projection="3d" for a view in
     space. `view`: one of `VIEWS` ("plane", "space", "xy", "xz", "yz", "iso"), or elevation and azimuth [deg].
@@ -69,7 +73,13 @@ def configuration(
         positions = 6 if len(motion.linkage.joints) < 5 else 3
     positions = whole_number("positions", positions, 1, 100, "a count")
     frame = skeleton(motion, chosen)
-    poses = [frame.pose(row) for row in _spread(motion, chosen, frame, positions)]
+    way = TimedWalk(motion, chosen)
+    reach = used_reach(way) if motion.law is None else None
+    if reach is None:
+        poses = [frame.pose(row) for row in _spread(motion, chosen, frame, positions)]
+    else:
+        frame, rows = _from_stop_to_stop(frame, reach, drawn_row(way), positions)
+        poses = [frame.pose(row) for row in rows]
     ends = motion.input, motion.output
     with styled(style):
         if ax is not None:
@@ -109,6 +119,25 @@ def _spread(motion: Motion, circuit: Circuit, frame: Skeleton, positions: int) -
     # many a loop lies flat, or folded, at zero
     wanted = (np.arange(positions) + 0.35) / positions * travel[-1]
     return [int(solved[np.argmin(np.abs(travel - place))]) for place in wanted]
+
+
+def _from_stop_to_stop(
+    frame: Skeleton, reach: Reach, drawn: float | None, positions: int
+) -> tuple[Skeleton, list[int]]:
+    """The poses between two stops, and rows of it evenly spread: the drawn one first, else the first."""
+    home = reach.unrolled(drawn) if drawn is not None and reach.holds(drawn) else reach.low
+    home = reach.clamped(home)
+    inner = np.arange(math.floor(reach.low) + 1, math.ceil(reach.high))
+    rows = np.unique(np.concatenate([[reach.low, home, reach.high], inner]))
+    own = replace(frame, places=np.stack([frame.pose(reach.rolled(float(row))) for row in rows]))
+    steps = np.nan_to_num(np.linalg.norm(np.diff(own.places[:, : own.solid], axis=0), axis=2)).sum(axis=1)
+    travel = np.concatenate([[0.0], np.cumsum(steps)])
+    first = int(np.searchsorted(rows, home))
+    within = 0 < first < len(rows) - 1
+    count = positions - 1 if within else positions
+    wanted = np.linspace(0.0, travel[-1], count) if count > 1 else np.array([travel[-1]] * count)
+    others = [int(np.argmin(np.abs(travel - place))) for place in wanted]
+    return own, [first, *(row for row in others if row != first)][:positions]
 
 
 def modes_overview(

@@ -24,6 +24,8 @@ from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.errors import OutputError, RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.text.aside import aside_prefix, clear_left
+from sevenbar.text.paths import is_folder
 from sevenbar.text.words import say
 
 #: What a figure can be written as.
@@ -230,9 +232,10 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
 @contextmanager
 def written_whole(target: Path, *, keep: bool = True) -> Iterator[Path]:
     """A file beside `target` to write to; put in its place when all went well and `keep`, else removed."""
-    partial = target.parent / f".partial-{uuid.uuid4().hex}{target.suffix}"
+    clear_left(target.parent)
+    partial = target.parent / f"{aside_prefix()}{uuid.uuid4().hex}{target.suffix}"
     try:
-        if target.is_dir():
+        if is_folder(target):
             raise IsADirectoryError(0, "it is a folder")
         yield partial
         if keep:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from html import escape
 from importlib.resources import files
 from typing import Any
@@ -13,7 +14,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import column_label, shown_value
 from sevenbar.drawing.names import named_together
 from sevenbar.drawing.output_curves import QUANTITIES, output_label, passes
-from sevenbar.drawing.scene import SAME, link_colours, paths
+from sevenbar.drawing.scene import SAME, link_colours, paths, stays
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import GROUND, PATH, circuit_colour
 from sevenbar.drawing.view import Projection
@@ -24,6 +25,12 @@ from sevenbar.text.words import say, spoken
 
 #: Digits that places [share of the extent] and values keep.
 DIGITS = 5
+
+#: A place of the page where text is put.
+PLACE = re.compile("@(LANGUAGE|PAUSE|TITLE|HEADING|FILM)@")
+
+#: Letters that HTML reads as more than text; within JSON, which is ASCII, they stand in strings alone.
+OF_MARKUP = "<>&"
 
 
 def film_page(
@@ -38,7 +45,7 @@ def film_page(
     title: str,
 ) -> str:
     """The HTML of a film: a picture at each of `rows` (n,) of the walk with its time [s], at `fps` [1/s]."""
-    found = json.dumps(
+    found = _script_value(
         {
             "fps": fps,
             "linkage": _linkage(motion, frame, view, rows),
@@ -49,21 +56,25 @@ def film_page(
                 "pause": say("Pause"),
                 "cut": say("{quantity}, cut at dead centres"),
             },
-        },
-        allow_nan=False,
-        separators=(",", ":"),
+        }
     )
     heading = escape(title or motion.linkage.heading).replace("\n", "<br>")
     page = files("sevenbar.drawing").joinpath("film.html").read_text(encoding="utf-8")
-    # a closing tag within a name would end the script
-    found = found.replace("</", "<\\/")
-    return (
-        page.replace("@LANGUAGE@", spoken())
-        .replace("@PAUSE@", say("Pause"))
-        .replace("@TITLE@", escape(motion.linkage.heading))
-        .replace("@HEADING@", heading)
-        .replace("@FILM@", found)
-    )
+    put = {
+        "LANGUAGE": spoken(),
+        "PAUSE": say("Pause"),
+        "TITLE": escape(motion.linkage.heading),
+        "HEADING": heading,
+        "FILM": found,
+    }
+    # in one pass: what is put in is never read for places again, whatever a name holds
+    return PLACE.sub(lambda place: put[place[1]], page)
+
+
+def _script_value(value: Any) -> str:
+    """A value as JSON that neither ends a script nor opens another within it."""
+    text = json.dumps(value, allow_nan=False, separators=(",", ":"))
+    return text.translate({ord(letter): f"\\u{ord(letter):04x}" for letter in OF_MARKUP})
 
 
 def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) -> dict[str, Any]:
@@ -100,7 +111,7 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
             for places, colour in zip(frame.links, [*links, GROUND], strict=True)
         ],
         "marks": marks,
-        "stays": [list(stay) for stay in frame.stays if stay[1] not in frame.far],
+        "stays": [{"at": list(stay), "colour": colour} for stay, colour in stays(frame, ends)],
         "points": points,
         "names": [{"at": place, "text": ", ".join(names)} for place, names in named.items()],
         "paths": traces,

@@ -21,6 +21,7 @@ from sevenbar.drawing.force_panels import (
     curve,
     digits,
     first_dot,
+    force_unit,
     greatest_of,
     hodograph,
     input_axis,
@@ -177,12 +178,15 @@ def bearings(
         )
     with styled(style):
         page = joint_panels(len(chosen), ax, figsize, style, square=True)
+        unit, size = force_unit(*(reaction.force[:, :2] for reaction in chosen))
         for axes, reaction in zip(page.axes, chosen, strict=True):
-            hodograph(axes, forces, reaction.force[:, :2], WHOLE)
+            hodograph(axes, forces, reaction.force[:, :2] / size, WHOLE)
             axes.set_title(shown_name(reaction.joint, 28))
-            axes.set_xlabel("Fx [N]")
-            axes.set_ylabel("Fy [N]")
-        heading = title_of_forces(forces, say("forces square to the joints' axes"))
+            axes.set_xlabel(f"Fx [{unit}]")
+            axes.set_ylabel(f"Fy [{unit}]")
+        heading = title_of_forces(
+            forces, say("forces square to the joints' axes, x and y of the link before each joint")
+        )
         page.finish(title, heading, [first_dot(forces, WHOLE)] if legend else [])
     return page.figure
 
@@ -274,11 +278,12 @@ KINDS: dict[str, Callable[..., Figure]] = {
 def figure_of_kind(forces: Forces, kind: str, options: dict[str, Any]) -> Figure:
     """The figure of a kind; raises `RequestError` for another."""
     check_word("kind", kind, KINDS, "a figure of forces")
-    return KINDS[kind](forces, **options)
+    return KINDS[kind](forces.within_stops or forces, **options)
 
 
 def small(forces: Forces) -> Figure | None:
     """A small picture of the torque, for notebooks."""
+    forces = forces.within_stops or forces
     if not np.isfinite(forces.torque).any():
         return None
     with styled():
@@ -293,6 +298,9 @@ def small(forces: Forces) -> Figure | None:
 
 def sizing_of(forces: Forces) -> Sizing | None:
     """The sizing of rows that have one: not of several passes one after the other."""
+    own = forces.within_stops
+    if own is not forces:
+        return None if own is None else own.sizing()
     if forces.period is None and len(np.unique(forces.branch)) > 1:
         return None
     return forces.sizing()

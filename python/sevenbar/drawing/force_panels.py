@@ -36,6 +36,9 @@ MOST_JOINTS = 9
 #: Between a peak and its label [points].
 GAP = 4.0
 
+#: From this force [N] on figures have kN.
+MANY_NEWTONS = 1e4
+
 #: Room round a hodograph, as a share of its reach.
 ROOM = 0.12
 
@@ -190,7 +193,13 @@ def hodograph(axes: Axes, forces: Forces, pair: Floats, colour: str, *, reach: f
     axes.set_ylim(-far, far)
     axes.set_aspect("equal", adjustable="box")
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+        axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+
+
+def force_unit(*forces: Floats) -> tuple[str, float]:
+    """The unit in which forces are drawn, and its size [N]: kN from 10 kN on."""
+    most = max((float(np.abs(force[np.isfinite(force)]).max(initial=0.0)) for force in forces), default=0.0)
+    return ("kN", 1e3) if most >= MANY_NEWTONS else ("N", 1.0)
 
 
 def first_dot(forces: Forces, colour: str) -> Line2D:

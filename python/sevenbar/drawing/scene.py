@@ -217,6 +217,16 @@ def link_colours(linkage: Loop, ends: tuple[str, str]) -> tuple[list[str], list[
     return links, joints
 
 
+def stays(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[tuple[int, int, int], str]]:
+    """The places that tie each named point to its link, and that link's colour."""
+    colours = link_colours(frame.linkage, ends)[0] + [str(paler(GROUND, 0.35))]
+    return [
+        (stay, colours[link])
+        for stay, link in zip(frame.stays, frame.owners, strict=True)
+        if stay[1] not in frame.far
+    ]
+
+
 def bars(
     space: ViewAxes, frame: Skeleton, ends: tuple[str, str], *, ghost: bool = False, scale: float = 1.0
 ) -> Bars:
@@ -234,9 +244,8 @@ def bars(
         made.append((space.line(nowhere, **look | style), places))
 
     if not ghost:
-        for stay in frame.stays:
-            if stay[1] not in frame.far:
-                add(stay, color=COUPLER, lw=width / 3)
+        for stay, colour in stays(frame, ends):
+            add(stay, color=colour, lw=width / 3)
     for places, colour in zip(frame.links[:-1], colours, strict=True):
         ink = stroke() * (width + 1.4 * scale)
         outline = [] if ghost else [withStroke(linewidth=ink, foreground="#202020"), Normal()]

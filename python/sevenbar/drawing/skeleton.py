@@ -46,9 +46,10 @@ class Skeleton:
 
     `places` (n, k, 3), `names` of each; `links` holds the places along each link, the ground's last; `marks`
     what is drawn of each joint: its number, a word and the places it joins. `joints` are the places of the
-    joints, `points` those of the named points, `stays` the places that tie each point to its link. `extent`
-    [length] is what the sizes of the marks are shares of. `reach` is how far joints slide, least and most, by
-    the joint's number: across its axis (2,), or along it (1,). `sphere` is that of a spherical loop.
+    joints, `points` those of the named points, `stays` the places that tie each point to its link, `owners`
+    that link's place among `links`. `extent` [length] is what the sizes of the marks are shares of. `reach`
+    is how far joints slide, least and most, by the joint's number: across its axis (2,), or along it (1,).
+    `sphere` is that of a spherical loop.
     """
 
     linkage: Loop
@@ -59,6 +60,7 @@ class Skeleton:
     joints: tuple[int, ...]
     points: tuple[int, ...]
     stays: tuple[tuple[int, int, int], ...]
+    owners: tuple[int, ...]
     extent: float
     reach: Mapping[int, tuple[Floats, Floats]]
     sphere: DrawnSphere | None = None
@@ -239,6 +241,7 @@ def skeleton_of(
             (links[point.link - 1][0], place, links[point.link - 1][-1])
             for place, point in zip(own, points, strict=True)
         ),
+        owners=tuple(point.link - 1 for point in points),
         extent=span,
         reach=reach,
         sphere=sphere,

@@ -57,10 +57,12 @@ class Bodies(_FileKind):
 
     #: Whose masses it holds where the linkage has none.
     masses: str = ""
+    #: How its input may be driven, the usual way first.
+    drives: tuple[str, ...] = ()
 
-    def write(self, assembly: Assembly, path: Path, progress: Progress) -> None:
+    def write(self, assembly: Assembly, path: Path, progress: Progress, drive: str | None) -> None:
         """Writes the parts of an assembly."""
-        self._call(assembly, path, progress)
+        self._call(assembly, path, progress, *((drive or self.drives[0],) if self.drives else ()))
 
 
 Format = Table | Bodies
@@ -80,7 +82,12 @@ FORMATS: dict[str, Format] = {
     "stl": Bodies((".stl",), "meshes.write_stl"),
     "step": Bodies((".step", ".stp"), "cad.write_step"),
     "urdf": Bodies((".urdf",), "urdf.write_urdf", OF_STEEL),
-    "mjcf": Bodies((".xml", ".mjcf"), "model.write_mjcf", "1 kg for every body"),
+    "mjcf": Bodies(
+        (".xml", ".mjcf"),
+        "model.write_mjcf",
+        "1 kg for every body",
+        ("velocity", "position", "motor", "flywheel"),
+    ),
     "cmd": Bodies((".cmd",), "adams.write_cmd", OF_STEEL),
 }
 
@@ -127,6 +134,7 @@ def export(
     branch: int | None = None,
     samples: int = 360,
     units: Units | None = None,
+    drive: str | None = None,
     force: bool = False,
     progress: Progress = silent,
 ) -> list[Path]:
@@ -135,8 +143,9 @@ def export(
     `to` is a word of `FORMATS` or of `ALIASES`; `None` takes it from the path's ending. Tables hold every
     circuit; `units` "file" (the default) keeps the linkage's length unit, "si" takes metres and radians. The
     others hold one pose: of `circuit` (0), at the input `at` [rad, or length], on its pass `branch` (0).
-    `stl` with a path without an ending is a folder with one file for each part. `samples` are inputs in a
-    turn, for a linkage.
+    `mjcf` drives the input by an actuator for its "velocity", "position" or torque ("motor"), or by none and
+    a "flywheel". `stl` with a path without an ending is a folder with one file for each part. `samples` are
+    inputs in a turn, for a linkage.
 
     `progress(done, total, what)` is called along long work. Files appear whole or not at all, and take the
     place of others only with `force`. Raises `RequestError`
@@ -152,7 +161,7 @@ def export(
     target = Path(path)
     word = format_of(target, to)
     form = FORMATS[word]
-    _check_choices(word, form, circuit, at, branch, units)
+    _check_choices(word, form, circuit, at, branch, units, drive)
     into_folder = word == "stl" and not target.suffix
     check_targets([] if into_folder else _files(word, target), force=force)
     motion = source.motion(samples) if isinstance(source, Linkage) else source
@@ -173,7 +182,7 @@ def export(
         check_targets([target / f"{part.name}.stl" for part in assembly.parts], force=force)
         return fill_folder(target, lambda aside: write_stl_parts(assembly, aside, progress), force=force)
     return fill_folder(
-        target.parent, lambda aside: form.write(assembly, aside / target.name, progress), force=force
+        target.parent, lambda aside: form.write(assembly, aside / target.name, progress, drive), force=force
     )
 
 
@@ -214,8 +223,19 @@ def _word(to: str) -> str:
 
 
 def _check_choices(
-    word: str, form: Format, circuit: int | None, at: float | None, branch: int | None, units: str | None
+    word: str,
+    form: Format,
+    circuit: int | None,
+    at: float | None,
+    branch: int | None,
+    units: str | None,
+    drive: str | None,
 ) -> None:
+    drives = form.drives if isinstance(form, Bodies) else ()
+    if drive is not None:
+        if not drives:
+            raise RequestError(f"drive: {word} has no actuator; leave it out, or give mjcf")
+        check_word("drive", drive, drives)
     if units is not None:
         check_word("units", units, ("file", "si"))
     if isinstance(form, Table):

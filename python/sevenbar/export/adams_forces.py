@@ -47,10 +47,11 @@ def _add_load(file: CommandFile, name: str, load: Load, drive: str) -> None:
 
 def _share(file: CommandFile, load: Load, drive: str) -> str:
     """How much of a load acts, as a factor before it."""
-    if load.between is None:
+    turns = file.linkage.turns(file.pose.circuit.input_column)
+    if load.between is None or load.acts_always(turns=turns):
         return ""
     first, second = load.between
-    if not file.linkage.turns(file.pose.circuit.input_column):
+    if not turns:
         low, high = number(file.scale * first), number(file.scale * second)
         return f"IF({drive} - {low}: 0, 1, 1)*IF({drive} - {high}: 1, 1, 0)*"
     width = (second - first) % math.tau

@@ -10,13 +10,15 @@ import numpy as np
 from sevenbar.errors import RequestError
 from sevenbar.export.parts import Assembly
 from sevenbar.kinematics.loop.law import Law
-from sevenbar.simulation.mjcf import mjcf
+from sevenbar.simulation.mjcf import Drive, mjcf
 from sevenbar.simulation.prototype import prototype
 from sevenbar.text.progress import Progress, silent
 
 
-def write_mjcf(assembly: Assembly, path: Path, _progress: Progress = silent) -> None:
-    """The bodies as rods with masses, started in the pose with the velocities of its motion.
+def write_mjcf(
+    assembly: Assembly, path: Path, _progress: Progress = silent, drive: Drive = "velocity"
+) -> None:
+    """The bodies as rods with masses, in the pose, with the velocities of its motion, driven by an actuator.
 
     Raises `RequestError` at a dead centre of the input, where velocities have no bound.
     """
@@ -32,4 +34,8 @@ def write_mjcf(assembly: Assembly, path: Path, _progress: Progress = silent) -> 
             "at: the pose is a dead centre of the input, where joints move at no bounded speed; give another"
         )
     apart = np.abs(np.exp(1j * circuit.q[usable]) - np.exp(1j * pose.q)).max(axis=1)
-    path.write_text(mjcf(prototype(linkage, circuit, int(usable[apart.argmin()]), speed)), encoding="utf-8")
+    model = prototype(linkage, circuit, int(usable[apart.argmin()]), speed)
+    if model.drive.turns and not model.connections[model.drive.connection].advance:
+        # counted in the turn of the given input: a position is given in it
+        model.values[model.drive.connection, model.drive.freedom] = pose.input
+    path.write_text(mjcf(model, drive=drive), encoding="utf-8")

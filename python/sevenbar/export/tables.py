@@ -6,7 +6,9 @@ has them, `q (rows, columns)` with its derivatives, beside a note of units and n
 
 from __future__ import annotations
 
+import itertools
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -18,6 +20,9 @@ from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting.folder import write_parts
 from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS
+
+#: Letters of the longest name of a field that MATLAB reads.
+LONGEST_FIELD = 63
 
 #: "file": lengths in the linkage's own unit, and angles of flat tables in degrees; "si": metres and radians.
 Units = Literal["file", "si"]
@@ -66,7 +71,10 @@ def write_npz(motion: Motion, path: Path, units: Units, _progress: Progress = si
 
 
 def write_mat(motion: Motion, path: Path, units: Units, _progress: Progress = silent) -> None:
-    """Writes a MATLAB 5 file: `note` (JSON text), `columns` (cells), `circuits` (an array of structures)."""
+    """Writes a MATLAB 5 file: `note` (JSON text), `columns` (cells), `circuits` (an array of structures).
+
+    A field whose name MATLAB does not take has a shorter one; `fields` of the note says which.
+    """
     with of_extra("export", "mat needs scipy"):
         from scipy.io import savemat
     records: list[dict[str, Any]] = []
@@ -76,14 +84,34 @@ def write_mat(motion: Motion, path: Path, units: Units, _progress: Progress = si
             # MATLAB's own way: time runs down
             down = values if values.ndim > 1 else values[:, None]
             records[-1][name] = _cells(values) if values.dtype.kind == "U" else down
-    circuits = np.empty(len(records), dtype=[(name, object) for name in records[0]])
+    short = _field_names(list(records[0]))
+    circuits = np.empty(len(records), dtype=[(short.get(name, name), object) for name in records[0]])
     circuits[:] = [tuple(record.values()) for record in records]
     content = {
-        "note": json.dumps(note(motion, units)),
+        "note": json.dumps(note(motion, units) | ({"fields": short} if short else {})),
         "columns": _cells(np.array(motion.linkage.columns)),
         "circuits": circuits,
     }
-    savemat(str(path), content, appendmat=False, do_compression=True)
+    savemat(str(path), content, appendmat=False, do_compression=True, long_field_names=True)
+
+
+def _field_names(names: Sequence[str]) -> dict[str, str]:
+    """Names that MATLAB takes for no field, each with one of its own that it takes."""
+    used = {name for name in names if name.isascii() and len(name) <= LONGEST_FIELD}
+    made: dict[str, str] = {}
+    for name in names:
+        if name in used:
+            continue
+        plain = "".join(letter if letter.isascii() else "_" for letter in name)
+        # the quantity at its end says what it is
+        head, _, quantity = plain.rpartition("_")
+        for count in itertools.count():
+            end = f"{f'_{count}' if count else ''}_{quantity}"
+            made[name] = head[: LONGEST_FIELD - len(end)] + end
+            if made[name] not in used:
+                used.add(made[name])
+                break
+    return made
 
 
 def write_json(motion: Motion, path: Path, units: Units, _progress: Progress = silent) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -47,7 +48,10 @@ def write_xlsx(motion: Motion, path: Path, units: Units, _progress: Progress = s
     head, rows = points_table(motion.linkage)
     if rows:
         _add_sheet(book, "points", head, rows)
-    book.save(path)
+    # a full disk would leave openpyxl's archive open, which says so in words of its own when it goes
+    content = BytesIO()
+    book.save(content)
+    path.write_bytes(content.getvalue())
 
 
 def _add_sheet(

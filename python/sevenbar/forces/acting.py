@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array, finite_number, triple
+from sevenbar.curves.turn import is_a_turn, is_beyond_a_turn
 from sevenbar.errors import RequestError, check_word, shown
+from sevenbar.text.given import given_number
+from sevenbar.text.units import LENGTHS, split_quantity
+
+if TYPE_CHECKING:
+    from sevenbar.text.quantities import QuantityKind
 
 Three = tuple[float, float, float]
 
@@ -22,8 +28,9 @@ class Load:
     `force` (3,) [N] acts at the point `at` [length], written as a point of its link is, and `torque` (3,)
     [N m]; both along the axes of the report frame, or with `axes` "link" along those in which the link's
     points are written. It acts all the time, or where the input [rad, or length] lies `between` two values
-    (from the first up to the second, angles by whole turns), or as large as `table` says: inputs (k,) and the
-    factors (k,) there, straight lines between them, 0 outside; of a turning input by whole turns.
+    (from the first up to the second, angles by whole turns, a turn at most), or as large as `table` says:
+    inputs (k,) and the factors (k,) there, straight lines between them, 0 outside; of a turning input by
+    whole turns. Forces and torques may be texts, as in "2 kN", and angles of the input, as in "30 deg".
     """
 
     link: int
@@ -36,8 +43,8 @@ class Load:
     name: str = ""
 
     def __post_init__(self) -> None:
-        for key in ("force", "torque"):
-            object.__setattr__(self, key, triple(key, getattr(self, key)))
+        for key, kind in _KINDS.items():
+            object.__setattr__(self, key, triple(key, _in_newtons(key, getattr(self, key), kind)))
         check_word("axes", self.axes, ("ground", "link"))
         if any(self.force) and self.at is None:
             raise RequestError("at: is missing; give the point at which the force acts")
@@ -47,30 +54,112 @@ class Load:
         if self.between is not None and self.table is not None:
             raise RequestError("table: a load has one of between and table")
         if self.between is not None:
-            ends = finite_array("between", self.between)
+            ends = finite_array("between", _inputs("between", self.between))
             if ends.size != 2 or ends[0] == ends[1]:
                 raise RequestError("between: give two different values of the input")
             object.__setattr__(self, "between", (float(ends[0]), float(ends[1])))
         if self.table is not None:
-            inputs, factors = (finite_array("table", part) for part in self.table)
+            if len(self.table) != 2:
+                raise RequestError("table: give two lists, the inputs and the factors there")
+            inputs = finite_array("table", _inputs("table", self.table[0]))
+            factors = finite_array("table", self.table[1])
             if inputs.size != factors.size or inputs.size < 2 or np.any(np.diff(inputs) <= 0):
                 raise RequestError("table: give as many factors as inputs, two or more, inputs rising")
             object.__setattr__(self, "table", (tuple(inputs.tolist()), tuple(factors.tolist())))
 
+    def check_input(self, *, turns: bool) -> None:
+        """Refuses a range or a table that is none of the input; `turns`: the input is an angle."""
+        if self.between is not None:
+            low, high = self.between
+            if not turns and low > high:
+                raise RequestError(
+                    f"between: {low:.6g} is above {high:.6g}, and the input slides; give [low, high]"
+                )
+            if turns and is_beyond_a_turn(low, high):
+                raise RequestError(
+                    f"between: {_degrees(high - low)} is more than a turn; give a turn at most, after "
+                    "which the load acts again"
+                )
+            if turns and low > high and (is_a_turn(high, low) or is_beyond_a_turn(high, low)):
+                raise RequestError(
+                    f"between: {_degrees(low)} is a turn or more above {_degrees(high)}; give ends within a "
+                    "turn, as in [0, 360] for a whole one"
+                )
+        if self.table is not None and turns and is_beyond_a_turn(self.table[0][0], self.table[0][-1]):
+            over = _degrees(self.table[0][-1] - self.table[0][0])
+            raise RequestError(
+                f"table: its inputs go over {over}, more than a turn; give those of a turn at most, after "
+                "which it acts again"
+            )
+
+    def acts_always(self, *, turns: bool) -> bool:
+        """Whether it acts as it is at every input: without a range, or with one of a whole turn."""
+        if self.between is not None:
+            return turns and is_a_turn(*self.between)
+        return self.table is None
+
+    def corners(self, *, turns: bool) -> tuple[float, ...]:
+        """Inputs [rad, or length] at which it sets in, ends, or its table has a corner."""
+        if self.between is None:
+            return () if self.table is None else self.table[0]
+        return () if self.acts_always(turns=turns) else self.between
+
     def factors(self, inputs: npt.ArrayLike, *, turns: bool) -> Floats:
         """How much of it acts at inputs (n,) [rad, or length]; `turns`: the input is an angle."""
         x = np.asarray(inputs, dtype=np.float64)
+        if self.acts_always(turns=turns):
+            return np.ones_like(x)
         if self.between is not None:
             first, second = self.between
             if turns:
                 return np.asarray((x - first) % math.tau <= (second - first) % math.tau, dtype=np.float64)
             return np.asarray((x >= first) & (x <= second), dtype=np.float64)
-        if self.table is not None:
-            at, factors = (np.array(part) for part in self.table)
-            if turns:
-                x = at[0] + (x - at[0]) % math.tau
-            return np.asarray(np.interp(x, at, factors, left=0.0, right=0.0))
-        return np.ones_like(x)
+        assert self.table is not None
+        at, factors = (np.array(part) for part in self.table)
+        if turns:
+            x = at[0] + (x - at[0]) % math.tau
+            if is_a_turn(at[0], at[-1]):
+                # of rounding no input is outside
+                at[-1] = max(at[-1], at[0] + math.tau)
+        return np.asarray(np.interp(x, at, factors, left=0.0, right=0.0))
+
+
+#: What the numbers of a load are in newton.
+_KINDS: dict[str, QuantityKind] = {"force": "force", "torque": "torque"}
+
+
+def _in_newtons(key: str, values: Any, kind: QuantityKind) -> Any:
+    """Three numbers [N, or N m] of which some may be texts with a unit."""
+    if not isinstance(values, (list, tuple)) or not any(isinstance(value, str) for value in values):
+        return values
+    # `import sevenbar` needs no reader of units
+    from sevenbar.text.quantities import quantity_of
+
+    try:
+        return [quantity_of(value, kind) if isinstance(value, str) else value for value in values]
+    except RequestError as error:
+        raise RequestError(f"{key}: {error}") from None
+
+
+def _inputs(key: str, values: Any) -> Any:
+    """Values of the input of which some may be texts of angles."""
+    if not isinstance(values, (list, tuple)):
+        return values
+    # a load does not know the length unit of its linkage
+    if any(isinstance(value, str) and _is_length(value) for value in values):
+        raise RequestError(
+            f"{key}: {shown(list(values))}: give numbers in the linkage's length unit where the input slides"
+        )
+    return [given_number(key, value, "rad") for value in values]
+
+
+def _is_length(text: str) -> bool:
+    parts = split_quantity(text)
+    return parts is not None and parts[1] in LENGTHS
+
+
+def _degrees(angle: float) -> str:
+    return f"{math.degrees(angle):.6g} deg"
 
 
 @dataclass(frozen=True)

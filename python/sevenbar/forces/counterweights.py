@@ -116,7 +116,7 @@ def counterweights(
         raise RequestError("measure: the greatest shaking is found within bounds; give most_mass and radius")
     if most_mass is not None and radius is None:
         raise RequestError("radius: is missing; give the farthest that a counterweight may be from its pivot")
-    weights = np.array([moment] * 3 + [force] * 3)
+    weights = np.array([float(moment)] * 3 + [float(force)] * 3)
     kept = weights > 0
     weights = weights[kept]
     part = np.full(len(shaking), 1 / len(shaking)) if shares is None else shares

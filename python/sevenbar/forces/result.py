@@ -5,18 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Booleans, Floats, Integers, Words
-from sevenbar.curves.cycle_series import CycleSeries
-from sevenbar.errors import RequestError, ends_here
+from sevenbar.arrays import Booleans, Floats, Integers, ReadOnly, Words
+from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
+from sevenbar.forces.closing import Closing, closing
+from sevenbar.forces.heard import ROUNDING
 from sevenbar.forces.loading import Loading
-from sevenbar.forces.sizing import Sizing, sizing
+from sevenbar.forces.sizing import WITHHELD, Sizing, sizing
 from sevenbar.text.printing import Drawable, Printed
+from sevenbar.text.units import LENGTHS
 
 #: Which rows are meant: a mask, their numbers or a slice.
 Rows = Booleans | npt.NDArray[np.integer[Any]] | slice
@@ -24,12 +27,22 @@ Rows = Booleans | npt.NDArray[np.integer[Any]] | slice
 #: The components of a reaction, in the frame of its joint, whose z is the joint's axis.
 COMPONENTS = ("Mx", "My", "Mz", "Fx", "Fy", "Fz")
 
+#: An input nearer to an end of a part than this share of it is the end.
+AT_END = 1e-9
+
+#: The moment of an idle spin below this part of the greatest moment in a joint is rounding.
+NO_MOMENT = 1e-9
+
 #: A component is open if a wrench that nothing determines has more than this part of its length in it.
 OPEN = 1e-8
 
 
+#: A torque below this part of what acts has lost so many digits that power need not close.
+LITTLE = 1e-9
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Reaction(Printed):
+class Reaction(ReadOnly, Printed):
     """What the link before a joint puts on the link after it, row by row; the last joint's is the ground.
 
     `joint` and `kind` are its name and kind (R, S ..). `force` (n, 3) [N] and `moment` (n, 3) [N m] about
@@ -49,16 +62,29 @@ class Reaction(Printed):
     determinate: Booleans
     known: Floats
     known_values: Floats
+    #: By which moments are divided in `known` [m].
+    size: float = 1.0
 
     @property
     def force_in_report(self) -> Floats:
-        """The force (n, 3) [N] in the report frame; NaN unless all three components are determinate."""
-        return np.asarray(np.einsum("nij,nj->ni", self.axes, self.force))
+        """The force (n, 3) [N] in the report frame; NaN in components that equilibrium leaves open."""
+        return self._in_report(slice(3, 6))
 
     @property
     def moment_in_report(self) -> Floats:
-        """The moment (n, 3) [N m] in the report frame; NaN unless all three components are determinate."""
-        return np.asarray(np.einsum("nij,nj->ni", self.axes, self.moment))
+        """The moment (n, 3) [N m] in the report frame; NaN in components that equilibrium leaves open."""
+        return self.size * self._in_report(slice(0, 3))
+
+    def _in_report(self, part: slice) -> Floats:
+        """Moment or force along the axes of the report frame, moments by the size [N]."""
+        # each axis as a combination of the six components: what the known ones do not reach is open
+        ways = np.zeros((len(self.axes), 3, 6))
+        ways[:, :, part] = self.axes
+        shares = ways @ np.swapaxes(self.known, 1, 2)
+        left = np.linalg.norm(ways - shares @ self.known, axis=2)
+        values = np.einsum("nik,nk->ni", shares, self.known_values)
+        rest = np.where(np.isfinite(left), left, 0.0).max(axis=0, initial=0.0)
+        return np.asarray(np.where(rest < OPEN, values, np.nan))
 
     def on(self, rows: Rows) -> Reaction:
         """The same on some rows: a mask, numbers of rows or a slice."""
@@ -66,8 +92,26 @@ class Reaction(Printed):
         return replace(self, **{name: getattr(self, name)[rows] for name in arrays})
 
 
+@dataclass(frozen=True)
+class Part:
+    """A part of a circuit between stops: from an input to an input [rad, or length], and what ends it."""
+
+    start: float
+    end: float
+    first_stop: str
+    last_stop: str
+
+    def moves(self, input: float, driver: str) -> bool:
+        """Whether an input is an end of it at which another stop than the range of the driver is met."""
+        near = AT_END * abs(self.end - self.start)
+        return any(
+            abs(input - end) <= near and stop not in ("", f"range of {driver}")
+            for end, stop in ((self.start, self.first_stop), (self.end, self.last_stop))
+        )
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Forces(Drawable):
+class Forces(ReadOnly, Drawable):
     """What the input has to give, and what the joints bear, on the n rows of a circuit.
 
     `input` [rad, or length], `time` [s], `speed` [rad/s, or length/s], `status` and `branch` are those of the
@@ -107,12 +151,59 @@ class Forces(Drawable):
     #: The joint that drives, and the linkage.
     driver: str
     heading: str
+    #: How large what acts is [N m, of an input that slides N]: below 1e-12 of it a torque is rounding, and 0.
+    pull: float = 0.0
     #: Whether the linkage is held still on every row: statics, without inertia and damping.
     at_rest: bool = False
     #: Whether the circuit passes change points, where torque and reactions have no values of their own.
     through_change_points: bool = False
     #: The same at any inputs (m,) of the cycle, where it is periodic.
     between: Callable[[Floats], Forces] | None = field(default=None, repr=False)
+    #: The part between stops that the rows are: from stop to stop, both ends among them.
+    part: Part | None = None
+    #: The same on the parts between stops, and the number of that on which the linkage is used; where it has
+    #: stops and they end the circuit.
+    _parts: Callable[[], tuple[tuple[Forces, ...], int] | None] | None = field(default=None, repr=False)
+
+    @cached_property
+    def _found_parts(self) -> tuple[tuple[Forces, ...], int] | None:
+        return None if self._parts is None else self._parts()
+
+    @property
+    def parts(self) -> tuple[Forces, ...]:
+        """The forces on each part of the circuit between its stops, on these passes: rows from stop to stop.
+
+        These forces alone where no stop ends the circuit; none where it has no pose within them.
+        """
+        if self._found_parts is None:
+            return (self,)
+        passes = np.unique(self.branch)
+        return tuple(one for one in self._found_parts[0] if np.isin(one.branch, passes).all())
+
+    @property
+    def within_stops(self) -> Forces | None:
+        """The forces on the part between stops on which the linkage is used; `None` where there is none.
+
+        That of the drawn pose, else of the first row, else the first. Of rows that no stop ends these forces.
+        """
+        if self._found_parts is None:
+            return self
+        every, used = self._found_parts
+        parts = self.parts
+        if every and any(one is every[used] for one in parts):
+            return every[used]
+        return parts[0] if parts else None
+
+    @property
+    def idle_spin(self) -> dict[str, float]:
+        """The greatest moment [N m] that the rule of each idle spin needs, by its link; 0 for rounding.
+
+        Of a link whose body is a rod, or which has none, the spin moves nothing.
+        """
+        moments = [_greatest(reaction.moment) for reaction in self.reactions.values()]
+        rounding = NO_MOMENT * max([*moments, 0.0])
+        found = {link: _greatest(moment) for link, moment in self.spin.items()}
+        return {link: most if most > rounding else 0.0 for link, most in found.items()}
 
     @property
     def unit(self) -> str:
@@ -120,9 +211,34 @@ class Forces(Drawable):
         return "N" if self.slides else "N m"
 
     @property
+    def metre(self) -> float:
+        """What a unit of the input's way is in metres where it slides, else 1."""
+        return LENGTHS[self.length_unit] if self.slides else 1.0
+
+    @property
     def period(self) -> float | None:
         """The way of the input [rad] round a periodic cycle, negative where it falls from row to row."""
         return float(self.input[1] - self.input[0]) * len(self.input) if self.periodic else None
+
+    @property
+    def _way(self) -> float | None:
+        """The way of the input [rad, or length] along a periodic cycle, or from stop to stop."""
+        if self.part is None or self.between is None:
+            return self.period
+        return self.part.end - self.part.start
+
+    @property
+    def _breaks(self) -> tuple[float, ...]:
+        """Inputs [rad, or length] between which all is smooth: of a part its beginning is one."""
+        if self.part is None:
+            turns = 0 if self.period is None else round(abs(self.period) / math.tau)
+            return self.loading.breaks(turns=turns)
+        low, high = sorted((self.part.start, self.part.end))
+        corners = self.loading.breaks(turns=1)
+        if not self.slides:
+            laps = range(math.ceil((high - low) / math.tau) + 1)
+            corners = tuple(low + (x - low) % math.tau + math.tau * k for x in corners for k in laps)
+        return (self.part.start, *(x for x in corners if low < x < high))
 
     @property
     def even_speed(self) -> float:
@@ -134,11 +250,23 @@ class Forces(Drawable):
     def on(self, rows: Rows) -> Forces:
         """The same on some rows, as `forces.on(forces.branch == 1)`: a mask, numbers of rows or a slice."""
         arrays = ("input", "time", "speed", "status", "branch", "torque", "power", "kinetic", "potential")
+        try:
+            ways = np.ndim(self.input[rows])
+        except (IndexError, ValueError, TypeError):
+            ways = 0
+        if ways != 1:
+            raise RequestError(
+                f"rows: {shown(rows)} chooses no rows; give a mask, numbers of rows or a slice"
+            )
         chosen: dict[str, Any] = {
             name: getattr(self, name)[rows] for name in (*arrays, "supplied", "shaking")
         }
         if len(chosen["input"]) != len(self.input):
             chosen["periodic"] = False
+            passes = np.isin(self.branch, chosen["branch"])
+            if len(chosen["input"]) != passes.sum():
+                # rows that were chosen, not passes with their stops
+                chosen |= {"_parts": None, "part": None}
         return replace(
             self,
             reactions={name: reaction.on(rows) for name, reaction in self.reactions.items()},
@@ -153,7 +281,9 @@ class Forces(Drawable):
         With an `unevenness`, (highest less lowest speed) / mean speed, also the flywheel for it. `None` for
         rows without a torque, as of a circuit that rocks at constant speed: there it has no bound. Of a
         circuit that passes change points the series through its rows goes across these; forces in joints
-        that grow without bound there are NaN. Of loads that set in or end on such a circuit `None`, too.
+        that grow without bound there are NaN. Of loads that set in or end on such a circuit `None`, too, and
+        where more than a thousandth of the greatest value may be missed between the rows, or power does not
+        close along the cycle to that.
 
             >>> import sevenbar as sb
             >>> circuit = sb.load("rssr").motion().circuits[0]
@@ -163,25 +293,40 @@ class Forces(Drawable):
 
         Source: docs/theory_forces.md, (10) to (16).
         """
-        period = self.period
-        passes = len(np.unique(self.branch))
+        own = self.within_stops
+        if own is not self:
+            return None if own is None else own.sizing(unevenness=unevenness)
+        if self.part is not None and unevenness is not None:
+            raise RequestError(
+                "unevenness: stops end the motion, so that the input does not go round and no flywheel "
+                "evens it; leave it out"
+            )
+        period = self._way
+        passes = 1 if self.part is not None else len(np.unique(self.branch))
         if period is None and passes > 1 and np.isfinite(self.torque).all():
             raise RequestError(
                 "sizing: the rows are passes one after the other; give one, as in "
                 "forces.on(forces.branch == 0).sizing()"
             )
-        breaks = () if period is None else self.loading.breaks(turns=round(abs(period) / math.tau))
+        breaks = self._breaks
+        if self.part is not None and self.between is None:
+            return None
         if self.through_change_points and len(breaks):
             return None
-        return sizing(
+        found = sizing(
             self,
             period=period,
-            speed=self.even_speed if period is not None else None,
+            speed=self.even_speed * self.metre if period is not None else None,
             evaluate=None if self.through_change_points else self.between,
             breaks=breaks,
             gaps=self.status == "change-point" if self.through_change_points else None,
             unevenness=unevenness,
         )
+        if found is None or max(found.tail, self.unclosed) > WITHHELD:
+            return None
+        found = found.in_units(self.unit, self.length_unit if self.slides else "rad")
+        # between stops force by length unit, in joule
+        return found if self.part is None else replace(found, fluctuation=self.metre * found.fluctuation)
 
     @property
     def balance(self) -> float | None:
@@ -193,16 +338,50 @@ class Forces(Drawable):
 
         Source: docs/theory_forces.md, (7).
         """
-        total = self.torque if self.at_rest else self.power + self.supplied
+        return None if self._closing is None else self._closing.power
+
+    @property
+    def work(self) -> float | None:
+        """What drive, loads and dampers give over a closed cycle, as a part of the peak power; 0 if right.
+
+        `None` as `balance` is, and at rest.
+        """
+        return None if self._closing is None or self.at_rest else self._closing.work
+
+    @property
+    def unclosed(self) -> float:
+        """The greater of `balance` and `work`; 0 where there is none, or torque is next to nothing."""
+        if float(np.abs(self.torque).max(initial=0.0)) < LITTLE * self.pull:
+            return 0.0
+        return max(self.balance or 0.0, self.work or 0.0)
+
+    @cached_property
+    def _closing(self) -> Closing | None:
         if self.at_rest and self.loading.loads:
             return None
-        if not self.periodic or len(total) < 3 or not np.isfinite(total).all():
+        period = self.period
+        if period is None or len(self.input) < 3 or not np.isfinite(self.power + self.supplied).all():
             return None
-        # by time, or at rest by the input
-        way = self.period if self.at_rest else float(self.time[1] - self.time[0]) * len(total)
-        change = CycleSeries(self.kinetic + self.potential, 0.0, way or 1.0).finer(1, 1)
-        peak = max(np.abs(change).max(), np.abs(total if self.at_rest else self.power).max())
-        return float(np.abs(total - change).max() / peak) if peak else 0.0
+
+        # at rest the torque is the slope of the energy by the input; else power is, by the speed
+        rate = 1.0 if self.at_rest else self.even_speed
+
+        def rows(own: Forces) -> Floats:
+            total = own.torque if own.at_rest else own.power + own.supplied
+            return np.stack([own.kinetic + own.potential, total / rate], axis=1)
+
+        between = None if self.through_change_points else self.between
+        drive = float(np.abs(self.torque if self.at_rest else self.power).max())
+        energy, total = rows(self).T
+        return closing(
+            energy,
+            total,
+            drive / abs(rate),
+            first=float(self.input[0]),
+            period=period,
+            least=ROUNDING * (self.pull + float(np.abs(energy).max())),
+            evaluate=None if between is None else lambda inputs: rows(between(inputs)),
+        )
 
     @property
     def ground_balance(self) -> float | None:
@@ -238,3 +417,8 @@ class Forces(Drawable):
         left = (ends[0] - ends[1] + outer + self.shaking[:, 3:])[known]
         greatest = max(float(np.abs(end[known]).max()) for end in ends)
         return float(np.abs(left).max() / greatest) if greatest else 0.0
+
+
+def _greatest(values: Floats) -> float:
+    """The greatest size of known values, 0 without any."""
+    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))

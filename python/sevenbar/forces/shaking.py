@@ -15,15 +15,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Curve, Peak, mean
-from sevenbar.curves.cycle_series import cycle_series
+from sevenbar.curves.cycle_series import CycleSeries
+from sevenbar.curves.pieces import cycle_curve, pieces
 from sevenbar.curves.timed_rows import TimedRows
+from sevenbar.forces.sizing import WITHHELD
 from sevenbar.text.printing import Printed
 
 if TYPE_CHECKING:
@@ -39,7 +41,7 @@ class Shaking(Printed):
 
     `orders` (m, 6) is the amplitude of the wave that goes round k = 0, 1, .. times in the cycle, moment x, y,
     z, then force x, y, z: 1 is the primary, 2 the secondary order of an input that turns once in it; empty
-    for rows of a law.
+    for rows of a law. `tail` is how much may lie between the rows, as a part of the greatest value.
     """
 
     force: Peak
@@ -47,6 +49,8 @@ class Shaking(Printed):
     rms_force: float
     rms_moment: float
     orders: Floats
+    tail: float = math.nan
+    input_unit: str = "rad"
 
 
 def shaking_of(
@@ -56,41 +60,58 @@ def shaking_of(
     period: float | None,
     time: Floats,
     evaluate: Callable[[Floats], Floats] | None = None,
+    ends: tuple[float, float] | None = None,
 ) -> Shaking:
     """The shaking of rows (n, 6) at `input` (n,) [rad, or length] and `time` (n,) [s].
 
     `period` is the way of the input round a closed cycle at constant speed; `None` for a law's rows. With
     `evaluate`, which gives rows (m, 6) at inputs (m,) of such a cycle, rows are added until peaks and mean
-    values do not depend on them.
+    values do not depend on them; in its place `ends` are the inputs of both stops of a part.
     """
     sizes = np.array([np.abs(wrench[:, part]).max(initial=0.0) for part in (MOMENT, FORCE)])
     # moments and forces as parts of their greatest, so that rounding is one size in all
     units = np.repeat(np.where(sizes > 0, sizes, 1.0), 3)
     both: Curve
     orders = np.zeros((0, 6))
-    if period is None:
+    ask = None if evaluate is None else lambda inputs: np.asarray(evaluate(inputs) / units)
+    if ends is not None and ask is not None:
+        both = pieces(ask, wrench / units, ends[0], ends[1] - ends[0], (ends[0],))
+    elif period is None:
         both = TimedRows(wrench / units, input, time)
     else:
-        ask = None if evaluate is None else lambda inputs: np.asarray(evaluate(inputs) / units)
-        both = series = cycle_series(ask, wrench / units, float(input[0]), period)
-        orders = np.abs(series.spectrum) * units
+        both = cycle_curve(ask, wrench / units, float(input[0]), period)
+        waves = (
+            both if isinstance(both, CycleSeries) else CycleSeries(wrench / units, float(input[0]), period)
+        )
+        orders = np.abs(waves.spectrum) * units
     found = []
     for part in (FORCE, MOMENT):
         squares, unit = both.part(part).squared(), float(units[part[0]])
         top = squares.highest()
         found.append((Peak(unit * _root(top.value), top.input), unit * _root(mean(squares))))
     (force, rms_force), (moment, rms_moment) = found
-    return Shaking(force, moment, rms_force, rms_moment, orders)
+    return Shaking(force, moment, rms_force, rms_moment, orders, both.tail)
 
 
 def shaking_along(forces: Forces) -> Shaking | None:
-    """The shaking of the rows of forces, of a cycle between them, too; `None` where a row has none."""
+    """The shaking of the rows of forces, of a cycle between them, too.
+
+    Between stops that of the part on which the linkage is used. `None` where a row has none, or too much of
+    it may be missed between the rows.
+    """
+    own = forces.within_stops
+    if own is not forces:
+        return None if own is None else shaking_along(own)
     if not len(forces.input) or not np.isfinite(forces.shaking).all():
         return None
     between = None if forces.through_change_points else forces.between
     evaluate = None if between is None else lambda inputs: between(inputs).shaking
+    ends = None if forces.part is None or between is None else (forces.part.start, forces.part.end)
     period, time = forces.period, forces.time
-    return shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate)
+    found = shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate, ends=ends)
+    if max(found.tail, forces.unclosed) > WITHHELD:
+        return None
+    return replace(found, input_unit=forces.length_unit if forces.slides else "rad")
 
 
 def _root(square: float) -> float:

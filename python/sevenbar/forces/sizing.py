@@ -14,19 +14,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import attrgetter
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Booleans, Floats, finite_number
 from sevenbar.curves.curve import Curve, Peak, greatest, mean
-from sevenbar.curves.cycle_series import CycleSeries, cycle_series, filled
-from sevenbar.curves.pieces import pieces
+from sevenbar.curves.cycle_series import CycleSeries, filled
+from sevenbar.curves.pieces import cycle_curve, pieces
 from sevenbar.curves.timed_rows import TimedRows
 from sevenbar.errors import RequestError, shown
+from sevenbar.forces.heard import heard
 from sevenbar.text.printing import Printed
 
 #: Parts of a wrench (moment x, y, z, force x, y, z in the joint's frame, z its axis) whose size loads a
@@ -42,6 +43,12 @@ PARTS: Mapping[str, tuple[int, ...]] = {
 
 #: A force has a bound at change points where its last waves are below this part of its greatest value.
 ACROSS = 1e-6
+
+#: Figures of which more than this part of the greatest value may be missed are withheld.
+WITHHELD = 1e-3
+
+#: How a sizing was found; see `Sizing`.
+Found = Literal["series", "pieces", "refined", "rows"]
 
 #: A moment or force below this part of the others of its kind is rounding.
 ROUNDING = 1e-9
@@ -117,6 +124,7 @@ class Bearing(Printed):
     in_plane: Burden
     direction: Floats
     size: Floats
+    input_unit: str = "rad"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -130,8 +138,10 @@ class Sizing(Printed):
     `(highest - lowest) / mean speed` at `unevenness`: all inertia that is needed, of which the mean of the
     linkage's own may be taken off. `None` without a constant speed.
 
-    `found` says how: by a "series" through the rows, in "pieces" between jumps, or from the "rows" as they
-    are; `tail` how much may lie between the rows, as a part of the greatest torque, force or moment.
+    `found` says how: by a "series" through the rows, in "pieces" between jumps, in pieces that are "refined"
+    where a quantity is too sharp for a series, or from the "rows" as they are; `tail` how much may lie
+    between the rows, as a part of the greatest torque, force or moment. The torque is in the `unit`, inputs
+    are in the `input_unit`, "rad" or the length unit.
     """
 
     peak_torque: Peak
@@ -145,8 +155,15 @@ class Sizing(Printed):
     unevenness: float | None
     flywheel: float | None
     bearings: Mapping[str, Bearing]
-    found: Literal["series", "pieces", "rows"]
+    found: Found
     tail: float
+    unit: str = "N m"
+    input_unit: str = "rad"
+
+    def in_units(self, unit: str, input_unit: str) -> Sizing:
+        """The same with the units of its torque and inputs."""
+        bearings = {name: replace(one, input_unit=input_unit) for name, one in self.bearings.items()}
+        return replace(self, unit=unit, input_unit=input_unit, bearings=bearings)
 
 
 def sizing(
@@ -166,13 +183,14 @@ def sizing(
     `breaks` are inputs where loads set in or end. Of a law's rows `period` is `None`. `gaps` (n,) are rows
     without values, which the series through the others goes across.
 
-    Raises `RequestError` for an unevenness that is not > 0, and for breaks without `evaluate`.
+    Raises `RequestError` for an unevenness that is not > 0 and up to 2, and for breaks without `evaluate`.
     """
     delta = None if unevenness is None else finite_number("unevenness", unevenness)
-    if delta is not None and delta <= 0:
+    # twice the mean: the lowest speed is 0
+    if delta is not None and not 0 < delta <= 2:
         raise RequestError(
             f"unevenness: {shown(unevenness)} is not an unevenness; "
-            "give a part of the mean speed > 0, as in 0.01"
+            "give a part of the mean speed > 0 and up to 2, as in 0.01"
         )
     names = tuple(rows.reactions)
     table = _table(rows, names)
@@ -184,7 +202,7 @@ def sizing(
     if gaps is not None and np.isfinite(table[:, 0]).all():
         # what grows without bound at a change point has no series that ends
         bounded = [
-            not part.size or CycleSeries(part, 0.0, math.tau).tail <= ACROSS
+            not part.size or CycleSeries(part, 0.0, math.tau).last_waves <= ACROSS
             for part in _wrench_parts(table, known)
         ]
         known[1:] &= np.repeat(np.array(bounded, dtype=bool), 3)
@@ -200,14 +218,15 @@ def sizing(
         return np.where(known, _table(evaluate(inputs), names), 0.0) / units
 
     every: Curve
-    found: Literal["series", "pieces", "rows"]
+    found: Found
     if period is None:
         every, found = TimedRows(table / units, rows.input, rows.time), "rows"
     elif len(breaks):
         every, found = pieces(between, table / units, float(rows.input[0]), period, breaks), "pieces"
     else:
         ask = between if evaluate is not None else None
-        every, found = cycle_series(ask, table / units, float(rows.input[0]), period), "series"
+        every = cycle_curve(ask, table / units, float(rows.input[0]), period)
+        found = "series" if isinstance(every, CycleSeries) else "refined"
     torque = every.part(0)
     unit = float(units[0])
     if period is None:
@@ -215,18 +234,24 @@ def sizing(
         peak_power, braking, energy, work = power.highest(), power.lowest(), power.running(), 1.0
     else:
         rate, work, value_of = speed or 0.0, unit, attrgetter("value")
-        ends = [Peak(rate * unit * one.value, one.input) for one in (torque.highest(), torque.lowest())]
+        ends = [Peak(rate * unit * one.value + 0.0, one.input) for one in (torque.highest(), torque.lowest())]
         peak_power, braking = max(ends, key=value_of), min(ends, key=value_of)
         energy = torque.running()
     top, bottom = energy.highest(), energy.lowest()
-    fluctuation = work * (top.value - bottom.value)
     peak = greatest(torque)
+    # energies of what goes to and fro are parts of the peak's over the cycle
+    way = (
+        float(np.abs(peak_power.value)) * float(np.ptp(rows.time)) if period is None else peak.value * period
+    )
+    fluctuation = heard(work * (top.value - bottom.value), way * (1.0 if period is None else work))
+    if not fluctuation:
+        top = bottom = Peak(0.0, float(rows.input[0]))
     return Sizing(
-        peak_torque=Peak(unit * peak.value, peak.input),
+        peak_torque=Peak(unit * peak.value + 0.0, peak.input),
         rms_torque=unit * math.sqrt(max(0.0, torque.mean_of(np.square))),
-        mean_torque=unit * mean(torque),
+        mean_torque=unit * heard(mean(torque), peak.value),
         peak_power=peak_power,
-        braking_power=braking if braking.value < 0 else None,
+        braking_power=braking if heard(braking.value, peak_power.value) < 0 else None,
         fluctuation=fluctuation,
         fastest=bottom.input,
         slowest=top.input,
@@ -250,7 +275,7 @@ def flywheel(fluctuation: float, speed: float, unevenness: float) -> float:
 
 
 def _bearing(every: Curve, units: Floats, known: Booleans, wrenches: Wrenches, start: int) -> Bearing:
-    burdens = {}
+    burdens: dict[str, Any] = {}
     forces = tuple(i for i in PARTS["force"] if known[start + i])
     for name, part in {**PARTS, "in_plane": forces if len(forces) == 2 else PARTS["force"]}.items():
         columns = tuple(start + i for i in part)

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, finite_number
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.circuits.circuit import AT_REST, Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.circuits.table import circuit_columns, frame_of
 from sevenbar.kinematics.loop.geometry import Point
 
 # the engines are for those who ask
 if TYPE_CHECKING:
+    import pandas as pd
+
     from sevenbar.forces.counterweights import Balance
     from sevenbar.forces.free_motion.equilibria import Equilibrium
     from sevenbar.forces.free_motion.result import FreeMotion
@@ -25,8 +29,10 @@ if TYPE_CHECKING:
     from sevenbar.forces.result import Forces
     from sevenbar.kinematics.circuits.circuit_values import Sensitivity
     from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
+    from sevenbar.kinematics.circuits.one_pose import OnePose
     from sevenbar.kinematics.dynamics.forces import ForceSolver
     from sevenbar.kinematics.loop.stops import Cone
+    from sevenbar.kinematics.paths.stretch import Stretch
 
 #: A mechanical advantage, and the input [rad, or length] at which it is had.
 Place = tuple[float, float]
@@ -73,19 +79,31 @@ class LinkageAnswers:
 
     def transmission_angle(self, circuit: Circuit) -> Floats | None:
         """On each row (n,) [rad]; `None` where it is not defined."""
-        from sevenbar.kinematics.transmission import transmission_angle
+        from sevenbar.kinematics.transmission.angle import transmission_angle
 
         return transmission_angle(self.linkage, circuit)
 
     def transmission(self, circuit: Circuit) -> Extremes | None:
         """The extremes of it [rad]; `None` where it is not defined."""
-        from sevenbar.kinematics.transmission import transmission_extremes
+        from sevenbar.kinematics.transmission.search import transmission_extremes
 
         return transmission_extremes(self.linkage, circuit)
 
+    def velocity(self, circuit: Circuit) -> Extremes | None:
+        """The extremes of the output's velocity where it has a limit at dead centres of the input."""
+        from sevenbar.kinematics.transmission.search import velocity_extremes
+
+        return velocity_extremes(self.linkage, circuit)
+
+    def rests_together(self, circuit: Circuit) -> Mapping[int, float]:
+        """d(output)/d(input) on the rows in which both rest."""
+        from sevenbar.kinematics.transmission.axes import ratios_at_rest
+
+        return ratios_at_rest(self.linkage, circuit)
+
     def advantage(self, circuit: Circuit) -> Extremes | None:
         """The lowest and highest mechanical advantage; `None` where the output stands still on the way."""
-        if any(centre.kind == "output" for centre in circuit.dead_centres):
+        if circuit.output_rests:
             return None
         ends = _by_rates(circuit) or self._by_driving_back(circuit)
         if ends is None:
@@ -98,7 +116,7 @@ class LinkageAnswers:
     def _by_driving_back(self, circuit: Circuit) -> list[Place] | None:
         """The extremes of the input's rate, the output driving: where the input turns back, too."""
         from sevenbar.kinematics.loop.law import Law
-        from sevenbar.kinematics.transmission import best_row
+        from sevenbar.kinematics.transmission.axes import best_row
 
         row = best_row(circuit)
         if row is None:
@@ -128,20 +146,42 @@ class LinkageAnswers:
         from sevenbar.kinematics.dynamics.forces import ForceSolver, forces_of
 
         if given:
-            solver = ForceSolver(self.linkage, self.loading(given), circuit.input_column)
-            return forces_of(solver, circuit, at_rest=at_rest)
-        if circuit.input_column not in self._solvers:
-            solver = ForceSolver(self.linkage, self.linkage.loading, circuit.input_column)
+            solver = ForceSolver(self.linkage, self.loading(circuit, given), circuit.input_column)
+        elif (kept := self._solvers.get(circuit.input_column)) is not None:
+            solver = kept
+        else:
+            solver = ForceSolver(self.linkage, self.loading(circuit, given), circuit.input_column)
             self._solvers[circuit.input_column] = solver
-        return forces_of(self._solvers[circuit.input_column], circuit, at_rest=at_rest)
+        found = forces_of(solver, circuit, at_rest=at_rest)
+        if not self.linkage.stops.stops or math.isnan(circuit.speed):
+            # a law, and a free motion, have their own rows
+            return found
+        return replace(found, _parts=cache(partial(self._parts, solver, circuit, found, at_rest)))
 
-    def loading(self, given: Mapping[str, Any]) -> Loading:
-        """What acts on the linkage, with what is given in place of what it has."""
-        if not given:
-            return self.linkage.loading
-        from sevenbar.kinematics.dynamics.loaded import loading_with
+    def _parts(
+        self, solver: ForceSolver, circuit: Circuit, whole: Forces, at_rest: bool
+    ) -> tuple[tuple[Forces, ...], int] | None:
+        """The forces between stops, and which part is used; `None` where no stop ends the circuit."""
+        from sevenbar.kinematics.dynamics.stop_forces import parts_of
+        from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 
-        return loading_with(self.linkage, **given)
+        try:
+            found = self._stretches(circuit)
+        except NotFollowedError:
+            return None
+        if found is None or any(one.is_whole for one in found):
+            return None
+        return parts_of(solver, circuit, found, whole, at_rest=at_rest)
+
+    def loading(self, circuit: Circuit, given: Mapping[str, Any]) -> Loading:
+        """What acts on the linkage, with what is given in place of what it has; its loads go by the input."""
+        loading = self.linkage.loading
+        if given:
+            from sevenbar.kinematics.dynamics.loaded import loading_with
+
+            loading = loading_with(self.linkage, **given)
+        loading.check_input(turns=self.linkage.turns(circuit.input_column))
+        return loading
 
     def sensitivity(self, circuit: Circuit) -> Sensitivity:
         """By every number of the description."""
@@ -206,10 +246,47 @@ class LinkageAnswers:
         """How a circuit moves by itself."""
         from sevenbar.kinematics.dynamics.free import free_motion_of
 
-        return free_motion_of(self.linkage, circuit, loading, duration, **how)
+        found = self._stretches(circuit)
+        return free_motion_of(self.linkage, circuit, loading, duration, stretches=found, **how)
+
+    def _stretches(self, circuit: Circuit) -> tuple[Stretch, ...] | None:
+        """The parts of a circuit between stops; `None` where the linkage has no stops."""
+        if not self.linkage.stops.stops:
+            return None
+        from sevenbar.kinematics.ranges.allowed import stretches
+
+        return stretches(self.linkage, circuit)
+
+    def pose(
+        self,
+        circuit: Circuit,
+        value: float | str,
+        branch: int | None,
+        speed: float | str | None,
+        acceleration: float,
+    ) -> OnePose:
+        """At a value of the input."""
+        from sevenbar.kinematics.circuits.poses_at import pose_of
+        from sevenbar.kinematics.loop.joint_text import joint_number, joint_speed
+        from sevenbar.kinematics.transmission.axes import best_row
+
+        linkage, column, rows = self.linkage, circuit.input_column, circuit.fleeting()
+        known = best_row(rows)
+        if known is None:
+            raise RequestError("at: the circuit has no row with rates to begin from; give more samples")
+        return pose_of(
+            linkage, rows, joint_number("at", value, linkage, column), known,
+            branch=branch,
+            speed=None if speed is None else joint_speed(speed, linkage, column),
+            acceleration=finite_number("acceleration", acceleration),
+        )  # fmt: skip
+
+    def frame(self, circuit: Circuit) -> pd.DataFrame:
+        """Its rows as a pandas table."""
+        return frame_of(circuit_columns(circuit.fleeting(), self.linkage, si=False), self.linkage)
 
     def equilibria(self, circuit: Circuit, loading: Loading, torque: float) -> tuple[Equilibrium, ...]:
         """Where a circuit can rest."""
         from sevenbar.kinematics.dynamics.free import equilibria_of
 
-        return equilibria_of(self.linkage, circuit, loading, torque)
+        return equilibria_of(self.linkage, circuit, loading, torque, self._stretches(circuit))

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, is_number, spread_array, whole_number
-from sevenbar.errors import NotCoveredError, RequestError, check_word, ends_here, shown
+from sevenbar.arrays import Floats, finite_number, is_number, spread_array, whole_number
+from sevenbar.errors import NotCoveredError, RequestError, check_kind, check_word, ends_here, shown
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.modes import Modes, Output
@@ -23,9 +22,11 @@ from sevenbar.kinematics.solvers.general import AGREE, GeneralLoop
 if TYPE_CHECKING:
     from sevenbar.forces.acting import Load, Spring
     from sevenbar.forces.bodies import Body
+    from sevenbar.kinematics.circuits.one_pose import OnePose
     from sevenbar.kinematics.loop.grashof import FourBar
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
+    from sevenbar.kinematics.loop.reason import Reason
     from sevenbar.kinematics.ranges.stopped import Cones, Radii, Ranges
     from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere
 
@@ -87,7 +88,15 @@ class Linkage(Solvable):
 
     @property
     def lengths(self) -> tuple[float, float, float]:
-        """Crank, coupler and rocker of an RSSR [length]."""
+        """Crank, coupler and rocker of an RSSR or of a planar four-bar [length].
+
+        >>> import sevenbar as sb
+        >>> sb.four_bar(40, 100, 80, 90).lengths
+        (40.0, 100.0, 80.0)
+        """
+        bar = None if self.kind == "RSSR" else self.as_four_bar()
+        if bar is not None and bar.kind == "planar" and "input link" in bar.links:
+            return bar.links["input link"], bar.links["coupler"], bar.links["output link"]
         return self._rssr("lengths").lengths
 
     @cached_property
@@ -168,7 +177,8 @@ class Linkage(Solvable):
         order = whole_number("order", order, 0, 3, "offered")
         law = None
         constant = 1.0
-        plain = speed is None or isinstance(speed, (float, int, str)) or np.ndim(speed) == 0
+        several = isinstance(speed, Sized) and not isinstance(speed, str)
+        plain = not several or getattr(speed, "ndim", 1) == 0
         if plain and acceleration is None and jerk is None:
             constant = self._speed(speed, column)
         else:
@@ -238,6 +248,11 @@ class Linkage(Solvable):
         """Whether it can only move in its plane."""
         return self.plane is not None
 
+    @property
+    def normal(self) -> Floats | None:
+        """The direction (3,) across its plane, in the report frame; `None` of a loop that is not planar."""
+        return None if self.plane is None else self.plane.normal
+
     @cached_property
     def sphere(self) -> MotionSphere | None:
         """The centre of a spherical loop, and a radius to draw it with; `None` for any other.
@@ -272,6 +287,12 @@ class Linkage(Solvable):
 
         first, second = self.end_columns(input, output)
         return four_bar_of(self, self.columns[first], self.columns[second])
+
+    def reason_of(self, motion: Motion) -> Reason | None:
+        """Why a motion of it has no circuit, or which link has no length; see `Motion.reason`."""
+        from sevenbar.kinematics.solvers.why_rigid import reason_of
+
+        return reason_of(motion)
 
     @property
     def idle(self) -> tuple[str, ...]:
@@ -348,7 +369,7 @@ class Linkage(Solvable):
             >>> [(circuit.motion_type, circuit.turns) for circuit in motion]
             [('crank-rocker', 1), ('double-rocker', 0), ('crank-rocker', 1)]
         """
-        column, output_column, samples, rate = self._asked(samples, input, output, speed)
+        column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
         agreeing = self.agreeing(agree)
         if self._has_closed_form(method):
             found = self._closed_form.motion(column, samples, rate, law)
@@ -383,20 +404,60 @@ class Linkage(Solvable):
             >>> linkage.circuit(linkage.assembly_modes(0.3).q[2]).motion_type
             'double-crank'
         """
-        column, output_column, samples, rate = self._asked(samples, input, output, speed)
+        column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
+        values = self._pose(pose)
+        self._refuse_unheld()
+        return self.agreeing(agree)._general.circuit(values, column, output_column, samples, rate, law)
+
+    @ends_here
+    def at(
+        self,
+        pose: npt.ArrayLike,
+        *,
+        input: str | None = None,
+        speed: float | str | None = None,
+        acceleration: float = 0.0,
+    ) -> OnePose:
+        """One pose with what there is to know of it: rates, points, links, transmission, torque, reactions.
+
+        `pose` is as for `circuit`. The input has there this `speed` and `acceleration` [rad/s, rad/s^2, or
+        lengths]: the drive's speed, and none, where they are not given.
+
+            >>> import sevenbar as sb
+            >>> linkage = sb.load("rssr")
+            >>> pose = linkage.at(linkage.assembly_modes("45 deg").q[0])
+            >>> round(pose["rocker"], 6), round(float(pose.dq[-1]), 6), pose.points["A"].velocity.shape
+            (-0.117924, 0.690558, (1, 3))
+        """
+        from sevenbar.kinematics.circuits.poses_at import pose_near
+
+        column = self.input_column(input)
+        return pose_near(
+            self,
+            self._pose(pose),
+            input=input,
+            speed=self._speed(speed, column),
+            acceleration=finite_number("acceleration", acceleration),
+        )
+
+    def _pose(self, pose: npt.ArrayLike) -> Floats:
+        """The values of a pose, one for each column."""
         values = pose_numbers("pose", pose, self)
         if values.size != len(self.columns):
             raise RequestError(
                 f"pose: {values.size} values where the linkage has {len(self.columns)} columns; "
                 f"give one for each of {', '.join(self.columns)}"
             )
-        self._refuse_unheld()
-        return self.agreeing(agree)._general.circuit(values, column, output_column, samples, rate, law)
+        return values
 
     def _asked(
-        self, samples: int, input: str | None, output: str | None, speed: float | str | None
+        self, samples: int, input: str | None, output: str | None, speed: float | str | None, law: Law | None
     ) -> tuple[int, int, int, float]:
-        """Columns of input and output, a count, and the speed, once checked."""
+        """Columns of input and output, a count, and the speed, once checked, as the law is."""
+        if law is not None:
+            from sevenbar.kinematics.loop.law import Law
+
+            check_kind("law", law, Law, "a law; make one with sevenbar.Law.of, or load_law")
         column, output_column = self.end_columns(input, output)
         return column, output_column, sample_count("samples", samples), self._speed(speed, column)
 

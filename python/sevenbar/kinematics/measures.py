@@ -19,6 +19,7 @@ from sevenbar.kinematics.numbers.gradients import MeasureSlopes, measure_slopes
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 from sevenbar.kinematics.ranges.extent_slopes import extent_slopes, stopped_measures
+from sevenbar.kinematics.transmission.slopes import transmission_slopes
 
 #: What a measure is a number of: of angles and lengths by the output.
 Quantity = Literal[
@@ -312,7 +313,7 @@ def _measure(given: object) -> Measure:
         return Measure(name, "linkage", "ratio", given, about)
     known = [*_NAMED, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
     raise RequestError(
-        f"measure: {shown(given)} is not a measure; {suggestion(str(given), known)}"
+        f"measure: {shown(given)} is not a measure; {suggestion(given, known)}"
         f"give some of {', '.join(known)}, or a function of the Motion"
     )
 
@@ -361,6 +362,8 @@ def gradient(
     found: list[MeasureSlopes] = []
     if names is None or not all(is_extent(name) or is_of_forces(name) for name in names):
         found += measure_slopes(numbers, chosen, motion.speed)
+        if names is None or any(name.startswith("transmission") for name in names):
+            found += transmission_slopes(numbers, chosen)
     found += force_slopes(numbers, chosen, motion.speed, names)
     found += extent_slopes(numbers, chosen, extents)
     return {one.name: one for one in found if names is None or one.name in names}

@@ -337,7 +337,8 @@ def _notes(
     else:
         notes += _far_off(fit, computed)
         for quantity, values in model.values.items():
-            notes += _following(quantity, values - computed[quantity], EXACT * model.extents[quantity])
+            apart = _at_places(values - computed[quantity], model.sites)
+            notes += _following(quantity, apart, EXACT * model.extents[quantity])
         if len(model.values) > 1:
             notes.append(
                 "the intervals take the noise of angle, velocity and acceleration for independent; where one "
@@ -358,6 +359,13 @@ def _far_off(fit: CurveFit, computed: Mapping[str, Floats]) -> list[str]:
         apart, steep, extent = -part * fit.noise[quantity], slopes[quantity][:, -2], model.extents[quantity]
         notes += far_off_notes(before.ends, quantity, lines, before.source, apart, steep, extent)
     return notes
+
+
+def _at_places(residual: Floats, sites: Integers) -> Floats:
+    """The mean at each place of the curve (places,), ordered by its first row: a repeat is no neighbour."""
+    _, first, of = np.unique(sites, return_index=True, return_inverse=True)
+    means = np.bincount(of, residual) / np.bincount(of)
+    return np.asarray(means[np.argsort(first)])
 
 
 def _following(quantity: str, residual: Floats, rounding: float) -> list[str]:

@@ -15,7 +15,7 @@ from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.reporting.facts import turns_text
 from sevenbar.reporting.force_peaks import peaks_of
-from sevenbar.reporting.shown import REST, Shown, degrees, number, six_digits
+from sevenbar.reporting.shown import REST, Shown, degrees, number, six_digits, turned
 from sevenbar.text.words import say
 
 #: Dead centres listed in one cell; an output that rests has no end of them.
@@ -82,7 +82,11 @@ class _Texts:
         """Extremes without rounding: of a joint that rests, or follows evenly, both are one number."""
         if extremes is None:
             return None
-        low, high = self._rounded(extremes.lowest, extremes.highest, circuit, order)
+        low, high = extremes.lowest, extremes.highest
+        if order == 0 and circuit.output_turns:
+            turn = turned(low, high)
+            low, high = low + turn, high + turn
+        low, high = self._rounded(low, high, circuit, order)
         return replace(extremes, lowest=low, highest=high)
 
     def _rounded(self, low: float, high: float, circuit: Circuit, order: int) -> tuple[float, float]:
@@ -113,7 +117,8 @@ class _Texts:
         words = self._endless(circuit, extent, 1)
         if words or extent is None:
             return words
-        low, high = self._rounded(*extent, circuit, 0)
+        turn = turned(*extent) if circuit.output_turns else 0.0
+        low, high = self._rounded(extent[0] + turn, extent[1] + turn, circuit, 0)
         if low == high:
             return (say("at rest at {value}", value=self.result(low)),)
         return self.result(low), self.result(high)
@@ -141,6 +146,8 @@ class _Texts:
     def time_ratio(self, circuit: Circuit) -> Texts:
         """The time ratio: one of angles, and of times at a constant speed."""
         ratio = circuit.time_ratio
+        if circuit.many_strokes and self.motion.law is None:
+            return (say("not defined: more than two strokes"),)
         if ratio is None or self.motion.law is not None:
             return ("-",)
         between = degrees(math.pi * (ratio - 1) / (ratio + 1))
@@ -167,6 +174,8 @@ class _Texts:
     def peak_torque(self, circuit: Circuit) -> Texts:
         """The greatest torque or force of the input."""
         peaks = self.peaks(circuit)
+        if peaks is None and self.motion.linkage.stops.stops and not circuit.allowed.spans:
+            return (say("none"),)
         if peaks is None:
             return ("-" if circuit.goes_round else say("no bound at limits"),)
         return (f"{number(peaks.torque.value)} @ {self.place(peaks.torque.input, whole=True)}",)

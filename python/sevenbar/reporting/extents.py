@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.reporting.shown import REST, Shown, degrees
+from sevenbar.reporting.shown import REST, Shown, degrees, turned
 from sevenbar.text.words import say
 
 if TYPE_CHECKING:
@@ -73,7 +74,11 @@ def _of_circuit(linkage: Loop, circuit: Circuit) -> Iterator[Row]:
         if found.low is None or found.high is None or found.extent is None:
             yield (number, name, "-", "-", say("without end"), stop)
         else:
-            yield (number, name, *ends(found.low, found.high, show), show(found.extent), stop)
+            turn = 0.0
+            if found.turns and name not in stops.ranges:
+                turn = turned(found.low.value, found.high.value)
+            low, high = (replace(end, value=end.value + turn) for end in (found.low, found.high))
+            yield (number, name, *ends(low, high, show), show(found.extent), stop)
     for name, cone in (known(lambda: circuit.ball_cones) or {}).items():
         stop = "-" if cone.limit is None else degrees(cone.limit)
         middle = say("{angle} from the middle", angle=degrees(cone.spread))

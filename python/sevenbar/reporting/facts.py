@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from sevenbar.description.angle_doubts import angle_doubt
@@ -14,6 +14,7 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.reporting.extents import usable_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
+from sevenbar.reporting.reason_text import reason_text
 from sevenbar.reporting.shown import Shown, drive_text
 from sevenbar.text.words import retold, say
 
@@ -95,6 +96,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     facts.append(("motion type", say(motion.motion_type)))
     if sentence := meaning(motion):
         facts.append(("", sentence))
+    if sentence := reason_text(motion):
+        facts.append(("", sentence))
     if near := nearly_moves(motion):
         facts.append(("nearly moves", near))
     facts.append(("circuits", _circuit_count(motion)))
@@ -107,8 +110,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
         facts.append(("how found", how_found(motion)))
         facts.append(("mobility", _mobility(motion.mobility)))
     if motion.idle:
-        idle = say("; ").join(map(retold, motion.idle))
-        facts.append(("idle freedom", say("{freedoms}, held by convention", freedoms=idle)))
+        facts.append(("idle freedom", idle_text(motion.idle)))
     if motion.motion_type != "cannot-assemble":
         facts.append(("redundant", say("; ").join(map(retold, motion.redundant)) or say("no constraints")))
     if not linkage.loading.is_empty:
@@ -121,6 +123,11 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits:
         facts.append(("closure error", closure_text(motion, linkage.length_unit)))
     return facts
+
+
+def idle_text(idle: Sequence[str]) -> str:
+    """The freedoms that move no other link, and that they are held."""
+    return say("{freedoms}, held by convention", freedoms=say("; ").join(map(retold, idle)))
 
 
 def completeness_text(word: str, *, curve: bool = False, unfollowed: bool = False) -> str:
@@ -201,16 +208,33 @@ def meaning(motion: Motion) -> str:
         case "two-inputs":
             return say(
                 "the loop moves with {count} freedoms, so one input does not determine it: lock a joint "
-                "(leave it out)",
+                "(leave it out); a loop that another one moves by two of its joints is not covered",
                 count=motion.mobility.finite,
             )
+        case "not-followed":
+            return say(
+                "the loop moves with one freedom, but none of its motions could be followed: a constraint is "
+                "met twice over along them, which the least change of a dimension undoes"
+            )
         case "rigid":
-            taken = motion.mobility.freedoms
+            taken = motion.mobility.freedoms - len(motion.idle)
+            if motion.idle:
+                return say(
+                    "the loop closes but cannot move: closing it removes all of its {count} freedoms "
+                    "that are not idle",
+                    count=taken,
+                )
             return say(
                 "the loop closes but cannot move: closing it removes all of its {count} freedoms", count=taken
             )
         case "cannot-assemble" if motion.linkage.kind == "RSSR":
             return say("no input closes the loop: the coupler is too short or too long")
+        case "cannot-assemble" if motion.linkage.in_rows and motion.four_bar is None:
+            return say(
+                "no values of the joints were found that close the loop; the table of an open arm wants one "
+                "joint more, at the hand, as the input: draw all joints in a pose of the hand, and 'sevenbar "
+                "modes' at 0 lists the arm's postures there"
+            )
         case "cannot-assemble":
             return say("no values of the joints were found that close the loop")
         case "change-point" if all(point.isolated for point in motion.change_points):

@@ -16,6 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.errors import OutputError
+from sevenbar.text.aside import aside_prefix, clear_left
+from sevenbar.text.csv_cells import harmless
+from sevenbar.text.paths import is_folder, is_there
 
 #: Rows of a table that are text at once.
 ROWS_AT_ONCE = 5_000
@@ -28,16 +31,29 @@ def check_targets(files: Iterable[Path], *, force: bool) -> None:
     """
     for file in files:
         _check_folder(file.parent)
-        if file.is_dir():
+        _check_name(file)
+        if is_folder(file):
             raise OutputError(f"{file}: is a folder where a file should go; give another path")
-        if not force and file.exists():
+        if not force and is_there(file):
             raise OutputError(f"{file}: exists already; give another path, or --force to replace it")
+
+
+def _check_name(file: Path) -> None:
+    """Raises `OutputError` for a name that the system does not take, as one of 5,000 letters."""
+    try:
+        file.lstat()
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        pass
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise OutputError(f"{file}: cannot be written: {reason.lower()}; give another name") from None
 
 
 def _check_folder(folder: Path) -> None:
     """Raises `OutputError` for a folder that can be neither made nor written."""
-    nearest = next((place for place in (folder, *folder.parents) if place.exists()), folder)
-    if not nearest.is_dir():
+    # a path that is too long for the system has no file, where `Path` would raise
+    nearest = next((place for place in (folder, *folder.parents) if is_there(place)), folder)
+    if not is_folder(nearest):
         who = "it" if nearest == folder else str(nearest)
         raise _unwritable(folder, f"{who} is a file")
     if not os.access(nearest, os.W_OK | os.X_OK):
@@ -68,12 +84,13 @@ def fill_folder(folder: Path, fill: Callable[[Path], object], *, force: bool = F
     a generator of its files, each yielded once it is whole, those that are whole outlive Ctrl+C: `Stopped`.
     """
     _check_folder(folder)
-    made = [p for p in (folder, *folder.parents) if not p.exists()]
+    made = [p for p in (folder, *folder.parents) if not is_there(p)]
     staging = None
     whole: list[Path] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        staging = Path(tempfile.mkdtemp(prefix=".partial-", dir=folder))
+        clear_left(folder)
+        staging = Path(tempfile.mkdtemp(prefix=aside_prefix(), dir=folder))
         filling = fill(staging)
         if isinstance(filling, Iterator):
             whole.extend(filling)
@@ -134,7 +151,7 @@ def write_parts(
         writer = csv.writer(file, lineterminator="\n")
         for part in parts:
             if not head:
-                writer.writerow(list(part))
+                writer.writerow(map(harmless, part))
                 head = True
             arrays = [np.asarray(column) for column in part.values()]
             count = len(arrays[0]) if arrays else 0
@@ -154,9 +171,13 @@ def write_csv(path: Path | StringIO, head: Sequence[str], lines: Iterable[Iterab
     written = path.open("w", newline="", encoding="utf-8") if isinstance(path, Path) else nullcontext(path)
     with written as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(head)
+        writer.writerow(map(harmless, head))
         writer.writerows(map(_cells, lines))
 
 
 def _cells(line: Iterable[Any]) -> list[Any]:
-    return ["" if cell is None or cell != cell else cell for cell in line]
+    """Cells without a value empty, and text as no spreadsheet runs it."""
+    return [
+        "" if cell is None or cell != cell else harmless(cell) if isinstance(cell, str) else cell
+        for cell in line
+    ]

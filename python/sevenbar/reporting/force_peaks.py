@@ -28,10 +28,15 @@ class ForcePeaks:
 
 
 def peaks_of(circuit: Circuit) -> ForcePeaks | None:
-    """The peaks of a circuit on which something acts; `None` of one that rocks, and of too many rows."""
-    if isinstance(circuit, LongCircuit) or not circuit.goes_round:
+    """The peaks of a circuit on which something acts, of the part between stops on which it is used.
+
+    `None` of one that rocks to dead centres of its input, and of too many rows.
+    """
+    if isinstance(circuit, LongCircuit):
         return None
-    forces = circuit.forces()
+    forces = circuit.forces().within_stops
+    if forces is None or (forces.part is None and not circuit.goes_round):
+        return None
     found = forces.sizing()
     if found is None:
         return None

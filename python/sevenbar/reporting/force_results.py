@@ -13,15 +13,17 @@ from sevenbar.forces.result import COMPONENTS, Forces, Reaction
 from sevenbar.forces.shaking import Shaking
 from sevenbar.forces.sizing import Bearing, Burden, Sizing
 from sevenbar.reporting import force_words
-from sevenbar.reporting.shown import number, rows_text
+from sevenbar.reporting.shown import Shown, number, rows_text
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 
 @text_of.register(Forces)
 def _(forces: Forces) -> str:
+    forces = forces.within_stops or forces
     place = force_words.Places(forces)
     mass = sum(body.mass for body in forces.bodies.values())
     facts = [("acts", force_words.acting_text(forces.loading)), ("mass", f"{mass:.6g} kg" if mass else "")]
+    facts += force_words.part_facts(forces)
     lost = int((~np.isfinite(forces.torque)).sum())
     peak = ""
     if lost < len(forces.torque):
@@ -59,7 +61,7 @@ def _of_joint(reaction: Reaction, scale: dict[str, float], *, bounded: bool) -> 
             if size > force_words.ROUNDING * scale[word]:
                 part = "" if known.shape[1] == 3 else " of what is known"
                 said.append(f"{word}{part} up to {number(size)} {unit}")
-    return ", ".join(said + ([f"{' '.join(lost)} open"] if lost else []))
+    return ", ".join(said + ([f"{' '.join(lost)} not determined"] if lost else []))
 
 
 @text_of.register(Reaction)
@@ -72,17 +74,19 @@ def _(reaction: Reaction) -> str:
             ends = (
                 f"{number(float(known.min()))} to {number(float(known.max()))} {unit}" if known.size else ""
             )
-            facts.append((name, ends or force_words.OPEN))
+            facts.append((name, ends or "not determined"))
     if not reaction.determinate.all():
-        facts.append(("", "what is open is not determined by equilibrium of rigid bodies"))
+        facts.append(("", "equilibrium of rigid bodies leaves the others to elasticity"))
     rows = f"{len(reaction.force)} rows, in its own frame, of the link before on the link after"
     return lines(f"Reaction in {reaction.joint}: {rows}", facts)
 
 
 @text_of.register(Sizing)
 def _(found: Sizing) -> str:
-    def at(peak: Peak | None) -> str:
-        return "" if peak is None else f"{number(peak.value)} at {peak.input:.6g}"
+    def at(peak: Peak | None, unit: str) -> str:
+        return "" if peak is None else f"{number(peak.value)} {unit} @ {place(peak.input)}"
+
+    place = Shown(found.input_unit)
 
     most, in_plane = (
         [
@@ -98,10 +102,13 @@ def _(found: Sizing) -> str:
     return lines(
         "Sizing of a drive",
         [
-            ("peak torque", at(found.peak_torque)),
-            ("rms, mean", f"{number(found.rms_torque)}, {number(found.mean_torque)}"),
-            ("peak power", f"{at(found.peak_power)} W"),
-            ("braking power", at(found.braking_power) + " W" * (found.braking_power is not None)),
+            ("peak force" if found.unit == "N" else "peak torque", at(found.peak_torque, found.unit)),
+            (
+                "rms, mean",
+                f"{number(found.rms_torque)} {found.unit}, {number(found.mean_torque)} {found.unit}",
+            ),
+            ("peak power", at(found.peak_power, "W")),
+            ("braking power", at(found.braking_power, "W")),
             ("fluctuation", f"{number(found.fluctuation)} J"),
             ("flywheel", flywheel),
             ("peak forces", ", ".join(most)),
@@ -114,21 +121,23 @@ def _(found: Sizing) -> str:
 @text_of.register(Bearing)
 def _(bearing: Bearing) -> str:
     facts = []
+    place = Shown(bearing.input_unit)
     for part, unit in force_words.LISTED.items():
         burden: Burden = getattr(bearing, part)
         if math.isfinite(burden.peak.value):
-            peak = f"peak {number(burden.peak.value)} {unit} at {burden.peak.input:.6g}"
+            peak = f"peak {number(burden.peak.value)} {unit} @ {place(burden.peak.input)}"
             facts.append((part.replace("_", " "), f"{peak}, cubic mean {number(burden.mean_cube)} {unit}"))
         elif part != "in_plane":
-            facts.append((part, force_words.OPEN))
+            facts.append((part, "not determined"))
     return lines("Loads of a bearing", facts)
 
 
 @text_of.register(Shaking)
 def _(found: Shaking) -> str:
     both = (("force", found.force, found.rms_force, "N"), ("moment", found.moment, found.rms_moment, "N m"))
+    place = Shown(found.input_unit)
     facts = [
-        (word, f"peak {number(peak.value)} {unit} at {peak.input:.6g}, rms {number(rms)} {unit}")
+        (word, f"peak {number(peak.value)} {unit} @ {place(peak.input)}, rms {number(rms)} {unit}")
         for word, peak, rms, unit in both
     ]
     return lines("Shaking", facts)

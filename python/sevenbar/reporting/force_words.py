@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -12,21 +12,22 @@ from sevenbar.curves.curve import Peak
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import Body
+from sevenbar.forces.heard import heard
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking
-from sevenbar.forces.sizing import Sizing
+from sevenbar.forces.sizing import WITHHELD, Sizing
 from sevenbar.reporting.shown import Shown, number
 from sevenbar.text.words import retold, say
 
-#: The moment of an idle spin below this part of the greatest moment in a joint is rounding.
+#: A force or moment below this part of the greatest is rounding.
 ROUNDING = 1e-9
 
 #: The parts of a bearing's load that are listed, with their units.
 LISTED = {"force": "N", "radial": "N", "axial": "N", "tilting": "N m", "turning": "N m", "in_plane": "N"}
 
-#: What a cell says of a part that rigid bodies leave open.
-OPEN = "open"
+#: What a cell has for a part that equilibrium of rigid bodies does not determine.
+OPEN = "-"
 
 #: What a file without anything that acts lacks, with a place for a word of the file.
 NOTHING_ACTS = """\
@@ -151,18 +152,62 @@ def acting_facts(forces: Forces, sliding: Sequence[str]) -> list[tuple[str, str]
     return [*lines, (say("gravity"), pull)]
 
 
+def part_facts(forces: Forces, others: Sequence[Forces] = ()) -> list[tuple[str, str]]:
+    """The part between stops that the rows are, and the other ones with their peaks."""
+    if forces.part is None:
+        return []
+    facts = [(say("within the stops"), part_text(forces))]
+    for one in others:
+        found = one.sizing()
+        peak = no_peak(one) if found is None else Places(one).at(found.peak_torque, one.unit)
+        text = say("{part}, pass {number}: {peak}", part=part_text(one), number=int(one.branch[0]), peak=peak)
+        facts.append((say("another part"), text))
+    return facts
+
+
+def part_text(forces: Forces) -> str:
+    """A part between stops: "crank from 0.000° to 65.000° (range of crank)"."""
+    part, place = forces.part, Places(forces)
+    assert part is not None
+    by = say("; ").join(dict.fromkeys(retold(stop) for stop in (part.first_stop, part.last_stop) if stop))
+    return say(
+        "{joint} from {low} to {high} ({stop})",
+        joint=forces.driver, low=place(part.start), high=place(part.end), stop=by,
+    )  # fmt: skip
+
+
 def no_peak(forces: Forces) -> str:
     """Why no peaks are found; empty where there are."""
+    own = forces.within_stops
+    if own is None:
+        return say("no peak: no pose of this circuit is within the stops")
+    if own is not forces:
+        return no_peak(own)
+    if forces.part is not None and forces.through_change_points:
+        return say("no peak: what passes change points from stop to stop is not sized; see the rows")
     lost = ~np.isfinite(forces.torque)
     if forces.through_change_points and forces.periodic and forces.loading.breaks(turns=1):
         return say(
             "no peak: loads that set in or end are not sized on a circuit that passes change points; "
             "see the rows"
         )
-    if not lost.any():
+    if not lost.any() and forces.periodic:
+        if forces.unclosed > WITHHELD:
+            return say(
+                "no peak: next to a limit of {joint} the circuit is not followed to enough digits: power "
+                "closes along the cycle to {value:.1e} of the peak only",
+                joint=forces.driver, value=forces.unclosed,
+            )  # fmt: skip
+        return say(
+            "no peak: next to a limit the {quantity} is too sharp to be followed, and more than a thousandth "
+            "of it may be missed",
+            quantity=say(quantity(forces)),
+        )
+    turns_back = forces.part is not None and forces.between is None
+    if not (lost.any() or turns_back):
         return ""
     dead = np.unique(forces.status[lost])
-    if "dead-centre" in dead:
+    if "dead-centre" in dead or turns_back:
         return say(
             "no peak: the {quantity} grows without bound at the dead centres of {joint}; "
             "drive it by a law that stays off them, or another joint",
@@ -193,13 +238,14 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     if found is None:
         return [(what, no_peak(forces))]
     place = Places(forces)
-    # a mean that is rounding is 0
-    average = found.mean_torque
-    average = 0.0 if abs(average) < 1e-12 * abs(found.peak_torque.value) else average
-    rms, mean = f"{number(found.rms_torque)} {unit}", f"{number(average)} {unit}"
+    if not found.peak_torque.value:
+        idle = [(what, f"0 {unit}"), *([] if forces.at_rest else [(say("power"), "0 W")])]
+        return [*idle, *_flywheel_facts(found)]
+    rms, mean = f"{number(found.rms_torque)} {unit}", f"{number(found.mean_torque)} {unit}"
     facts = [
         (what, say("peak {value}", value=place.at(found.peak_torque, unit))),
         ("", say("rms {rms}, mean {mean}", rms=rms, mean=mean)),
+        ("", sign_text(forces)),
     ]
     if forces.at_rest:
         return facts
@@ -211,50 +257,74 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     average = _mean_power(forces, found)
     mean = say("mean {power} W", power=number(average))
     facts.append(("", say("{mean}: the linkage drives its input", mean=mean) if average < 0 else mean))
-    steady = say("torque") if forces.periodic else say("power")
+    # from stop to stop as round a cycle
+    steady = say("torque") if forces.periodic or forces.part is not None else say("power")
     energy = say(
         "fluctuates by {energy} J about a drive of constant {steady}: fastest at {fastest}, "
         "slowest at {slowest}",
         energy=number(found.fluctuation), steady=steady, fastest=place(found.fastest),
         slowest=place(found.slowest),
     )  # fmt: skip
-    facts.append((say("energy"), energy))
-    if found.flywheel is not None:
-        inertia = number(found.flywheel)
-        wheel = say(
-            "{inertia} kg m^2 at the input for an unevenness of {unevenness:g}",
-            inertia=inertia, unevenness=found.unevenness,
-        )  # fmt: skip
-        facts.append((say("flywheel"), wheel))
-    return facts
+    if found.fluctuation:
+        facts.append((say("energy"), energy))
+    return facts + _flywheel_facts(found)
+
+
+def sign_text(forces: Forces) -> str:
+    """Which way a positive torque, or force, of the input turns it."""
+    if forces.slides:
+        return say("positive: pushes {joint} as its way counts", joint=forces.driver)
+    return say("positive: turns {joint} as its angle counts", joint=forces.driver)
+
+
+def _flywheel_facts(found: Sizing) -> list[tuple[str, str]]:
+    if found.flywheel is None:
+        return []
+    wheel = say(
+        "{inertia} kg m^2 at the input for an unevenness of {unevenness:g}",
+        inertia=number(found.flywheel), unevenness=found.unevenness,
+    )  # fmt: skip
+    return [(say("flywheel"), wheel)]
 
 
 def _mean_power(forces: Forces, found: Sizing) -> float:
     """The mean power [W] by time, 0 where it is rounding."""
-    if forces.periodic:
+    if forces.periodic or forces.part is not None:
         # at one speed that of the mean torque, which sees change points and jumps between the rows
-        mean, most = forces.even_speed * found.mean_torque, abs(forces.even_speed * found.peak_torque.value)
+        speed = forces.even_speed * forces.metre
+        mean, most = speed * found.mean_torque, abs(speed * found.peak_torque.value)
     else:
         mean, most = float(shares_of(forces.time) @ forces.power), float(np.abs(forces.power).max())
-    return 0.0 if abs(mean) < 1e-12 * most else mean
+    return heard(mean, most)
 
 
 def spin_facts(forces: Forces) -> list[tuple[str, str]]:
     """What holds links that spin idly: nothing for a rod, else a moment that no ball gives."""
     facts = []
-    moments = [np.abs(r.moment[np.isfinite(r.moment)]).max(initial=0.0) for r in forces.reactions.values()]
-    scale = max([*moments, 0.0])
-    for link, moment in forces.spin.items():
-        most = float(np.nanmax(np.abs(moment), initial=0.0))
-        if most <= ROUNDING * scale:
-            text = say("not held: its body is a rod, symmetric about the line of its balls, or none")
-        else:
+    for link, most in forces.idle_spin.items():
+        text = say("not held: its body is a rod, symmetric about the line of its balls, or none")
+        if most:
             text = say(
                 "the rule that holds it gives up to {moment} N m that no ball gives; without a guide "
                 "the link turns about the line of its balls, and these forces are not its own",
                 moment=number(most),
             )
         facts.append((say("idle spin"), say("{word}: {meaning}", word=retold(link), meaning=text)))
+    return facts
+
+
+def free_spin_facts(spin: Mapping[str, float]) -> list[tuple[str, str]]:
+    """The same of a free motion and of equilibria, where the spin moves something."""
+    facts = []
+    for link, most in spin.items():
+        if most:
+            text = say(
+                "the rule that holds it gives up to {moment} N m that no ball gives; without a guide "
+                "the link turns about the line of its balls, and neither this motion nor these equilibria "
+                "are its own",
+                moment=number(most),
+            )
+            facts.append((say("idle spin"), say("{word}: {meaning}", word=retold(link), meaning=text)))
     return facts
 
 
@@ -276,7 +346,7 @@ def open_facts(forces: Forces) -> list[tuple[str, str]]:
     ]
     what = say("; ").join(map(retold, forces.indeterminate))
     together = say(
-        "rigid bodies leave open {what}, which all joints bear together: {components}",
+        "{components}; the joints share {what}, and rigid bodies do not say how",
         what=what, components=say("; ").join(listed),
     )  # fmt: skip
     facts = [
@@ -284,7 +354,9 @@ def open_facts(forces: Forces) -> list[tuple[str, str]]:
         ("", say("these depend on clearances and elasticity; one joint with more freedom determines them")),
     ]
     if alone := known_alone(forces):
-        facts.append(("", say("known alone, greatest of the rows: {forces}", forces=say(", ").join(alone))))
+        facts.append(
+            ("", say("across its axis a joint has one known force: {forces}", forces=say(", ").join(alone)))
+        )
     return facts
 
 
@@ -313,8 +385,9 @@ def known_alone(forces: Forces) -> list[str]:
         x, y = reaction.determinate[3:5]
         if x != y:
             which = 0 if x else 1
-            size = f"{COMPONENTS[3 + which]} {number(greatest(reaction.force[:, which]))} N"
-            found.append(say("{force} of {joint}", force=size, joint=name))
+            size = f"{number(greatest(reaction.force[:, which]))} N"
+            known = COMPONENTS[3 + which]
+            found.append(say("{force} of {joint}, up to {size}", force=known, joint=name, size=size))
     return found
 
 
@@ -333,11 +406,7 @@ def shaking_facts(forces: Forces, found: Shaking | None) -> list[tuple[str, str]
 
 def check_values(forces: Forces) -> dict[str, float | None]:
     """The checks of a result, each an error as a part of a peak; `None` where one cannot be made."""
-    work = None
-    if forces.periodic and not forces.at_rest and np.isfinite(forces.power).all():
-        peak = float(np.abs(forces.power).max())
-        work = float(abs(np.mean(forces.power + forces.supplied)) / peak) if peak else 0.0
-    return {"power": forces.balance, "ground": forces.ground_balance, "work": work}
+    return {"power": forces.balance, "ground": forces.ground_balance, "work": forces.work}
 
 
 def check_text(forces: Forces) -> str:
@@ -358,8 +427,8 @@ def check_text(forces: Forces) -> str:
     return say("{checks} of the peak", checks=say(", ").join(made)) if made else ""
 
 
-def found_text(found: Sizing | None, *, law: bool = False) -> str:
-    """How peaks were found; `law`: the rows are those of one."""
+def found_text(found: Sizing | None, *, law: bool = False, part: bool = False) -> str:
+    """How peaks were found; `law`: the rows are those of one; `part`: from stop to stop."""
     if found is None:
         return ""
     match found.found:
@@ -369,6 +438,14 @@ def found_text(found: Sizing | None, *, law: bool = False) -> str:
                 "the peak",
                 tail=found.tail,
             )
+        case "refined":
+            return say(
+                "by polynomials over pieces of the cycle, the finer the sharper it is; what they may miss is "
+                "{tail:.0e} of the peak",
+                tail=found.tail,
+            )
+        case "pieces" if part:
+            return say("from stop to stop, peaks within, at the stops, and where loads set in or end")
         case "pieces":
             return say("between the inputs at which loads set in or end, peaks within and at them")
         case _ if law:

@@ -14,6 +14,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.curves.curve import Peak
+from sevenbar.errors import RequestError
 from sevenbar.forces.counterweights import Balance
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking, shaking_along
@@ -22,11 +23,12 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.reporting import force_words
+from sevenbar.reporting.extents import known
 from sevenbar.reporting.figures import FigureLook
 from sevenbar.reporting.files import Files, Report, Write, columns_file, figure_files, json_file
 from sevenbar.reporting.page import Facts, number_table, page
 from sevenbar.reporting.shown import drive_text, number, rows_text
-from sevenbar.text.words import say
+from sevenbar.text.words import retold, say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,15 +44,27 @@ class CircuitForces:
     sizing: Sizing | None
     shaking: Shaking | None
     balance: Balance | None = None
+    #: The forces on the other parts between stops.
+    others: tuple[Forces, ...] = ()
 
     @classmethod
     def of(
         cls, motion: Motion, circuit: Circuit, forces: Forces, *, unevenness: float | None = None
     ) -> CircuitForces:
-        """With the sizing for an unevenness."""
-        found = forces.sizing(unevenness=unevenness)
-        shakes = forces.bodies and not forces.at_rest
-        return cls(motion, circuit, forces, found, shaking_along(forces) if shakes else None)
+        """With the sizing for an unevenness, on the part between stops on which the linkage is used.
+
+        Raises `RequestError` where no pose is within the stops.
+        """
+        own = forces.within_stops
+        if own is None:
+            raise RequestError(
+                f"circuit: no pose of circuit {circuit.index} is within the stops of the linkage; take "
+                "another circuit, or leave a [[stop]] out"
+            )
+        found = own.sizing(unevenness=unevenness)
+        shakes = own.bodies and not own.at_rest
+        others = tuple(one for one in forces.parts if one is not own)
+        return cls(motion, circuit, own, found, shaking_along(own) if shakes else None, others=others)
 
 
 def forces_report(
@@ -115,15 +129,38 @@ def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     forces, linkage = found.forces, found.motion.linkage
     sliding = [column for column in linkage.columns if not linkage.turns(column)]
     facts = [(say("circuit"), drive_fact(found)), *force_words.acting_facts(forces, sliding)]
+    facts += force_words.part_facts(forces, found.others)
+    facts += _law_facts(found)
     facts += force_words.drive_facts(forces, found.sizing)
     facts += force_words.shaking_facts(forces, found.shaking)
     facts += force_words.spin_facts(forces)
     facts += force_words.open_facts(forces)
     facts += force_words.unbounded_facts(forces, found.sizing)
-    facts.append((say("found"), force_words.found_text(found.sizing, law=found.motion.law is not None)))
+    how = {"law": found.motion.law is not None, "part": forces.part is not None}
+    facts.append((say("found"), force_words.found_text(found.sizing, **how)))
     facts.append((say("checks"), force_words.check_text(forces)))
     facts.append((say("rows"), f"{len(forces.status)}: {rows_text(forces.status)}"))
     return [(label, said) for label, said in facts if said]
+
+
+def _law_facts(found: CircuitForces) -> list[tuple[str, str]]:
+    """How many rows of a law are beyond the stops, which do not end it."""
+    circuit = found.circuit
+    if found.motion.law is None or not found.motion.linkage.stops.stops:
+        return []
+    allowed = known(lambda: circuit.allowed)
+    if allowed is None:
+        return []
+    by = allowed.stopped_by[np.isin(circuit.branch, found.forces.branch)]
+    beyond = by != ""
+    if not beyond.any():
+        return []
+    stops = sorted({name for row in set(by[beyond]) for name in row.split(", ")})
+    text = say(
+        "{count} of {rows} rows of the law are beyond them: {stops}",
+        count=int(beyond.sum()), rows=len(beyond), stops=say(", ").join(map(retold, stops)),
+    )  # fmt: skip
+    return [(say("within the stops"), text)]
 
 
 def text(found: CircuitForces) -> RenderableType:
@@ -142,16 +179,22 @@ def text(found: CircuitForces) -> RenderableType:
         planar = found.motion.linkage.is_planar
         head, rows = bearing_rows(forces, found.sizing, planar=planar)
         without = {
-            say(IN_PLANE): say("; in plane: the force in the plane of motion, the whole is open"),
-            say(KNOWN): say("; known: the force without the component that is open"),
+            say(IN_PLANE): say("; in plane: the force in the plane of motion"),
+            say(KNOWN): say("; known: the force without the component that is not determined"),
         }.get(head[1], "")
         meaning = say(
-            "peaks of what the link before puts on the link after; radial square to the joint's "
-            "axis, axial along it, tilting moment square to it, turning about it"
+            "peaks of what the link before puts on the link after, the ground before the first joint and "
+            "after the last; radial square to the joint's axis, axial along it, tilting moment square to it, "
+            "turning about it"
         )
+        cells = {cell for row in rows for cell in row}
+        without += say("; -: not determined") if force_words.OPEN in cells else ""
         tables.append(Group(number_table(head, rows), Text(meaning + without, style="dim")))
     return page(found.motion.linkage.heading, facts, *tables)
 
+
+#: What a sizing has that the JSON has elsewhere.
+IN_UNITS = ("bearings", "unit", "input_unit")
 
 #: The head of the column of whole forces.
 WHOLE = "force\n[N]"
@@ -188,7 +231,7 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
             (row, i): float(cells[i])
             for row, cells in enumerate(rows)
             for i in columns
-            if cells[i] not in (say(force_words.OPEN), "")
+            if cells[i] not in (force_words.OPEN, "")
         }
         for (row, i), size in sizes.items():
             # what is left of rounding
@@ -198,7 +241,7 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
 
 
 def _peak(burden: Burden) -> str:
-    return number(burden.peak.value) if math.isfinite(burden.peak.value) else say(force_words.OPEN)
+    return number(burden.peak.value) if math.isfinite(burden.peak.value) else force_words.OPEN
 
 
 def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
@@ -273,6 +316,7 @@ def as_dict(found: CircuitForces) -> dict[str, Any]:
             "at_rest": forces.at_rest,
         },
         "circuit": found.circuit.index,
+        "within_stops": None if forces.part is None else vars(forces.part),
         "rows": len(forces.status),
         "acting": _acting(forces),
         **numbers(found),
@@ -288,7 +332,7 @@ def numbers(found: CircuitForces) -> dict[str, Any]:
     forces, sizing, shaken = found.forces, found.sizing, found.shaking
     drive = None
     if sizing is not None:
-        drive = {name: value for name, value in vars(sizing).items() if name != "bearings"}
+        drive = {name: value for name, value in vars(sizing).items() if name not in IN_UNITS}
         drive |= {name: _plain(drive[name]) for name in ("peak_torque", "peak_power", "braking_power")}
     joints = {}
     for name, reaction in forces.reactions.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,9 +12,10 @@ from rich.console import RenderableType
 from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
+from sevenbar.reporting.force_words import free_spin_facts
 from sevenbar.reporting.page import Facts, number_table, page
 from sevenbar.text.printing import figure_of, lines, text_of
-from sevenbar.text.words import say
+from sevenbar.text.words import retold, say
 
 #: How a motion goes on, in words.
 GOES_ON = {
@@ -25,10 +26,21 @@ GOES_ON = {
     "passing": "repeats nothing within this time",
     "ends": "leaves the circuit, which ends",
     "driven": "with dampers or a motor",
+    "meets stops": "meets its stops",
+    "on its stop": "ends at rest on a stop",
 }
 
+#: Speeds below this part of the greatest [1], and angles [deg] and lengths below this part of a turn, or of
+#: the way that the rows go, are rounding in words.
+ROUNDING = 1e-12
 
-def _angle(value: float, *, turns: bool, unit: str) -> str:
+#: Stops met that are listed.
+MOST_MET = 4
+
+
+def _angle(value: float, *, turns: bool, unit: str, scale: float = 0.0) -> str:
+    """A value with its unit; what is rounding compared with a `scale` is 0."""
+    value = 0.0 if abs(value) <= ROUNDING * scale else value
     return f"{math.degrees(value):.9g} deg" if turns else f"{value:.9g} {unit}"
 
 
@@ -36,20 +48,28 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
     """What there is to say of a free motion: labels and texts."""
     name = found.columns[found.input_column]
 
+    way = math.tau if found.input_turns else float(np.nanmax(np.abs(found.input)))
+    fastest = _fastest(found)
+
     def value(x: float) -> str:
-        return _angle(float(x), turns=found.input_turns, unit=found.length_unit)
+        return _angle(float(x), turns=found.input_turns, unit=found.length_unit, scale=way)
+
+    def speed(x: float) -> str:
+        shown = _angle(float(x), turns=found.input_turns, unit=found.length_unit, scale=fastest)
+        return f"{shown}/s"
 
     facts = [
         (say("motion"), say(GOES_ON[found.kind])),
         (say("time"), say("0 to {end:g} s, {count} rows", end=found.duration, count=len(found.time))),
-        (say("start"), f"{name} = {value(found.input[0])}, {value(found.speed[0])}/s"),
-        (say("end"), f"{name} = {value(found.input[-1])}, {value(found.speed[-1])}/s"),
+        (say("start"), f"{name} = {value(found.input[0])}, {speed(found.speed[0])}"),
+        (say("end"), f"{name} = {value(found.input[-1])}, {speed(found.speed[-1])}"),
     ]
     if found.period is not None:
         facts.append((say("period"), f"{found.period:.12g} s"))
     if found.turning:
         turning = say(", ").join(f"{name} = {value(point.input)}" for point in found.turning)
         facts.append((say("turns back at"), turning))
+    facts += _stop_facts(found, name, value, speed)
     energy = say("{energy:.9g} J, of these rows", energy=np.nanmax(found.kinetic))
     facts.append((say("greatest kinetic energy"), energy))
     if math.isfinite(found.energy_error):
@@ -63,9 +83,53 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
     return facts
 
 
+def _fastest(found: FreeMotion) -> float:
+    """The greatest speed of the input on the rows, compared with which others may be rounding."""
+    known = np.abs(found.speed[np.isfinite(found.speed)])
+    return float(known.max()) if known.size else 0.0
+
+
+def _stop_facts(
+    found: FreeMotion, name: str, value: Callable[[float], str], speed: Callable[[float], str]
+) -> list[tuple[str, str]]:
+    """Which stops are met, and how it rests on one."""
+    facts = []
+    met = [
+        say(
+            "{stop} at {joint} = {value} after {time} s with {speed}",
+            stop=retold(one.stop), joint=name, value=value(one.input), time=f"{one.time:.6g}",
+            speed=speed(one.speed),
+        )
+        for one in found.impacts[:MOST_MET]
+    ]  # fmt: skip
+    if met:
+        more = len(found.impacts) - len(met)
+        if more:
+            met.append(say("{count} more", count=more))
+        facts.append((say("meets"), say("; ").join(met)))
+    if (rest := found.rest) is not None:
+        held = say(
+            "its stop at {joint} = {value} with {holding} ({stop})",
+            joint=name, value=value(rest.input), holding=holding_text(rest), stop=retold(rest.stop),
+        )  # fmt: skip
+        if found.rests_from > 0:
+            held = say("{held}, from {time} s on", held=held, time=f"{found.rests_from:.6g}")
+        facts.append((say("rests on"), held))
+    if found.impacts:
+        facts.append((say("restitution"), f"{found.restitution:g}"))
+    return facts
+
+
+def holding_text(place: Equilibrium) -> str:
+    """What a stop gives at rest; "-" where its joint does not move there."""
+    if not math.isfinite(place.holding):
+        return "-"
+    return f"{abs(place.holding):.4g} {place.holding_unit}"
+
+
 @text_of.register
 def _(found: FreeMotion) -> str:
-    return lines(f"free motion of {found.heading}", free_facts(found))
+    return lines(f"free motion of {found.heading}", [*free_spin_facts(found.spin), *free_facts(found)])
 
 
 @figure_of.register
@@ -78,21 +142,38 @@ def _(found: FreeMotion, **options: Any) -> Any:
 def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
     fall, places = found
     facts = Facts()
-    facts.add_all(free_facts(fall))
+    # of the equilibria, too
+    spin = {
+        link: max([most, *(place.spin.get(link, 0.0) for place in places)])
+        for link, most in fall.spin.items()
+    }
+    facts.add_all([*free_spin_facts(spin), *free_facts(fall)])
     tables = []
+    stops = any(place.stop for place in places)
+    highest = max([abs(place.potential) for place in places], default=0.0)
     if places:
         rows = [
             [
                 say(place.kind),
-                _angle(place.input, turns=fall.input_turns, unit=fall.length_unit),
+                _place_text(place, fall),
                 _vibration(place),
-                f"{place.potential:.9g}",
+                f"{0.0 if abs(place.potential) <= ROUNDING * highest else place.potential:.9g}",
+                *([holding_text(place) if place.stop else ""] if stops else []),
             ]
             for place in places
         ]
         head = ["equilibrium", fall.columns[fall.input_column], "vibration [rad/s]", "potential [J]"]
+        head += ["held by its stop"] * stops
         tables.append(number_table(head, rows, words=[0]))
     return page(say("free motion of {linkage}", linkage=fall.heading), facts, *tables)
+
+
+def _place_text(place: Equilibrium, fall: FreeMotion) -> str:
+    """The input of an equilibrium, of a range of rest both ends."""
+    ends = [place.input, place.until] if math.isfinite(place.until) else [place.input]
+    scale = float(fall.input_turns)
+    shown = [_angle(x, turns=fall.input_turns, unit=fall.length_unit, scale=scale) for x in ends]
+    return say(" to ").join(shown)
 
 
 def _vibration(place: Equilibrium) -> str:
@@ -114,6 +195,14 @@ def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]
         "energy_error": fall.energy_error,
         "difference": fall.difference,
         "tail": fall.tail,
+        "idle_spin": dict(fall.spin),
+        "restitution": fall.restitution,
+        "impacts": [
+            {"time_s": one.time, "stop": one.stop, "input": one.input, "speed": one.speed}
+            for one in fall.impacts
+        ],
+        "rests_from_s": None if fall.rest is None else fall.rests_from,
+        "rest": None if fall.rest is None else _rest_dict(fall.rest),
         "equilibria": [
             {
                 "kind": place.kind,
@@ -121,10 +210,22 @@ def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]
                 "frequency_rad_s": place.frequency,
                 "rate_1_s": place.rate,
                 "potential_J": place.potential,
+                "until": place.until,
+                "idle_spin": dict(place.spin),
             }
+            | (_held_dict(place) if place.stop else {})
             for place in places
         ],
     }
+
+
+def _held_dict(place: Equilibrium) -> dict[str, Any]:
+    """What holds an equilibrium on its stop."""
+    return {"stop": place.stop, "holding": place.holding, "holding_unit": place.holding_unit}
+
+
+def _rest_dict(place: Equilibrium) -> dict[str, Any]:
+    return {"input": place.input, "potential_J": place.potential} | _held_dict(place)
 
 
 def free_report(formats: Sequence[str]) -> Report[tuple[FreeMotion, Sequence[Equilibrium]]]:

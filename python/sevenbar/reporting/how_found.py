@@ -58,6 +58,8 @@ def how_found(motion: Motion) -> str:
             )
     elif search.freedoms > 1:
         parts.append(say("the loop moves out of them with {count} freedoms", count=search.freedoms))
+    elif motion.motion_type == "not-followed":
+        parts.append(say("motions that lead out of them could not be followed"))
     else:
         parts.append(say("no motion leads out of them"))
     if counted := _counted(search):

@@ -10,11 +10,12 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.kinematics.circuits.modes import Modes
-from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.reporting.facts import completeness_text
+from sevenbar.kinematics.circuits.motion import Motion, Solvable
+from sevenbar.kinematics.circuits.poses_at import SAME_POSE, PosesAt
+from sevenbar.reporting.facts import completeness_text, idle_text
 from sevenbar.reporting.how_found import left_open
 from sevenbar.reporting.page import Facts
+from sevenbar.reporting.pose_text import driven_text, rates_sheets
 from sevenbar.reporting.shown import value_text
 from sevenbar.reporting.summary import GAP, Sheet, modes_sheets, summary
 from sevenbar.text.words import language, say, spoken
@@ -50,8 +51,14 @@ def motion_page(motion: Motion, *, ranges: bool = False) -> RenderableType:
     return _Page(parts)
 
 
-def modes_page(linkage: Loop, column: int, modes: Modes) -> RenderableType:
-    """All assembly modes at a value of a column, a row each."""
+def modes_page(
+    linkage: Solvable, column: int, modes: Modes, poses: PosesAt | None = None, limit: float | None = None
+) -> RenderableType:
+    """All assembly modes at a value of a column, a row each, and their rates in `poses`.
+
+    `limit` is the nearest value up to which the loop closes, where it does not close at this one.
+    """
+    own = [] if poses is None else [poses.nearest(q, within=SAME_POSE) for q in modes.q]
 
     def parts(width: int) -> Iterator[RenderableType]:
         yield Text(linkage.heading, style="bold underline")
@@ -66,7 +73,30 @@ def modes_page(linkage: Loop, column: int, modes: Modes) -> RenderableType:
         )  # fmt: skip
         if modes.open_by.size:
             yield Text(left_open(modes.open_by, modes.agree))
+        if limit is not None:
+            nearest = value_text(linkage, column, limit)
+            yield Text(
+                say("the nearest limit of {joint} is {value}", joint=linkage.columns[column], value=nearest)
+            )
         for sheet in modes_sheets(linkage, modes, width) if count else ():
+            yield Text()
+            yield _table(sheet)
+        known = [pose for pose in own if pose is not None]
+        if not known:
+            return
+        yield Text()
+        yield Text(
+            say(
+                "rates with {driven}, along x, y, z of the report frame",
+                driven=driven_text(linkage, known[0]),
+            )
+        )
+        if len(known) < len(own):
+            others = ", ".join(str(i) for i, pose in enumerate(own) if pose is None)
+            yield Text(say("no motion leads through mode {modes}", modes=others))
+        if linkage.idle:
+            yield Text(idle_text(linkage.idle))
+        for sheet in rates_sheets(linkage, [(str(i), pose) for i, pose in enumerate(own)], width):
             yield Text()
             yield _table(sheet)
 

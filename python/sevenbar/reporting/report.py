@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.modes import Modes
-from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.circuits.motion import Motion, Solvable
+from sevenbar.kinematics.circuits.poses_at import SAME_POSE, PosesAt
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.extents import extents_dict
@@ -91,6 +93,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         "open_by": motion.search.open_by.tolist(),
         "agree": motion.agree,
         "near_motion": None if motion.near_motion is None else vars(motion.near_motion),
+        "reason": None if motion.reason is None else asdict(motion.reason),
         "circuits": [
             _circuit_dict(circuit)
             | (extents_dict(circuit, linkage) if with_extents else {})
@@ -241,27 +244,50 @@ def write(
     return motion_report(figures).write(motion, folder, force=force)
 
 
-def modes_report(linkage: Loop, column: int) -> Report[Modes]:
-    """How the assembly modes at a value of a column are reported."""
-    return Report(partial(_modes_text, linkage, column), partial(_modes_dict, linkage, column), spoken=True)
+def modes_report(
+    linkage: Solvable,
+    column: int,
+    poses: PosesAt | None = None,
+    *,
+    limit: float | None = None,
+    rates: bool = True,
+) -> Report[Modes]:
+    """How the assembly modes at a value of a column are reported.
+
+    With `poses`, which has their rates, also these, printed or not; `limit` is the nearest value of the
+    column up to which the loop closes, where it does not close at this one.
+    """
+    return Report(
+        partial(_modes_text, linkage, column, poses if rates else None, limit),
+        partial(_modes_dict, linkage, column, poses, limit),
+        spoken=True,
+    )
 
 
-def modes_json(linkage: Loop, modes: Modes, column: int) -> str:
+def modes_json(linkage: Solvable, modes: Modes, column: int) -> str:
     """All assembly modes as JSON text: angles in radians, lengths in the linkage's unit."""
     return modes_report(linkage, column).json(modes)
 
 
-def print_modes(linkage: Loop, modes: Modes, column: int, console: Console | None = None) -> None:
+def print_modes(linkage: Solvable, modes: Modes, column: int, console: Console | None = None) -> None:
     """Prints a table of all assembly modes, one row a mode; angles in degrees."""
     modes_report(linkage, column).print(modes, console)
 
 
-def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
+def _modes_dict(
+    linkage: Solvable, column: int, poses: PosesAt | None, limit: float | None, modes: Modes
+) -> dict[str, Any]:
+    from sevenbar.reporting.pose_text import pose_dict
+
+    own = [None] * len(modes) if poses is None else [poses.nearest(q, within=SAME_POSE) for q in modes.q]
+    rates = [{} if pose is None else pose_dict(pose) for pose in own]
+    drive = None if poses is None else {"speed": poses.speed, "acceleration": poses.acceleration}
     return {
         "format": 1,
         "linkage": {"name": linkage.name, "kind": linkage.kind},
-        "units": {"length": linkage.length_unit, "angle": "rad"},
+        "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
         "input": {"joint": linkage.columns[column], "value": modes.input},
+        "drive": drive,
         "completeness": modes.completeness,
         "open_by": modes.open_by.tolist(),
         "agree": modes.agree,
@@ -269,14 +295,17 @@ def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
         "count": len(modes),
         "columns": _columns(linkage),
         "modes": [
-            {"q": q.tolist(), "residual": float(residual), "status": str(status)}
-            for q, residual, status in zip(modes.q, modes.residual, modes.status, strict=True)
+            {"q": q.tolist(), "residual": float(residual), "status": str(status), **each}
+            for q, residual, status, each in zip(modes.q, modes.residual, modes.status, rates, strict=True)
         ],
+        "nearest_limit": limit,
     }
 
 
-def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
+def _modes_text(
+    linkage: Solvable, column: int, poses: PosesAt | None, limit: float | None, modes: Modes
+) -> RenderableType:
     # rich takes a while to load, and JSON does without it
     from sevenbar.reporting.printed import modes_page
 
-    return modes_page(linkage, column, modes)
+    return modes_page(linkage, column, modes, poses, limit)

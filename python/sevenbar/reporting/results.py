@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import sevenbar.reporting.pose_text  # noqa: F401  what a pose prints
 from sevenbar.arrays import Floats, Words
 from sevenbar.errors import check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -25,7 +26,7 @@ from sevenbar.reporting.facts import (
     facts_of,
     joints_text,
 )
-from sevenbar.reporting.shown import Shown, drive_text, rows_text
+from sevenbar.reporting.shown import Shown, drive_text, rows_text, turned
 from sevenbar.reporting.summary import circuit_facts
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
@@ -120,6 +121,9 @@ def _(circuit: Circuit) -> str:
     def extent(ends: tuple[float, float] | None, show: Shown, *, as_limits: bool = False) -> str:
         if ends is None:
             return "full turns"
+        if circuit.output_turns and not as_limits:
+            turn = turned(*ends)
+            ends = ends[0] + turn, ends[1] + turn
         return " to ".join(show.range(*ends) if as_limits else map(show, ends))
 
     def still(kind: str) -> str:
@@ -141,13 +145,19 @@ def _(circuit: Circuit) -> str:
             (circuit.columns[circuit.output_column], extent(circuit.output_range, result)),
             ("input dead centres", still("input")),
             ("output dead centres", still("output")),
-            ("time ratio", "" if circuit.time_ratio is None else f"{circuit.time_ratio:.6g}"),
+            ("time ratio", _time_ratio(circuit)),
             ("transmission angle", range_of(_known_transmission(circuit), Shown("rad"))),
             ("velocity", range_of(circuit.velocity)),
             ("acceleration", range_of(circuit.acceleration)),
             ("closure error", closure_text([circuit]).rstrip()),
         ],
     )
+
+
+def _time_ratio(circuit: Circuit) -> str:
+    if circuit.many_strokes:
+        return "not defined: more than two strokes"
+    return "" if circuit.time_ratio is None else f"{circuit.time_ratio:.6g}"
 
 
 def _known_transmission(circuit: Circuit) -> Extremes | None:

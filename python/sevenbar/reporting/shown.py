@@ -12,6 +12,9 @@ from sevenbar.text.words import say
 #: Values below this share of what the linkage's size and its drive make are rounding.
 REST = 1e-12
 
+#: A middle so near to half a turn [turns] is there.
+SAME_TURN = 1e-9
+
 #: Digits of forces, torques and what follows from them.
 DIGITS = 4
 
@@ -39,6 +42,15 @@ class Shown:
     def same(self, a: float, b: float) -> bool:
         """Whether two values are one place, to the digits that are shown."""
         return self(a, whole=True) == self(b, whole=True)
+
+
+def turned(low: float, high: float) -> float:
+    """The whole turns [rad] that bring the middle of a range of angles into (-pi, pi], as modes are.
+
+    >>> [round(math.degrees(turned(*map(math.radians, ends)))) for ends in ((-266.4, -93.6), (7, 68))]
+    [360, 0]
+    """
+    return -math.tau * math.ceil(((low + high) / 2 - math.pi) / math.tau - SAME_TURN)
 
 
 def number(value: float) -> str:

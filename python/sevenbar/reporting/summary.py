@@ -83,16 +83,30 @@ def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
         numbers = np.round(np.degrees(q) if turns else q, 3) + 0.0  # no -0
         head = f"{name}\n[{'deg' if turns else unit}]"
         columns.append((head, [f"{x:.3f}" for x in numbers]))
+    return wide_sheets([(say("mode"), [f"{i}" for i in range(count)])], columns[::-1], room)
+
+
+#: A column of a table: its head, and its cells.
+Column = tuple[str, list[str]]
+
+
+def wide_sheets(first: Sequence[Column], columns: Sequence[Column], room: int) -> list[Sheet]:
+    """Columns in as many tables as lines of `room` characters ask, each with the `first` ones."""
+
+    def width(column: Column) -> int:
+        head, cells = column
+        return GAP + max(cell_len(text) for text in [*head.split("\n"), *cells])
+
     sheets = []
+    columns = list(columns)[::-1]
     while columns:
-        heads, block = [say("mode")], [[f"{i}" for i in range(count)]]
-        left = room - cell_len(heads[0])
+        heads, block = [head for head, _ in first], [cells for _, cells in first]
+        left = room + GAP - sum(map(width, first))
         while columns:
-            head, cells = columns[-1]
-            left -= GAP + max(cell_len(text) for text in [*head.split("\n"), *cells])
-            if left < 0 and len(block) > 1:
+            left -= width(columns[-1])
+            if left < 0 and len(block) > len(first):
                 break
-            columns.pop()
+            head, cells = columns.pop()
             heads.append(head)
             block.append(cells)
         everywhere = frozenset(range(len(heads)))

@@ -4,20 +4,31 @@
     xml = mjcf(model)
 
 Lengths are in metres. A joint's coordinate is Sevenbar's column of it, also where the tree goes through the
-joint backwards. The key frame `start` holds the pose and the velocities of the prototype: the driven joint
-carries a flywheel, so it runs on at its speed without an actuator, with gravity or without.
+joint backwards; a ball counts from the pose of the file. Bodies lie in the start pose, closed, as a viewer
+opens them, and each joint has its value there as `ref`. The key frame `start` has the velocities, too.
+
+The input is driven in one of the ways `DRIVES`:
+
+- velocity   an actuator that keeps the motion's speed by itself; its control is a speed on top
+- position   an actuator whose control is the input's value
+- motor      an actuator whose control is torque or force
+- flywheel   no actuator: so great an inertia that it runs on at the speed of the key frame, gravity or not
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
+from typing import Literal
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.loop.rigid import inverse, quaternion
+from sevenbar.kinematics.loop.geometry import moved_by
+from sevenbar.kinematics.loop.joints import Step
+from sevenbar.kinematics.loop.rigid import inverse
 from sevenbar.simulation.mjcf_acting import add_springs, gyration, heaviest, inertial, joint_spring
 from sevenbar.simulation.mjcf_elements import add, mark, numbers, placed
 from sevenbar.simulation.prototype import GROUND, STILL, Connection, Prototype, SpinRule
@@ -25,6 +36,13 @@ from sevenbar.text.units import LENGTHS
 
 #: The flywheel's inertia, in those of a body: constraints change its speed by about the inverse of this.
 FLYWHEEL = 1e10
+
+#: How the input is driven, and the words for it.
+Drive = Literal["velocity", "position", "motor", "flywheel"]
+DRIVES: tuple[Drive, ...] = ("velocity", "position", "motor", "flywheel")
+
+#: Gains of the actuators, in those that stop the inertia of a body within a second: of speed, of position.
+SPEED_GAIN, POSITION_GAIN = 1e3, 1e5
 
 #: Constraints come back with this time constant, in time steps: MuJoCo's least, below which it is unstable.
 TIME_CONSTANT = 2.0
@@ -53,12 +71,12 @@ def cut(model: Prototype) -> Cut:
     return Cut(chosen[0], False) if chosen else Cut(len(model.connections) - 1, True)
 
 
-def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
+def mjcf(model: Prototype, *, time_step: float = 1e-3, drive: Drive = "flywheel") -> str:
     """The MJCF of a prototype: a text that MuJoCo loads.
 
     Bodies are `link_1` .. and the crosses of universal joints; joints are named as Sevenbar's columns, a
     ball by its own name, the slide of a screw `<joint>.slide`. `loop` is the equality that closes the loop
-    between two sites, `time_step` [s] also sets how fast it comes back.
+    between two sites, `time_step` [s] also sets how fast it comes back. The actuator of a `drive` is `drive`.
 
         >>> import sevenbar as sb
         >>> course, model = sb.simulation.prepared(sb.load("rssr"))
@@ -70,7 +88,9 @@ def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
     root.append(ElementTree.Comment(" made by Sevenbar; lengths in metres, angles in radians "))
     add(root, "compiler", angle="radian", autolimits="true")
     gravity = "0 0 0" if model.acting is None else numbers(model.acting.gravity)
-    how = {"integrator": "Euler", "solver": "Newton", "iterations": "100", "tolerance": "0"}
+    # an actuator's gain is met within a step, which needs an implicit one
+    integrator = "Euler" if drive == "flywheel" else "implicitfast"
+    how = {"integrator": integrator, "solver": "Newton", "iterations": "100", "tolerance": "0"}
     add(root, "option", timestep=f"{time_step:.17g}", gravity=gravity, **how)
     extent = max(model.size * metre / 3, 1e-9)
     places = np.array([model.frames(number)[0][:3, 3] for number in range(len(model.connections))])
@@ -82,13 +102,45 @@ def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
     add(default, "equality", solref=stiff, solimp=f"{IMPEDANCE} {IMPEDANCE} 0.001 0.5 2")
     world = add(root, "worldbody")
     add(world, "light", pos=numbers([0, 0, 3 * extent]), dir="0 0 -1", directional="true")
-    tree = _Tree(model, world, add(root, "equality"))
+    tree = _Tree(model, world, add(root, "equality"), flywheel=drive == "flywheel")
     tree.close(cut(model))
     add_springs(root, model, tree.elements)
+    control = {} if drive == "flywheel" else {"ctrl": _actuator(root, model, drive)}
     frames = add(root, "keyframe")
-    add(frames, "key", name="start", qpos=numbers(tree.qpos), qvel=numbers(tree.qvel))
+    add(frames, "key", name="start", qpos=numbers(tree.qpos), qvel=numbers(tree.qvel), **control)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _actuator(root: Element, model: Prototype, drive: Drive) -> str:
+    """Adds the actuator of the input; its control at the start."""
+    number, freedom = model.drive.connection, model.drive.freedom
+    unit = 1.0 if model.drive.turns else LENGTHS[model.length_unit]
+    joint = next(
+        name
+        for name, step in model.connections[number].row.named(model.connections[number].name)
+        if step.number == freedom
+    )
+    value, speed = (float(rows[number, freedom]) * unit for rows in (model.values, model.rates))
+    by_speed, by_place = (gain * _inertia(model) for gain in (SPEED_GAIN, POSITION_GAIN))
+    how = {
+        "velocity": {"gainprm": [by_speed], "biasprm": [by_speed * speed, 0.0, -by_speed]},
+        "position": {"gainprm": [by_place], "biasprm": [0.0, -by_place, -by_speed]},
+        "motor": {"gainprm": [1.0]},
+    }[drive]
+    bias = {"biastype": "affine"} if "biasprm" in how else {}
+    actuators = add(root, "actuator")
+    written = {key: numbers(values) for key, values in how.items()}
+    add(actuators, "general", name="drive", joint=joint, gaintype="fixed", **bias, **written)
+    return f"{value:.17g}" if drive == "position" else "0"
+
+
+def _inertia(model: Prototype) -> float:
+    """The inertia [kg m^2; of a slide kg] of a body, by which the drive is measured."""
+    mass, drive = heaviest(model), model.drive
+    inertia = mass * (gyration(model) ** 2 if drive.turns else 1.0)
+    advance = model.connections[drive.connection].advance * LENGTHS[model.length_unit]
+    return max(inertia, mass * advance**2)
 
 
 class _Tree:
@@ -97,7 +149,8 @@ class _Tree:
     `qpos` and `qvel` are joint coordinates and velocities of the start, in the order of MuJoCo.
     """
 
-    def __init__(self, model: Prototype, world: Element, equality: Element) -> None:
+    def __init__(self, model: Prototype, world: Element, equality: Element, *, flywheel: bool) -> None:
+        self._has_flywheel = flywheel
         self._model, self._metre, self._equality = model, LENGTHS[model.length_unit], equality
         self.elements: dict[int, Element] = {GROUND: world}
         self.qpos: list[float] = []
@@ -133,14 +186,17 @@ class _Tree:
 
         Past the last joint a bare body that the ground's frame is welded to.
         """
-        child, near, far = joint.after, joint.frame_before, joint.frame_after
+        model = self._model
+        above, child, far = joint.before, joint.after, joint.frame_after
         if way < 0:
-            child, near, far = joint.before, far, near
+            above, child, far = joint.after, joint.before, joint.frame_before
         elif child in self._rules:
             return self._add_held_ball(parent, joint, self._rules[child])
-        name = self._model.bodies[child].name if child != GROUND else "loop_end_body"
-        far = far if child != GROUND else np.eye(4)
-        body = self._add_body(parent, name, near @ inverse(far), child)
+        own = model.placed(child)
+        name = model.bodies[child].name if child != GROUND else "loop_end_body"
+        if child == GROUND:
+            own, far = far, np.eye(4)
+        body = self._add_body(parent, name, inverse(model.placed(above)) @ own, child)
         self._add_freedoms(body, joint, number, far, way)
         if child == GROUND:
             mark(body, "loop_end", far, self._model)
@@ -168,30 +224,47 @@ class _Tree:
 
     def _add_freedoms(self, body: Element, joint: Connection, number: int, frame: Floats, way: float) -> None:
         """The joints of MuJoCo that make up one of ours, at `frame` of the body, and their start."""
-        place = {"pos": numbers(frame[:3, 3] * self._metre)}
-        steps = [] if joint.row.is_ball else joint.row.named(joint.name)
-        # a joint of MuJoCo is carried by those before it in its body
-        for name, step in steps if way > 0 else steps[::-1]:
-            axis = {"axis": numbers(way * frame[:3, step.axis])}
-            kind, at, unit = ("hinge", place, 1.0) if step.freedom == "turn" else ("slide", {}, self._metre)
-            wheel = self._flywheel(number, step.number)
-            spring = joint_spring(self._model, number, step.number)
-            add(body, "joint", name=name, type=kind, **at, **axis, **wheel, **spring)
-            self.qpos.append(self._model.values[number, step.number] * unit)
-            self.qvel.append(self._model.rates[number, step.number] * unit)
-            if step.driven:
-                tie, advance = f"{joint.name}_screw", numbers([0, joint.advance * self._metre, 0, 0, 0])
-                add(self._equality, "joint", name=tie, joint1=name, joint2=joint.name, polycoef=advance)
         if joint.row.is_ball:
-            add(body, "joint", name=joint.name, type="ball", **place)
-            before, after = self._model.frames(number)
-            # of the body against its parent, at the start and where the two frames of the joint agree
-            fixed, moved = (before, after) if way > 0 else (after, before)
-            turn_matrix = frame[:3, :3] @ fixed[:3, :3].T @ moved[:3, :3] @ frame[:3, :3].T
-            self.qpos += list(quaternion(turn_matrix))
+            add(body, "joint", name=joint.name, type="ball", pos=numbers(frame[:3, 3] * self._metre))
+            # counted from the pose in which the bodies lie
+            self.qpos += [1.0, 0.0, 0.0, 0.0]
             own, other = (joint.after, joint.before) if way > 0 else (joint.before, joint.after)
             rotation = self._model.placed(own)[:3, :3]
             self.qvel += list(rotation.T @ (self._spin(own) - self._spin(other)))
+            return
+        steps = joint.row.named(joint.name)
+        carried = self._carried([step for _, step in steps], number, way)
+        # a joint of MuJoCo is carried by those before it in its body
+        order = range(len(steps)) if way > 0 else reversed(range(len(steps)))
+        for k in order:
+            (name, step), at = steps[k], frame @ carried[k]
+            turns = step.freedom == "turn"
+            unit, place = (1.0, {"pos": numbers(at[:3, 3] * self._metre)}) if turns else (self._metre, {})
+            value = float(self._model.values[number, step.number]) * unit
+            add(
+                body,
+                "joint",
+                name=name,
+                type="hinge" if turns else "slide",
+                **place,
+                axis=numbers(way * at[:3, step.axis]),
+                ref=f"{value:.17g}",
+                **self._flywheel(number, step.number),
+                **joint_spring(self._model, number, step.number),
+            )
+            self.qpos.append(value)
+            self.qvel.append(float(self._model.rates[number, step.number]) * unit)
+            if step.driven:
+                tie, advance = f"{joint.name}_screw", numbers([0, joint.advance * self._metre, 0, 0, 0])
+                add(self._equality, "joint", name=tie, joint1=name, joint2=joint.name, polycoef=advance)
+
+    def _carried(self, steps: list[Step], number: int, way: float) -> list[Floats]:
+        """The frame (4, 4) of each step at the start, in the joint's frame on the body that it moves."""
+        values = self._model.values[number]
+        moves = [moved_by(step, np.array([values[step.number]]))[0] for step in steps]
+        if way < 0:
+            return [reduce(np.matmul, moves[:k], np.eye(4)) for k in range(len(moves))]
+        return [inverse(reduce(np.matmul, moves[k + 1 :], np.eye(4))) for k in range(len(moves))]
 
     def _add_held_ball(self, parent: Element, joint: Connection, rule: SpinRule) -> Element:
         """A ball whose link's idle spin is held: two hinges, about the two directions that stay square."""
@@ -213,9 +286,6 @@ class _Tree:
     def _flywheel(self, number: int, freedom: int) -> dict[str, str]:
         """The inertia that keeps the driven joint at its speed."""
         drive = self._model.drive
-        if number != drive.connection or freedom != drive.freedom:
+        if not self._has_flywheel or number != drive.connection or freedom != drive.freedom:
             return {}
-        mass = heaviest(self._model)
-        inertia = mass * (gyration(self._model) ** 2 if drive.turns else 1.0)
-        inertia = max(inertia, mass * (self._model.connections[number].advance * self._metre) ** 2)
-        return {"armature": f"{FLYWHEEL * inertia:.17g}"}
+        return {"armature": f"{FLYWHEEL * _inertia(self._model):.17g}"}

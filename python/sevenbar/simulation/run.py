@@ -72,7 +72,10 @@ def prepared(
 def ready(engine: str) -> None:
     """Nothing where the engine is known and installed; else `RequestError` or `MissingExtraError`."""
     if engine not in ENGINES:
-        raise RequestError(f"engine: {shown(engine)} is not an engine; give {' or '.join(ENGINES)}")
+        hint = ""
+        if isinstance(engine, str) and engine.lower() in ("adams", "msc adams", "urdf", "simscape"):
+            hint = "; a file for another program is written by 'sevenbar export .. --to', as in --to adams"
+        raise RequestError(f"engine: {shown(engine)} is not an engine; give {' or '.join(ENGINES)}{hint}")
     imported(engine)
 
 

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import hmac
 import ipaddress
+import re
 import secrets
 import socket
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from urllib.parse import urlsplit
+
+#: Letters of the longest path behind the key: those of the page are some dozens.
+LONGEST_PATH = 1_000
+
+#: A `Host`: an address in brackets or a name, and perhaps a port.
+_NETLOC = re.compile(r"(?:\[([0-9A-Fa-f:.%]+)\]|([^\s\[\]:@/?#]+))(?::[0-9]{0,5})?")
 
 #: Random bytes of a key: 128 bits, which nobody guesses.
 KEY_BYTES = 16
@@ -52,19 +58,18 @@ class Guard:
         opens_socket = any(value.strip().lower() == "websocket" for value in headers.get("Upgrade", []))
         own = len(hosts) == 1 and self._serves(hosts[0])
         same = origins == [f"http://{hosts[0]}"] if own and (origins or opens_socket) else own
-        return f"/{rest}" if known and own and same else None
+        return f"/{rest}" if known and own and same and len(rest) <= LONGEST_PATH else None
 
     def _serves(self, netloc: str) -> bool:
         """Whether the `Host` of a request is a name of this server; its port may be that of a tunnel.
 
         A number is: only a name can be made to lead here by whoever owns it.
         """
-        try:
-            name, _ = (urlsplit(f"//{netloc}").hostname or "").lower(), urlsplit(f"//{netloc}").port
-        except ValueError:
+        # urlsplit would drop what follows a bracket
+        parts = _NETLOC.fullmatch(netloc)
+        if parts is None:
             return False
-        if not set("@/?#").isdisjoint(netloc):
-            return False
+        name = (parts[1] or parts[2]).lower()
         own = {"localhost", self.host.lower()}
         served = _address(self.host)
         if served is not None and served.is_unspecified:

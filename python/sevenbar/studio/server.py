@@ -16,6 +16,7 @@ from sevenbar.studio.local_server import LocalServer
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.shelf import Shelf
 from sevenbar.studio.tab import Tab
+from sevenbar.text.paths import is_file
 
 #: How often [s] a server that waits looks whether it is to end.
 GLANCE = 0.25
@@ -72,7 +73,7 @@ class StudioServer:
     def _begun(self) -> tuple[Session, Shelf | None]:
         """What a tab begins with; a file that was saved, or changed, since is read anew if it can be."""
         shelf = None if self._folder is None else Shelf(self._folder)
-        if shelf is not None and Path(self._source).is_file():
+        if shelf is not None and is_file(self._source):
             try:
                 content = shelf.read(Path(self._source))
                 return self._session(decoded(content, self._source)), shelf

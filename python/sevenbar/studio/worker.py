@@ -8,6 +8,8 @@ from collections.abc import Callable, Hashable
 from contextlib import suppress
 from functools import partial
 
+from sevenbar._core import WorkStop
+
 #: Time [s] from picture to picture while a motion plays.
 FRAME = 1 / 30
 
@@ -32,6 +34,8 @@ class Worker(threading.Thread):
         self._asked: dict[Hashable, _Asked] = {}
         self._wake = threading.Condition()
         self._ended = False
+        # what the core does in this thread, given up when the tab is gone
+        self._giving_up = WorkStop()
 
     def ask(self, key: Hashable, action: Callable[[], object], *, delay: float = 0.0) -> None:
         """Has an action done, after a delay [s]; it takes the place of one with the same key."""
@@ -46,13 +50,18 @@ class Worker(threading.Thread):
             return key in self._asked
 
     def end(self) -> None:
-        """Ends the thread after the action in hand."""
+        """Ends the thread: the action in hand as soon as the core leaves off."""
+        self._giving_up.stop()
         with self._wake:
             self._ended = True
             self._wake.notify()
 
     def run(self) -> None:
         """Until `end`."""
+        with self._giving_up, suppress(KeyboardInterrupt):
+            self._go_on()
+
+    def _go_on(self) -> None:
         last = time.monotonic()
         while True:
             asked = self._due(last)

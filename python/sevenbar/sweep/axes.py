@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,6 +20,9 @@ MOST_LISTED = 1_000_000
 
 #: Most values of one axis that are counted; beyond, neighbours would be one number.
 MOST_COUNTED = 10**12
+
+#: Two plain numbers with a dash, which people write for a range and which would be a difference.
+_DIFFERENCE = re.compile(r"\s*([\d.]+)\s*[-\u2013]\s*([\d.]+)\s*([A-Za-z]*)\s*")
 
 #: How each kind is written, for messages.
 FORMS = "LOW:HIGH:COUNT, a list V1,V2,V3, or LOW..HIGH"
@@ -177,5 +181,11 @@ def axis_from_text(text: str) -> tuple[str, Grid | Span | list[str]]:
         if points := split_grid(values):
             return name, Grid(*points)
     elif listed := split_list(values):
+        if difference := _DIFFERENCE.fullmatch(values):
+            low, high, unit = difference.groups()
+            raise RequestError(
+                f"over: {shown(text)} is {low} less {high}; a range is written {name}={low}..{high}{unit}, "
+                f"or {name}={low}:{high}{unit}:31 for 31 values of it"
+            )
         return name, listed
     raise RequestError(f"over: {shown(text)} is not read; give {name}={FORMS}, as in {name}=200:300:51")

@@ -22,7 +22,7 @@ from sevenbar.kinematics.solvers.batches import (
     rssr_rows,
     rssr_types,
 )
-from sevenbar.kinematics.transmission import coupling_of
+from sevenbar.kinematics.transmission.angle import coupling_of
 from sevenbar.sweep.block import NO_CIRCUIT, Block
 from sevenbar.sweep.plan import OF_TYPES, SweepPlan
 

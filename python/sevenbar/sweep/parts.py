@@ -1,7 +1,8 @@
 """The folder of a sweep: its description and its parts, each there whole or not at all.
 
 `sweep.json` is written first. A part is written aside, brought to the disk and renamed: it is complete where
-its name exists, whatever moment the run was killed at, and it carries the mark of its sweep.
+its name exists, whatever moment the run was killed at. It carries the mark of its sweep, its number and a
+checksum.
 """
 
 from __future__ import annotations
@@ -13,15 +14,19 @@ from pathlib import Path
 from typing import Any
 
 from sevenbar.errors import OutputError
+from sevenbar.sweep.checked import OWN, checksum, flaw
 from sevenbar.sweep.held_folder import HeldFolder, other_maker
 from sevenbar.sweep.plan import FORMAT, SweepPlan
-from sevenbar.sweep.rows import MARK
+from sevenbar.text.paths import is_file
 
 #: The description's file.
 DESCRIPTION = "sweep.json"
 
 #: Digits of a part's number in its name, so that names sort in the order of the parts.
 DIGITS = 6
+
+#: The format whose parts had neither numbers nor checksums.
+WITHOUT_CHECKSUMS = 1
 
 _PART = re.compile(rf"part-(\d{{{DIGITS},}})\.parquet")
 
@@ -39,11 +44,37 @@ def read_description(folder: Path) -> dict[str, Any]:
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise OutputError(f"{path}: cannot be read: {reason}; give the folder of a sweep") from None
-    except ValueError:
+    except (ValueError, RecursionError):
         found = None
-    if not isinstance(found, dict) or found.get("format") != FORMAT or "made_by" not in found:
+    if not isinstance(found, dict) or not isinstance(found.get("made_by"), list):
         raise OutputError(f"{path}: is no description of a sweep of format {FORMAT}; give another folder")
+    if found.get("format") == WITHOUT_CHECKSUMS:
+        raise OutputError(
+            f"{path}: is a sweep of format {WITHOUT_CHECKSUMS}, whose parts carry no checksums; "
+            "sweep into another folder, or read its parts with pandas or DuckDB"
+        )
+    if found.get("format") != FORMAT:
+        raise OutputError(f"{path}: is no description of a sweep of format {FORMAT}; give another folder")
+    if found.get(OWN) != checksum(found):
+        raise OutputError(
+            f"{path}: is damaged or was changed: its checksum is that of other values; give another folder"
+        )
     return found
+
+
+def read_part(folder: Path, part: int, description: Mapping[str, Any]) -> bytes:
+    """A part's file, which is whole and in its place; raises `OutputError` for another."""
+    path = folder / part_name(part)
+    size = description["part_size"]
+    linkages = range(part * size, min((part + 1) * size, description["linkages"]))
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be read: {(error.strerror or str(error)).lower()}") from None
+    wrong = flaw(content, description["mark"], part, linkages)
+    if wrong:
+        raise OutputError(f"{path}: {wrong}; move it away and give --resume")
+    return content
 
 
 def parts_there(folder: Path) -> list[int]:
@@ -54,7 +85,7 @@ def parts_there(folder: Path) -> list[int]:
 
 def is_finished(folder: Path) -> bool:
     """Whether a folder has all the parts of the sweep that it holds, if it holds one."""
-    if not (folder / DESCRIPTION).is_file():
+    if not is_file(folder / DESCRIPTION):
         return False
     return bool(len(parts_there(folder)) == read_description(folder)["parts"])
 
@@ -108,7 +139,8 @@ class PartsFolder(HeldFolder):
         done, total = parts_there(self.path), self._plan.parts
         if not resume:
             self._refuse_unfinished(len(done))
-        self._check_marks(done)
+        for part in done:
+            read_part(self.path, part, description)
         self._done = set(done)
         strangers = [dict(maker) for maker in makers if dict(maker) not in description["made_by"]]
         if len(done) == total or not strangers:
@@ -117,17 +149,3 @@ class PartsFolder(HeldFolder):
             raise OutputError(f"{self.path}: {other_maker(description['made_by'][0], strangers[0])}")
         before = description["made_by"] if done else ()
         self._describe(self._sweep.description([*before, *strangers]))
-
-    def _check_marks(self, done: Sequence[int]) -> None:
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-
-        mark = self._sweep.digest().encode()
-        for part in done:
-            path = self.path / part_name(part)
-            try:
-                own = (pq.read_schema(path).metadata or {}).get(MARK) == mark and part < self._plan.parts
-            except (pa.ArrowException, ValueError):
-                own = False
-            if not own:
-                raise OutputError(f"{path}: is no part of this sweep; move it away and give --resume")

@@ -22,10 +22,11 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
 from sevenbar.kinematics.solvers.batches import simd_level
 from sevenbar.sweep.axes import Given
+from sevenbar.sweep.checked import OWN, checksum
 from sevenbar.sweep.space import Space
 
 #: The format of a sweep's description.
-FORMAT = 1
+FORMAT = 2
 
 #: Linkages of a part: what a processor makes in some tenths of a second to seconds, and a file worth opening.
 PART_OF_TYPES, PART_OF_CIRCUITS, PART_OF_LOOPS = 65536, 16384, 256
@@ -150,7 +151,7 @@ class SweepPlan:
 
     def description(self, makers: Sequence[Mapping[str, str]]) -> dict[str, Any]:
         """What a sweep's description holds: the request and what follows from it; `makers` made its parts."""
-        return {
+        about = {
             **self.request(),
             **self.held.as_dict,
             "length_unit": self.draft.linkage.length_unit,
@@ -160,6 +161,7 @@ class SweepPlan:
             "mark": self.digest(),
             "made_by": [dict(one) for one in makers],
         }
+        return {**about, OWN: checksum(about)}
 
 
 def _part_size(draft: Draft, measures: Sequence[Measure]) -> int:

@@ -14,7 +14,7 @@ import numpy as np
 
 from sevenbar.errors import OutputError, RequestError, of_extra
 from sevenbar.sweep.block import OK
-from sevenbar.sweep.parts import part_name, parts_there, read_description
+from sevenbar.sweep.parts import parts_there, read_description, read_part
 from sevenbar.sweep.rows import need_pyarrow
 from sevenbar.text.printing import Printed, lines, text_of
 
@@ -75,7 +75,10 @@ class Sweep(Printed):
 
     @property
     def parts(self) -> Iterator[pa.Table]:
-        """The rows (a pyarrow Table) of each part, in the order of the linkages; one in memory at a time."""
+        """The rows (a pyarrow Table) of each part, in the order of the linkages; one in memory at a time.
+
+        Raises `OutputError` for a part that is damaged or out of its place.
+        """
         return self._read(())
 
     def _read(self, without: Collection[str]) -> Iterator[pa.Table]:
@@ -83,9 +86,10 @@ class Sweep(Printed):
         import pyarrow.parquet as pq
 
         for part in range(self.description["parts"]):
-            path = None if self.folder is None else self.folder / part_name(part)
+            there = self.folder
+            content = self.contents[part] if there is None else read_part(there, part, self.description)
             # not as a data set, which would guess columns from the path
-            with pq.ParquetFile(BytesIO(self.contents[part]) if path is None else path) as file:
+            with pq.ParquetFile(BytesIO(content)) as file:
                 yield file.read([name for name in file.schema_arrow.names if name not in without])
 
     def table(self) -> pa.Table:

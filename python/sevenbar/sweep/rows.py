@@ -12,22 +12,24 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, of_extra, shown
 from sevenbar.sweep.batches import batched
 from sevenbar.sweep.block import NO_CIRCUIT, Block
+from sevenbar.sweep.checked import MARK, sealed, to_seal
 from sevenbar.sweep.ordinary import analysed
 from sevenbar.sweep.plan import SweepPlan
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-#: The key of the sweep's mark in a Parquet file's metadata.
-MARK = b"sevenbar.sweep"
-
 #: How parts are packed: fixed, since their bits must not depend on defaults that change.
 PACKING: dict[str, Any] = {
     "compression": "zstd",
     "compression_level": 3,
     "version": "2.6",
-    "row_group_size": 2**20,
+    # for other programs: here the checksum of the whole file is compared
+    "write_page_checksum": True,
 }
+
+#: Most rows of a row group.
+ROW_GROUP = 2**20
 
 
 def need_pyarrow() -> None:
@@ -80,8 +82,10 @@ def part_bytes(plan: SweepPlan, part: int, threads: int = 1) -> bytes:
     table = part_table(plan, part, threads)
     words = [field.name for field in table.schema if str(field.type) == "string"]
     sink = BytesIO()
-    pq.write_table(table, sink, use_dictionary=words, **PACKING)
-    return sink.getvalue()
+    with pq.ParquetWriter(sink, table.schema, use_dictionary=words, **PACKING) as writer:
+        writer.write_table(table, ROW_GROUP)
+        writer.add_key_value_metadata(to_seal(part, plan.linkages(part)))
+    return sealed(sink.getvalue())
 
 
 def _table(plan: SweepPlan, first: int, values: Floats, block: Block) -> pa.Table:

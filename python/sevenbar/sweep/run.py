@@ -18,9 +18,10 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from functools import partial
 from itertools import islice
-from multiprocessing import get_context, parent_process
+from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
 
+from sevenbar._core import WorkStop
 from sevenbar.arrays import whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.errors import EngineError, RequestError
@@ -191,9 +192,22 @@ def _filled(
 def made_on_threads(
     make: Callable[[int], bytes], at_once: int, parts: Iterable[int]
 ) -> Generator[Made, None, None]:
-    """What `make` makes of each part as it is finished, on so many threads of this process."""
+    """What `make` makes of each part as it is finished, on so many threads of this process.
+
+    Parts under way are given up where the caller stops.
+    """
+    stop = WorkStop()
+
+    def stoppable(part: int) -> bytes:
+        with stop:
+            return make(part)
+
     with ThreadPoolExecutor(at_once, thread_name_prefix="sweep") as pool:
-        yield from _made(pool, make, at_once, parts)
+        try:
+            yield from _made(pool, stoppable, at_once, parts)
+        except BaseException:
+            stop.stop()
+            raise
 
 
 def made_by_processes(
@@ -201,11 +215,18 @@ def made_by_processes(
 ) -> Generator[Made, None, None]:
     """The same by so many processes of this machine, for parts that Python makes; they end with this one.
 
+    They end at once where the caller stops.
+
     Raises `EngineError` where one ends before its part is made.
     """
+    others = set(active_children())
     with ProcessPoolExecutor(at_once, get_context("spawn"), initializer=_begin_process) as pool:
         try:
             yield from _made(pool, make, at_once, parts)
+        except (GeneratorExit, KeyboardInterrupt):
+            for process in set(active_children()) - others:
+                process.terminate()
+            raise
         except BrokenProcessPool:
             raise EngineError(
                 "threads: a process ended before its part was made; check the memory; a script of your own "

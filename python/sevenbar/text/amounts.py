@@ -67,7 +67,7 @@ def value_of(text: str, kind: Kind, *, length_unit: str = "mm", angle_unit: str 
 
 
 def amount_in(text: str, unit: str, plain: str = "") -> float | None:
-    """The number in "rad", "mm", "mm/turn", "rad/s" or "" that a text writes down; `None` for what is none.
+    """The number in "rad", "mm", "s", "rad/s" or "" that a text writes down; `None` for what is none.
 
     The text is a number with or without a unit, or a formula. Without a unit it is in `plain`, the same unit
     where none is given; an angle of pi is in radians.
@@ -94,16 +94,16 @@ def amount_in(text: str, unit: str, plain: str = "") -> float | None:
 
 
 def lacks_unit(text: str, kind: Kind) -> bool:
-    """Whether an angle or a length is written without a unit; not so for pi, nor for what is no formula.
+    """Whether an angle or a length is written without a unit; not so for 0, for pi, for what is no formula.
 
-    >>> [lacks_unit(text, "angle") for text in ("30", "2*15", "pi/6", "2*15deg", "wide")]
-    [True, True, False, False, False]
+    >>> [lacks_unit(text, "angle") for text in ("30", "2*15", "0", "pi/6", "2*15deg", "wide")]
+    [True, True, False, False, False, False]
     """
     try:
         found = _computed(text, kind, "mm", "deg")
     except WrongFormulaError:
         return False
-    return found.plain and not (kind == "angle" and found.turns)
+    return found.plain and found.number != 0 and not (kind == "angle" and found.turns)
 
 
 def _computed(text: str, kind: Kind, length_unit: str, angle_unit: str) -> _Amount:

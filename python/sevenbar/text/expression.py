@@ -9,7 +9,9 @@ from __future__ import annotations
 import ast
 import math
 import re
-from collections.abc import Callable, Collection, Mapping
+import warnings
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
@@ -92,6 +94,9 @@ _UNIT_ALONE = re.compile(rf"(?<=[\w.)])\s*(?<![\w.])({_UNIT})(?![\w.(])|(?<=\))(
 
 #: A word after a number, which is none of its units.
 _NUMBER_AND_WORD = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)\s*([A-Za-z\u00b5\u03bc][\w/]*)")
+
+#: What Python's parser may have a remark on: a word right after a number, a backslash.
+_REMARKED = re.compile(r"\d[A-Za-z]|\\")
 
 #: Numbers of programs, not of people: `0x10`, `1_000`.
 _NOT_DECIMAL = re.compile(r"(?<![\w.])0[xXoObB]\w|\d_\d")
@@ -194,11 +199,23 @@ def parsed(text: str, names: Collection[str]) -> ast.AST:
     plain = _NUMBER_AND_UNIT.sub(lambda match: f"({match[1]}*{CALLED[match[2]]})", plain)
     plain = _UNIT_ALONE.sub(lambda match: f"*{CALLED[match[1] or match[2]]}", plain)
     try:
-        body = ast.parse(plain, mode="eval").body
+        with _quiet_parser(plain):
+            body = ast.parse(plain, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise WrongFormulaError(_why_no_formula(plain)) from None
     _check(body, names)
     return body
+
+
+@contextmanager
+def _quiet_parser(plain: str) -> Iterator[None]:
+    """Parses without Python's own remarks on texts that hardly are formulas, as `1if`: they name no file."""
+    if not _REMARKED.search(plain):
+        yield
+        return
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
 
 
 def _why_no_formula(plain: str) -> str:

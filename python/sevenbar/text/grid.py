@@ -14,8 +14,9 @@ from io import StringIO
 from typing import Any
 
 from sevenbar.errors import shown
+from sevenbar.text.csv_cells import NUMBER, as_written
 from sevenbar.text.listed import listed
-from sevenbar.text.table import COMMA_NUMBER, NAME_AND_UNIT, NO_NUMBER, NUMBER, name_and_unit
+from sevenbar.text.table import COMMA_NUMBER, NAME_AND_UNIT, NO_NUMBER, name_and_unit
 from sevenbar.text.units import is_unit
 from sevenbar.text.workbook import WorkbookSheet, cell_name
 
@@ -99,7 +100,7 @@ def _cells(text: str, delimiter: str) -> Iterable[tuple[int, list[str]]]:
         start = 1
         for row in reader:
             # a cell in quotes may go over several lines
-            yield start, [" ".join(cell.split()) for cell in row]
+            yield start, [as_written(" ".join(cell.split())) for cell in row]
             start = reader.line_num + 1
     else:
         for number, line in enumerate(text.splitlines(), 1):

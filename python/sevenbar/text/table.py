@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.errors import TableError, read_start, shown
+from sevenbar.text.csv_cells import NUMBER, as_written
 from sevenbar.text.units import MeasuredUnit, is_unit, measured_unit
 from sevenbar.text.workbook import ZIP, refuse_old, sheets_of
 
@@ -27,6 +28,12 @@ LARGEST_FILE = 200_000_000
 
 #: Longest line [characters]: a row has some dozen cells, so a longer line is no row of a table.
 LONGEST_LINE = 100_000
+
+#: Most lines of a file: a million take ten seconds and a gigabyte, and a thousand are plenty.
+MOST_LINES = 1_000_000
+
+#: What ends a line of text.
+LINE_ENDS = "\n\r\f\x1c\x1d\x1e\x85\u2028\u2029"
 
 #: Most lines that a message lists.
 MOST_NAMED = 3
@@ -39,7 +46,6 @@ NO_NUMBER = frozenset(
 #: A line of only these characters counts as empty; spreadsheets leave such lines, and \x1a ends files of DOS.
 NOTHING = " \t\r\f\x1a,;"
 
-NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 COMMA_NUMBER = re.compile(r"[-+]?\d+,\d+(?:[eEdD][-+]?\d+)?")
 NAME_AND_UNIT = re.compile(r'"[^"]*"|\S+(?:[ \t]?(?:\[[^\]]*\]|\([^)]*\)))?')
 
@@ -214,7 +220,8 @@ def name_and_unit(text: str) -> tuple[str, str]:
     ('rocker', 'rad/s2')
     """
     bracket = re.fullmatch(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*", text)
-    if bracket is not None:
+    # Craig's a_(i-1) has an index there
+    if bracket is not None and not bracket[1].endswith("_"):
         return bracket[1].strip(), bracket[2].strip()
     comma = re.fullmatch(r"(.+?)\s*[,/]\s*(\S+)", text)
     if comma is not None and is_unit(comma[2]):
@@ -277,6 +284,7 @@ def text_of_bytes(content: bytes, path: str) -> str:
             continue
         bad = next((c for c in text if c < " " and c not in "\t\n\r\f\x1a"), None)
         if bad is None:
+            _lines(text, path)
             return text
         break
     raise TableError(
@@ -287,12 +295,7 @@ def text_of_bytes(content: bytes, path: str) -> str:
 def read_table(path: Path, of: str) -> TextTable:
     """The table in a file; `TableError` with the line where it is not one. Messages call it a table `of`."""
     source = str(path)
-    lines = read_text(path, of).splitlines()
-    for i, line in enumerate(lines, 1):
-        if len(line) > LONGEST_LINE:
-            raise TableError(
-                f"{source}: line {i} has {len(line)} characters, so it is no row of a table; export it as CSV"
-            )
+    lines = _lines(read_text(path, of), source)
     first = next((i for i, line in enumerate(lines) if _begins_with_number(line) or _has_gap(line)), None)
     if first is None:
         what = "has text but no row of numbers" if any(line.strip() for line in lines) else "is empty"
@@ -318,6 +321,24 @@ def read_table(path: Path, of: str) -> TextTable:
         numbers.append(i)
     decimal_comma = delimiter != "," and _decimal_comma(rows)
     return TextTable(source, names, units, header_line, tuple(numbers), tuple(rows), decimal_comma)
+
+
+def _lines(text: str, source: str) -> list[str]:
+    """The lines of a text; `TableError` where there are too many, or one is no row of a table."""
+    # counted before there are as many pieces of text
+    count = sum(text.count(end) for end in LINE_ENDS) - text.count("\r\n")
+    if count > MOST_LINES:
+        raise TableError(
+            f"{source}: has {count:,} lines; give a table of at most {MOST_LINES:,} rows, "
+            "a thousand are plenty"
+        )
+    lines = text.splitlines()
+    for i, line in enumerate(lines, 1):
+        if len(line) > LONGEST_LINE:
+            raise TableError(
+                f"{source}: line {i} has {len(line)} characters, so it is no row of a table; export it as CSV"
+            )
+    return lines
 
 
 def _is_remark(line: str) -> bool:
@@ -360,7 +381,8 @@ def _decimal_comma(rows: Sequence[Sequence[str]]) -> bool:
 def _cells(line: str, delimiter: str) -> list[str]:
     if not delimiter:
         return line.split()
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))]
+    row = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
+    return [as_written(cell.strip()) for cell in row]
 
 
 def _header(

@@ -18,6 +18,15 @@ ANGLES = {"rad": 1.0, "deg": math.pi / 180}
 #: Units of turning speed and their size in rad/s.
 TURNING_SPEEDS = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.tau / 60, "rev/s": math.tau}
 
+#: Other words for them.
+OTHER_SPEEDS = {
+    **dict.fromkeys(("hz", "1/s", "rps", "u/s"), "rev/s"),
+    **dict.fromkeys(("u/min", "1/min", "min-1", "tr/min", "rev/min"), "rpm"),
+}
+
+#: Units of time and their size in seconds.
+TIMES = {"s": 1.0, "ms": 1e-3, "min": 60.0}
+
 #: Units of mass and their size in kilograms, and those of force in newtons.
 MASSES = {"g": 1e-3, "kg": 1.0, "t": 1e3, "oz": 0.028349523125, "lb": 0.45359237}
 FORCES = {"mN": 1e-3, "N": 1.0, "kN": 1e3, "lbf": 4.4482216152605}
@@ -41,9 +50,9 @@ def as_written(value: float) -> float:
 def unknown_unit(given: object, known: Iterable[str]) -> str:
     """The message for a unit that does not exist."""
     known = list(known)
-    return (
-        f"{shown(given)} is not a unit known here; {suggestion(str(given), known)}allowed: {', '.join(known)}"
-    )
+    meant = OTHER_SPEEDS.get(str(given).strip().lower())
+    near = f"did you mean '{meant}'? " if meant in known else suggestion(given, known)
+    return f"{shown(given)} is not a unit known here; {near}allowed: {', '.join(known)}"
 
 
 def turning_speed(value: object) -> float:
@@ -96,7 +105,7 @@ def sizes_of(unit: str) -> dict[str, float]:
     >>> sizes_of("mm/turn")["in/turn"], sizes_of("")
     (25.4, {'': 1.0})
     """
-    for same in (ANGLES, TURNING_SPEEDS, MASSES):
+    for same in (ANGLES, TURNING_SPEEDS, MASSES, TIMES):
         if unit in same:
             return {other: size / same[unit] for other, size in same.items()} | {unit: 1.0}
     length, slash, per = unit.partition("/")
@@ -191,9 +200,6 @@ _SPELLINGS = (
     (r"inch(?:es)?", "in"),
     (r"/s/s", "/s2"),
 )
-
-#: Units of time and their size in seconds.
-TIMES = {"s": 1.0, "ms": 1e-3, "min": 60.0}
 
 #: Units of a turn in text tables and their size in radians.
 TURNS = {**ANGLES, "rev": math.tau}

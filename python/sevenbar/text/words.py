@@ -45,10 +45,10 @@ def language(code: str | None) -> Iterator[None]:
 
 def check_language(code: str, key: str = "language") -> str:
     """The code of a language; raises `RequestError` for another."""
-    if code not in LANGUAGES:
+    if not isinstance(code, str) or code not in LANGUAGES:
         known = " or ".join(f"{each} ({name})" for each, name in LANGUAGES.items())
         raise RequestError(
-            f"{key}: {shown(code)} is not offered; {suggestion(str(code), list(LANGUAGES))}give {known}"
+            f"{key}: {shown(code)} is not offered; {suggestion(code, list(LANGUAGES))}give {known}"
         )
     return code
 

@@ -7,6 +7,7 @@ use super::motion::{Circuit, Motion, MotionType, branch_at};
 use super::pair::Pair;
 use crate::one_pose::each_once;
 use crate::outcome::{DeadCentreKind, RowStatus};
+use crate::stopping;
 use crate::taylor::Taylor;
 use std::f64::consts::TAU;
 
@@ -131,6 +132,7 @@ impl Rssr {
         let mut rows: Vec<Row> = Vec::with_capacity(drivers.len());
         let mut previous: Option<(Stop, f64)> = None;
         for &(stop, driver) in drivers {
+            stopping::piece();
             let mut row = self.row(motion, circuit, &pair, stop, driver);
             let follower = follower_column(motion.input);
             let angle = row.joints[follower][0];

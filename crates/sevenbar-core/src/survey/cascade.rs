@@ -12,6 +12,7 @@ use super::transmission::Transmission;
 use super::wish::{Rank, Readings, Want, Wish};
 use crate::rssr::{BLOCK, Dimensions, Lane, MotionType};
 use crate::simd::{Kernel, dispatch};
+use crate::stopping;
 use std::f64::consts::{PI, TAU};
 
 /// Inputs of a whole turn at which the balls are measured.
@@ -93,6 +94,7 @@ impl Kernel for Cascade<'_> {
         };
         let mut at = first;
         while at < first + count {
+            stopping::piece();
             let size = (first + count - at).min(BLOCK as u64) as usize;
             draw.block::<FUSED>(at, &mut block, &mut start);
             every.find::<FUSED>(&block);

@@ -26,7 +26,7 @@ Take = Literal["highest", "lowest"] | int
 UNMADE = "invalid"
 
 #: Types that may be met on a boundary only; such points take the type a little to one side.
-DOUBTFUL = ("change-point", "mixed", "two-inputs")
+DOUBTFUL = ("change-point", "mixed", "two-inputs", "not-followed")
 
 #: The directions to that side: one for all, so that a line through many points has one side, and one across
 #: it where the line itself runs that way.

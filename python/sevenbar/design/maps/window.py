@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.numbers.dimensions import Dimension, read_at
-from sevenbar.text.ranges import split_named, split_range
+from sevenbar.text.ranges import split_grid, split_named, split_range
 
 #: The form of a range, for messages.
 EXAMPLE = "as in 'L1=100:400' or 'L1=10:40cm'"
@@ -89,6 +89,10 @@ def _axis(dimension: Dimension, given: Range) -> MapAxis:
     if isinstance(given, str):
         ends = split_range(given)
         if ends is None:
+            if grid := split_grid(given):
+                raise RequestError(
+                    f"{where}: {shown(given)} has a count, and a map needs none; give {grid[0]}:{grid[1]}"
+                )
             raise RequestError(f"{where}: {shown(given)} is not a range; give LOW:HIGH, {EXAMPLE}")
         low, high = (read_at("over", dimension, end) for end in ends)
     else:

@@ -148,7 +148,7 @@ def _masses(motion: Motion, masses: Mapping[str, float] | Sequence[Mass]) -> tup
         for name, value in masses.items():
             if name not in points:
                 known = ", ".join(points) or "none; add one as [[point]]"
-                near = suggestion(str(name), points)
+                near = suggestion(name, points)
                 raise RequestError(f"masses: no point {shown(name)}; {near}this linkage has {known}")
             checked.append(Mass(name, points[name].link, points[name].at, value))
     else:

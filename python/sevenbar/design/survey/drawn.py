@@ -11,7 +11,7 @@ from sevenbar.arrays import whole_number
 from sevenbar.design.survey.tally import Kept, SurveyTally
 
 #: The format of a survey's description.
-FORMAT = 1
+FORMAT = 2
 
 #: Most linkages: indices beyond are no whole numbers in every program's JSON.
 MOST = 2**50

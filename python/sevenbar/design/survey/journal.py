@@ -6,6 +6,7 @@ has no end and is cut off when the survey goes on. So a killed run loses the par
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 from collections.abc import Collection, Mapping, Sequence
@@ -19,6 +20,9 @@ from sevenbar.sweep.held_folder import HeldFolder, other_maker
 
 #: The description's file, and the journal's.
 DESCRIPTION, JOURNAL = "survey.json", "journal.jsonl"
+
+#: What is before the checksum that ends a line.
+CHECK = b',"check":"'
 
 
 class Journal(HeldFolder):
@@ -59,7 +63,8 @@ class Journal(HeldFolder):
 
     def keep(self, part: int, content: bytes, maker: Mapping[str, str]) -> None:
         """Adds a finished part; raises `OutputError` where it cannot be written."""
-        line = b'{"part":%d,"made_by":%s,"tally":%s}\n' % (part, json.dumps(dict(maker)).encode(), content)
+        line = b'{"part":%d,"made_by":%s,"tally":%s' % (part, json.dumps(dict(maker)).encode(), content)
+        line += CHECK + self._checksum(line) + b'"}\n'
         try:
             self._file.write(line)
             self._file.flush()
@@ -80,7 +85,7 @@ class Journal(HeldFolder):
         try:
             there = json.loads(path.read_text(encoding="utf-8"))
             known = {key: there[key] for key in self._task.request()}
-        except (ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError, RecursionError):
             raise OutputError(f"{path}: is no description of a survey; give another folder") from None
         self._refuse_another(known)
         lines = self._whole_lines()
@@ -88,20 +93,27 @@ class Journal(HeldFolder):
             self._refuse_unfinished(len(lines))
         for number, line in enumerate(lines, 1):
             try:
+                bare, _, check = line.rpartition(CHECK)
+                if check != self._checksum(bare) + b'"}':
+                    raise ValueError
                 row = json.loads(line)
                 by, part = row["made_by"], int(row["part"])
                 tally = SurveyTally.of_dict(row["tally"])
                 if not 0 <= part < self._task.parts or tally.count != len(self._task.linkages(part)):
                     raise ValueError
-            except (ValueError, KeyError, TypeError, IndexError):
+            except (ValueError, KeyError, TypeError, IndexError, RecursionError):
                 raise OutputError(
-                    f"{self.path / JOURNAL}: line {number} is no part of this survey; "
+                    f"{self.path / JOURNAL}: line {number} is no part of this survey, or damaged; "
                     "take the line out and give --resume"
                 ) from None
             strangers = [dict(one) for one in makers if dict(one) != by]
             if strangers and len(lines) < self._task.parts and not mixed:
                 raise OutputError(f"{self.path}: {other_maker(by, strangers[0])}")
             self.tallies[part] = tally
+
+    def _checksum(self, line: bytes) -> bytes:
+        """The checksum of a line up to it, which is of this survey alone."""
+        return hashlib.sha256(self._task.digest().encode() + line).hexdigest().encode()
 
     def _whole_lines(self) -> list[bytes]:
         """The lines of the journal; one without an end is cut off."""

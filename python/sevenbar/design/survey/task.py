@@ -136,7 +136,7 @@ class SurveyTask(Drawn):
                 known = ", ".join(NUMBERS)
                 raise RequestError(
                     f"bounds: {shown(name)} is no number of an RSSR; "
-                    f"{suggestion(str(name), NUMBERS)}give some of {known}"
+                    f"{suggestion(name, NUMBERS)}give some of {known}"
                 )
             if real_array(name, ends).size != 2:
                 raise RequestError(f"{name}: {shown(ends)} is no range; give two numbers that rise")

@@ -13,7 +13,7 @@ from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.musts import pose_rooms, room_scale
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.task import DesignTask, Want
-from sevenbar.design.task.wants.at_inputs import LineWanted, ReadingsWanted
+from sevenbar.design.task.wants.at_inputs import LineWanted, ReadingsWanted, farthest
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted
 
@@ -104,6 +104,12 @@ class DesignAlong:
         """Where the points of a path or of poses, or the point of a straight line go (n, points, 3)."""
         one = self.model.wanted[place]
         return self._put(one, self.ways[place].q)
+
+    def travel(self, place: int) -> float:
+        """How far the point of a straight line goes along it [length]."""
+        points = self.places(place)[:, 0]
+        first, last = farthest(points)
+        return float(np.linalg.norm(points[last] - points[first]))
 
     def stations(self, place: int) -> Floats:
         """Where these points are at the stations (n, points, 3)."""

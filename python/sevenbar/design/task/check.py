@@ -85,6 +85,8 @@ class TaskDesign:
     placing: Placing
     values: Floats
     solution: Solved
+    #: The least transmission angle of the whole circuit [rad]; `None` where the loop has none.
+    transmission: float | None = None
 
     @property
     def draft(self) -> Draft:
@@ -128,8 +130,19 @@ def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
         )
         for one, w in zip(model.wanted, ways, strict=True)
     )
-    cost, optimality, seed = solution.cost, solution.optimality, solution.seed
-    return TaskDesign(candidate, cost, optimality, met, figures, room, seed.placing, seed.values, solution)
+    extremes = motion.circuits[candidate.circuit].transmission
+    return TaskDesign(
+        candidate,
+        solution.cost,
+        solution.optimality,
+        met,
+        figures,
+        room,
+        solution.seed.placing,
+        solution.seed.values,
+        solution,
+        None if extremes is None else extremes.lowest,
+    )
 
 
 def _opened(model: TaskModel, solution: Solved, draft: Draft) -> tuple[Linkage, list[list[_Way]]]:
@@ -166,9 +179,9 @@ def _candidate(
             return Refusal(
                 "dead centre", "no pass reaches the inputs of a want without a dead centre between"
             )
-        torn = _torn(model, number, solution, own)
-        if torn is not None:
-            return torn
+        refused = _torn(model, number, solution, own) or _short(model, number, solution)
+        if refused is not None:
+            return refused
         placed = isinstance(one, PlacesWanted) and model.placed
         figures = standing(solution.seed.placing, linkage.length_unit) if placed else {}
         if placed and linkage.form == "drawn":
@@ -213,6 +226,14 @@ def _torn(model: TaskModel, number: int, solution: Solved, own: list[_Way]) -> R
     return one_way(circuits, branches) or Refusal(
         "circuit", "no pass goes through all the poses that were solved for: it must be taken apart"
     )
+
+
+def _short(model: TaskModel, number: int, solution: Solved) -> Refusal | None:
+    """What a want requires and the poses solved for miss, if anything."""
+    one = model.wanted[number]
+    here = model.loop.here(solution.seed.values, solution.poses_of(number))
+    bound = one.bound(here.along(one.stations.by))
+    return Refusal(bound.fault, bound.missed) if bound is not None and bound.slack < -TORN else None
 
 
 def _of_figures(model: TaskModel, draft: Draft, solution: Solved, motion: Motion) -> Candidate | Refusal:

@@ -23,6 +23,7 @@ from sevenbar.design.task.must_contradictions import (
 )
 from sevenbar.design.task.musts import places_in
 from sevenbar.design.task.task import DesignTask, Want
+from sevenbar.design.task.transmitting import transmission_flaw
 from sevenbar.design.task.wanted_path import turning_back, wanted_inputs, wanted_places
 from sevenbar.errors import NotCoveredError, Problem, RequestError, shown, suggestion
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -80,7 +81,7 @@ def contradictions(task: DesignTask) -> Iterator[Problem]:
             f"a box stands in space, and with placement {task.placement!r} the linkage may stand anywhere; "
             "leave one of the two out",
         )
-    if flaw := task.limits.flaw(task.draft.linkage.form):
+    if flaw := transmission_flaw(task.draft.linkage, task.limits):
         yield Problem("limits.transmission", flaw)
 
 
@@ -295,9 +296,9 @@ def _figure(task: DesignTask, want: kinds.FigureWant) -> Flaws:
     else:
         if flaw := value_flaw(task.draft.linkage, want.name, float(want.value)):
             yield "value", flaw
-        for i, other in enumerate(task.wants[: task.wants.index(want)]):
-            if isinstance(other, kinds.FigureWant) and other.name == want.name and other.value != want.value:
-                yield "name", f"want {i + 1} wants {want.name}, too, and another value; leave one out"
+    for i, other in enumerate(task.wants[: task.wants.index(want)]):
+        if isinstance(other, kinds.FigureWant) and other.name == want.name and other.value != want.value:
+            yield "name", f"want {i + 1} wants {want.name}, too, and another value; leave one out"
 
 
 def _straight(task: DesignTask, want: kinds.StraightWant) -> Flaws:

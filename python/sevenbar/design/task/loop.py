@@ -103,6 +103,10 @@ class TaskLoop:
         link = [joint.name for joint in self.linkage.joints].index(name) + 1
         return self._number(self.numbers.word.rod(link)[0])
 
+    def marked(self, points: Sequence[Carried]) -> list[int]:
+        """The numbers of points of links."""
+        return [self._number(point) for point in points]
+
     def _number(self, carried: Carried) -> int:
         points = self.numbers.points
         if carried not in points:

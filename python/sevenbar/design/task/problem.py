@@ -23,6 +23,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.candidates import Fault
 from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.task import task as kinds
+from sevenbar.design.task.effort import Effort
 from sevenbar.design.task.loop import Here, TaskLoop, loop_of
 from sevenbar.design.task.musts import FAULTS, Rooms, pose_rooms
 from sevenbar.design.task.placing import (
@@ -34,9 +35,10 @@ from sevenbar.design.task.placing import (
     rotation_of_vector,
 )
 from sevenbar.design.task.task import DesignTask
+from sevenbar.design.task.transmitting import AngleRoom, LeastAngle
 from sevenbar.design.task.wants.at_inputs import LineWanted, ReadingsWanted
 from sevenbar.design.task.wants.figures import Figures, figure_left
-from sevenbar.design.task.wants.places import PlacesWanted, heights_of
+from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Stations, Wanted
 
 #: A step after which a passive joint is further away [rad, or of the size] has left its branch.
@@ -105,21 +107,38 @@ class TaskModel:
         #: The places among the task's wants of those at poses.
         self.sampled = [i for i, _ in task.sampled]
         self.figure_musts = [must for must in task.musts if isinstance(must, kinds.FigureMust)]
+        least = task.limits.transmission_lowest
+        if least > 0 and not self.wanted:
+            # nothing says what is used of the circuit: all of it
+            self.figure_musts.append(kinds.FigureMust("transmission_lowest", least=math.degrees(least)))
         names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
         self.figures = Figures(loop, list(dict.fromkeys(names)))
+        #: Musts of the least transmission angle in closed form, and the measures that a search works out.
+        self.in_line = LeastAngle(loop)
+        self.angle_musts = [must for must in self.figure_musts if self._in_line(must)]
+        names = [w.name for w in self.figure_wants]
+        names += [must.name for must in self.figure_musts if must not in self.angle_musts]
+        self.searched = Figures(loop, list(dict.fromkeys(names)))
         self.rooms = pose_rooms(loop, task.musts)
+        #: What the present start has taken.
+        self.effort = Effort()
         self.placed = task.placement != "fixed"
         linkage = loop.linkage
         closed_form = linkage.form == "rssr" and loop.input == 0
         self.transmits = closed_form and (task.limits.transmission_lowest > 0 or task.goal == "transmission")
+        #: The room of the transmission angle of any other loop.
+        self.angle = AngleRoom(loop, task.limits) if least > 0 and self.wanted and not closed_form else None
         self.turns = closed_form and task.limits.motion_type in INPUT_TURNS
         #: Wants, by their places among the sampled, whose residuals have been asked to stay small.
         self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, kinds.Most)]
 
+    def _in_line(self, must: kinds.FigureMust) -> bool:
+        return self.in_line.known and must.name == "transmission_lowest" and must.most is None
+
     @property
     def holds(self) -> bool:
         """Whether anything must hold at poses between the stations."""
-        return bool(self.rooms or self.transmits)
+        return bool(self.rooms or self.transmits or self.angle)
 
 
 class TaskProblem:
@@ -150,13 +169,14 @@ class TaskProblem:
         ]
         self._periods = [way * seed.period for way in self._senses]
         self._stations = self._all_stations()
-        if model.rooms and len(self._poses) < len(self._stations.fixed):
+        if (model.rooms or model.angle) and len(self._poses) < len(self._stations.fixed):
             self._poses = self._between(seed)
         places = [one.places.reshape(-1, 3) for _, one in self._places()]
         self._middle = np.concatenate(places).mean(axis=0) if places else np.zeros(3)
         self._taken: tuple[bytes, TaskValues | None] = b"", None
         self._asked: tuple[bytes, Floats | None] | None = None
         self._known: tuple[bytes, TaskValues | None] | None = None
+        self._valued: tuple[bytes, TaskValues | None] | None = None
 
     # ---- the inputs at which the linkage is seen
 
@@ -261,6 +281,15 @@ class TaskProblem:
         """Residuals and rooms at z without their slopes, which cost the most."""
         return self._at(z, slopes=False)
 
+    def valued(self, z: Floats) -> TaskValues | None:
+        """Residuals and rooms at z, with their slopes only where these are known already."""
+        key = z.tobytes()
+        for known in (self._taken, self._known, self._valued):
+            if known is not None and known[0] == key:
+                return known[1]
+        self._valued = key, self.tried(z)
+        return self._valued[1]
+
     def _at(self, z: Floats, *, slopes: bool = True) -> TaskValues | None:
         poses = self.poses(z)
         if poses is None:
@@ -268,19 +297,20 @@ class TaskProblem:
         values, own = self.values(z), self.own(z)
         here = self.loop.here(values, poses, slopes=slopes)
         parts = []
+        bounds: list[tuple[Fault, Floats, Floats]] = []
         for one, u, rows, place in zip(self.model.wanted, own, self._rows, self._own, strict=True):
-            left, by = one.left(here.part(rows).along(one.stations.by), u)
-            if slopes:
-                wide = np.zeros((*by.shape[:-1], len(z)))
-                wide[..., : self._k], wide[..., place] = by[..., : self._k], by[..., self._k :]
-                by = wide * self.scales
-            parts.append((left, by))
+            seen = here.part(rows).along(one.stations.by)
+            left, by = one.left(seen, u)
+            parts.append((left, self._by_all(by, place) if slopes else by))
+            if bound := one.bound(seen):
+                by = self._by_all(bound.slack_by, place) if slopes else bound.slack_by
+                bounds.append((bound.fault, np.array([bound.slack]), by[None]))
         placing = self._placing(z, [left for left, _ in parts])
         lefts, lefts_by = self._placed(z, parts, placing)
         figures = self._figures(values, slopes=slopes)
         if figures is None:
             return None
-        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True)))
+        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True))) + bounds
         rooms.append(("figure", *figures[1]))
         least: dict[Fault, float] = {"figure": math.inf}
         for fault, own_room, _ in rooms:
@@ -295,6 +325,12 @@ class TaskProblem:
             room_by = np.concatenate([by for _, _, by in rooms])
         good = all(np.isfinite(part).all() for part in (left, left_by, room, room_by))
         return TaskValues(left, left_by, room, room_by, placing, least) if good else None
+
+    def _by_all(self, by: Floats, place: slice) -> Floats:
+        """Slopes (.., k + m) by the free numbers and a want's unknowns as those by all unknowns."""
+        wide = np.zeros((*by.shape[:-1], len(self.scales)))
+        wide[..., : self._k], wide[..., place] = by[..., : self._k], by[..., self._k :]
+        return np.asarray(wide * self.scales)
 
     def _wide(self, by: Floats) -> Floats:
         """Slopes (r, k) by the free numbers as those by all unknowns."""
@@ -380,8 +416,11 @@ class TaskProblem:
         rooms: list[tuple[Fault, Floats, Floats]] = []
         if self.model.transmits or self.model.turns:
             rooms += self._transmission(z)  # first, where the goal "transmission" looks for them
+        wide = here.along(self._stations.by) if self.model.rooms or self.model.angle else here
+        if self.model.angle is not None:
+            values, by = self.model.angle(wide)
+            rooms.append(("transmission", values.ravel(), self._joined(by.reshape(values.size, -1))))
         if self.model.rooms:
-            wide = here.along(self._stations.by)
             for place, room in self.model.rooms:
                 values, by = room(wide)
                 values = values - self.model.margins.get(place, 0.0)
@@ -393,7 +432,7 @@ class TaskProblem:
         for i, must in self.model.most:
             at = slice(None) if must.at is None else list(must.at)
             left, by = wants[i][0][at], wants[i][1][at]
-            height, height_by = heights_of(self.model.wanted[i], left, by)
+            height, height_by = self.model.wanted[i].heights(left, by)
             rooms.append(("error", must.most - height, -height_by))
         return rooms
 
@@ -441,10 +480,14 @@ class TaskProblem:
     def _figures(self, values: Floats, *, slopes: bool) -> tuple[Rooms, Rooms] | None:
         """Residuals of figures, and their rooms, each with its slopes."""
         model = self.model
-        found = model.figures.at(values, self._anchor, slopes=slopes) if model.figures.names else ((), ())
+        found: tuple[Any, Any] | None = ((), ())
+        if model.searched.names:
+            before = model.searched.motions
+            found = model.searched.at(values, self._anchor, slopes=slopes)
+            model.effort.take(model.searched.motions - before)
         if found is None:
             return None
-        read = {name: own for name, *own in zip(model.figures.names, *found, strict=True)}
+        read = {name: own for name, *own in zip(model.searched.names, *found, strict=True)}
         lefts = [
             (want.weight * value, want.weight * by)
             for want in model.figure_wants
@@ -453,11 +496,18 @@ class TaskProblem:
         rooms = [
             (way * (value - end) / unit, way * by / unit)
             for must in model.figure_musts
+            if must not in model.angle_musts
             for value, by in [read[must.name]]
             for way, end in ((1.0, must.least), (-1.0, must.most))
             if end is not None
             for unit in [max(abs(end), 1e-3)]
         ]
+        for must in model.angle_musts:
+            ends = model.in_line.ends(values, self._anchor, slopes=slopes)
+            if ends is None:
+                return None
+            least = must.least or 0.0
+            rooms += [((value - least) / max(least, 1.0), by / max(least, 1.0)) for value, by in ends]
         return self._stacked(lefts), self._stacked(rooms)
 
     def _stacked(self, rows: Sequence[tuple[float, Floats]]) -> Rooms:

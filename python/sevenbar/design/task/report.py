@@ -16,9 +16,10 @@ from sevenbar.design.files import design_files
 from sevenbar.design.tables import plain_designs, sheets
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign
+from sevenbar.design.task.effort import WHOLE
 from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
-from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust
+from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust, StraightWant
 from sevenbar.design.task.words import must_words, task_facts, want_words
 from sevenbar.drawing.configuration import configuration
 from sevenbar.kinematics.loop.columns import shown_in
@@ -87,7 +88,11 @@ def design_figures(task: DesignTask, design: TaskDesign) -> dict[str, float]:
                 figures[f"{own}{key}_zero_{of_column}"] = zero * times
         if isinstance(want, DwellWant):
             figures[f"{own}level_{unit}"] = along.zeros(number)[1] * scale
+        if isinstance(want, StraightWant):
+            figures[f"{own}travel_{unit}"] = along.travel(number)
     figures |= design.figures
+    if design.transmission is not None:
+        figures["transmission_of_circuit_deg"] = math.degrees(design.transmission)
     figures |= {"cost": design.cost, "kkt_residual": design.optimality}
     if math.isfinite(design.room):
         figures["least_room"] = design.room
@@ -131,6 +136,10 @@ def _facts(found: TaskDesigns) -> list[tuple[str, str]]:
     else:
         begun = f"{found.found.starts} ways to begin from {found.starts + 1} linkages, seed {found.seed}"
         facts.append(("searched", begun))
+    if found.found.ended_early:
+        count = found.found.ended_early
+        early = f"{count} start{'s' * (count != 1)} ended after {WHOLE} measured motions each"
+        facts.append(("", early))
     if found.found.refusals:
         facts.append(("of the best" if found.survey else "refused", found.found.refused))
     return facts
@@ -188,15 +197,26 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
     """Tables with a line for each design: how well each want is met, what it is, its free numbers."""
     task, designs, unit = found.task, found.found.designs, found.task.draft.linkage.length_unit
     met: list[tuple[str, list[str]]] = []
-    for number, (place, _) in enumerate(task.sampled):
+    for number, (place, want) in enumerate(task.sampled):
         mets = [design.met[number] for design in designs]
         own, scale = mets[0].shown
         met += [
             (f"want {place + 1}\ngreatest\n[{own}]", [f"{one.greatest * scale:.4g}" for one in mets]),
             (f"want {place + 1}\nRMS\n[{own}]", [f"{one.rms * scale:.4g}" for one in mets]),
         ]
+        if isinstance(want, StraightWant):
+            travels = [f"{DesignAlong(task, design).travel(number):.5g}" for design in designs]
+            met.append((f"want {place + 1}\ntravel\n[{own}]", travels))
     for name in dict.fromkeys(name for design in designs for name in design.figures):
         met.append((name.replace("_", "\n"), [f"{design.figures[name]:.5g}" for design in designs]))
+    angles = (
+        ("used", [design.candidate.transmission_lowest for design in designs]),
+        ("circuit", [design.transmission for design in designs]),
+    )
+    for where, found_there in angles:
+        if any(one is not None for one in found_there):
+            cells = ["-" if one is None else f"{math.degrees(one):.4g}" for one in found_there]
+            met.append((f"transmission\n{where}\n[deg]", cells))
     rest = [("least\nroom", [f"{design.room:.2g}" for design in designs])]
     if not any(math.isfinite(design.room) for design in designs):
         rest = []
@@ -234,6 +254,7 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
         "free": {one.name: [one.low, one.high] for one in task.free},
         "starts": found.starts,
         "begun": found.found.starts,
+        "ended_early": found.found.ended_early,
         "seed": found.seed,
         "unfinished": found.unfinished or None,
         "refused": list(map(vars, found.found.refusals)),

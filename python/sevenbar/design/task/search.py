@@ -19,6 +19,7 @@ from sevenbar.design.task.solve import LOOK, Solved, solved
 from sevenbar.design.task.starts import apart, seeds, seeds_at
 from sevenbar.design.task.task import DesignTask
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.measures import MEASURES
 from sevenbar.text.progress import Progress, silent
 
 #: Starts by default.
@@ -30,6 +31,10 @@ TRIED, TAKEN = 8, 3
 #: A look leads to a design that is kept where no dimension differs by more; and it is left where its least
 #: squares are more than so many times those of the designs that are kept.
 ONE, HOPELESS = 1e-3, 2.0
+
+#: First ones that miss a room by more are taken last; those whose costs, rooms and numbers differ by less are
+#: one.
+MISSED, SAME = -0.01, 1e-7
 
 #: A cost below which a task is met exactly: no other start can be better.
 EXACT = 1e-11
@@ -49,6 +54,7 @@ EASE = {
     "cone": "a wider cone, or another seat",
     "box": "a larger box",
     "distance": "a smaller distance of the links",
+    "length": "a shorter length of the straight line",
     "figure": "other ends of the measure",
 }
 
@@ -66,6 +72,8 @@ class DesignsFound:
     refusals: tuple[Refusal, ...]
     starts: int
     unfinished: str
+    #: Starts that ended since they had measured all the motions that one may.
+    ended_early: int = 0
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
@@ -140,7 +148,9 @@ def designed(
         begun = seeds(model, starts, seed, course.step, [np.asarray(v, dtype=float) for v in given])
         _search(model, begun, count, course, kept, refusals)
     best = distinct(kept, scale_free=False, count=count)
-    return DesignsFound(task, named(task, best), tuple(refusals), len(begun), course.unfinished)
+    return DesignsFound(
+        task, named(task, best), tuple(refusals), len(begun), course.unfinished, model.effort.ended
+    )
 
 
 def _search(
@@ -153,7 +163,7 @@ def _search(
 ) -> None:
     tried: list[Solved] = []
     nearest = math.inf
-    for one in apart(model, begun, TRIED * count):
+    for one in apart(model, _unlike_seeds(model, begun), TRIED * count):
         look = _first_look(model, one)
         if look is not None:
             nearest = min(nearest, look.cost)
@@ -164,8 +174,15 @@ def _search(
         course.step(f"nearest: {nearest:.3g}" if look else "")
         if _worst(kept, count) < EXACT:
             return
-    tried.sort(key=lambda look: (look.room < -0.01, look.cost))
+    tried.sort(key=lambda look: (look.hopeless, look.room < MISSED, look.cost))
+    tried = _unlike(model, tried)
+    # starts in a row of a task with measures that led to nothing new
+    idle, known = 0, (0, math.inf)
     for i, look in enumerate(tried):
+        now = len(distinct(kept, scale_free=False)), kept[0].cost if kept else math.inf
+        idle, known = (idle + 1, known) if now[0] <= known[0] and not now[1] < known[1] else (0, now)
+        if idle > TAKEN * count and model.searched.names:
+            break
         if len(distinct(kept, scale_free=False)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
             break
         _take(model, look, count, kept, refusals)
@@ -173,6 +190,36 @@ def _search(
         several = len(model.task.wants) > 1 and bool(kept)
         best = f"best: {kept[0].cost:.3g}" if several else least_error([one.candidate for one in kept])
         course.step(best, done=int(course.done < course.total))
+
+
+def _unlike_seeds(model: TaskModel, begun: Sequence[TaskSeed]) -> Sequence[TaskSeed]:
+    """Of circuits of one linkage with the same measures, as those that are mirror images, the first.
+
+    Forces and stops may tell mirror images apart, and poses do.
+    """
+    if model.wanted or not set(model.figures.names) <= set(MEASURES):
+        return begun
+    kept: list[TaskSeed] = []
+    for one in begun:
+        like = (np.array_equal(one.values, other.values) for other in kept)
+        same = (
+            alike and math.isclose(one.error, other.error, rel_tol=SAME)
+            for alike, other in zip(like, kept, strict=True)
+        )
+        if not any(same):
+            kept.append(one)
+    return kept
+
+
+def _unlike(model: TaskModel, tried: Sequence[Solved]) -> list[Solved]:
+    """Without those that lead to the same: the same numbers, costs and rooms."""
+    kept: list[Solved] = []
+    for look in tried:
+        ways = [look.cost, look.room, *look.seed.values / model.loop.scales]
+        known = ([one.cost, one.room, *one.seed.values / model.loop.scales] for one in kept)
+        if not any(np.allclose(ways, other, rtol=SAME, atol=SAME) for other in known):
+            kept.append(look)
+    return kept
 
 
 def _worst(kept: Sequence[TaskDesign], count: int) -> float:

@@ -14,14 +14,27 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed, TaskValues
+from sevenbar.design.task import effort
+from sevenbar.design.task.optimum import (
+    ROUNDING,
+    Conditions,
+    conditions,
+    cost_of,
+    heights,
+    lack_of,
+    multipliers,
+    rooms_of,
+    unknowns,
+    with_cost,
+)
+from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.programs import MinimaxValues, lowered
-from sevenbar.design.task.wants.places import heights_of
+from sevenbar.design.task.quadratic import programmed
 from sevenbar.kinematics.numbers.least_squares import nearest_least
 
 #: Evaluations of a first look, of a design that is kept, and of one that comes near to what is wanted.
@@ -33,21 +46,18 @@ FIRST = (1e-3, 1.0)
 #: Weights of a missed room, in rounds; and the room kept since a penalty is never met.
 WEIGHTS, KEPT = (1.0, 10.0, 100.0), 1e-5
 
-#: A room that is missed by less is kept.
-ROUNDING = 1e-9
-
 #: Gain of a linear program, relative to the greatest height, that is worth another: nobody sees 0.01 deg of a
 #: transmission angle.
 WORTH = {"minimax": 1e-9, "transmission": 1e-4}
 
+#: A room that is missed by more after programs is not kept by smaller steps.
+FAR_OFF = 1e-3
+
+#: Evaluations of least squares where measures must hold.
+NEAR_BY = 40
+
 #: A room that is to be kept exactly is missed by less: rounding.
 KEPT_TO = 1e-14
-
-#: A room so near to zero may be active.
-ACTIVE = 1e-6
-
-#: Residuals are measured against this at least [relative]: smaller ones are rounding of larger steps.
-LEAST = 1e-4
 
 #: Steps of Newton's method at the end, their most [units], and the step of its differences.
 STEPS, FARTHEST, DIFFERENCE = 8, 0.1, 1e-5
@@ -55,9 +65,6 @@ STEPS, FARTHEST, DIFFERENCE = 8, 0.1, 1e-5
 #: Steps of Newton's method within a reach, its most unknowns, longest reach, shortest; the part of the
 #: greatest curvature that is rounding; halvings of a step's multiplier.
 DESCENTS, MOST_UNKNOWNS, MOST_REACH, SHORTEST, FLAT, HALVINGS = 12, 60, 0.5, 1e-9, 1e-13, 60
-
-#: Most steps of sequential quadratic programs; for the greatest residual, which begin near their end.
-PROGRAMS, FEWER = 200, 80
 
 #: Residuals below this leave the second derivatives of the squares to the slopes alone: what is wanted can be
 #: met exactly, down to rounding.
@@ -90,26 +97,13 @@ class Solved:
     optimality: float
     room: float
     ended: Ended = "optimum"
+    #: Whether it misses a room that no step leads to.
+    hopeless: bool = False
 
     def poses_of(self, place: int) -> Floats:
         """The poses (n, columns) at the inputs of a want, by its place among those at poses."""
         first = sum(len(inputs) for inputs in self.inputs[:place])
         return self.seed.poses[first : first + len(self.inputs[place])]
-
-
-@dataclass(frozen=True, eq=False)
-class Conditions:
-    """What (1) is made of at unknowns: gradient (m,), rooms (c,) and their slopes (c, m), and the unit.
-
-    `curved` (m, m) are the second derivatives that slopes alone give, `cost` what is made least.
-    """
-
-    gradient: Floats
-    curved: Floats | None
-    cost: float
-    room: Floats
-    room_by: Floats
-    unit: float
 
 
 def solved(
@@ -122,8 +116,10 @@ def solved(
 ) -> Solved | None:
     """The nearest optimum of a seed; `None` where its linkage does not close.
 
-    `whole`: to the last digit, unless least squares leave more than `most`.
+    `whole`: to the last digit, unless least squares leave more than `most`, or a must is missed that no step
+    leads to, or the start has taken all the motions that it may.
     """
+    model.effort.begin(effort.WHOLE if whole else effort.LOOK)
     found = _least_squares(model, seed, evaluations, FIRST[0])
     if whole and (found is None or (found.stuck and not _ended(found.problem, found.z))):
         # a first step too far may have led into a corner where the linkage hardly closes
@@ -135,52 +131,70 @@ def solved(
     if found is None:
         return None
     problem, z = found.problem, found.z
-    if not whole or found.size > most:
+    if not whole or found.size > most or _hopeless(problem, z):
         return _as_solved(problem, z, math.nan)
     if model.task.goal != "least squares":
         problem = TaskProblem(model, problem.seed(z), minimax=True)
         z = _lowered(problem)
     elif not _ended(problem, z):
-        problem, z = _programmed(problem, z)
+        problem, z = programmed(problem, z)
+        if _misses(problem, z):
+            return _as_solved(problem, z, math.nan)
         z = _descended(problem, z)
     z, missed = _settled(problem, z)
     if model.task.goal == "minimax" and missed > ENDED:
-        problem, z = _programmed(problem, z)
+        problem, z = programmed(problem, z)
         z, missed = _settled(problem, z)
     if problem.minimax and _exactly(model):
         z = _kept(problem, z)
     return _as_solved(problem, z, missed)
 
 
+def _misses(problem: TaskProblem, z: Floats) -> bool:
+    """Whether a room is missed by so much that only another start can keep it."""
+    here = problem.at(z)
+    return here is not None and bool(lack_of(here) > FAR_OFF)
+
+
+def _hopeless(problem: TaskProblem, z: Floats) -> bool:
+    """Whether such a room is missed and has no slope: no step leads to it."""
+    here = problem.at(z)
+    if here is None:
+        return False
+    missed = here.room < -FAR_OFF
+    return bool((missed & (np.abs(here.room_by).max(axis=1, initial=0.0) == 0.0)).any())
+
+
 def _ended(problem: TaskProblem, z: Floats) -> bool:
     """Whether least squares are done: nothing is left, or (1) is met as nearly as slopes alone lead to."""
     if problem.size(z) <= EXACT:
         return True
-    at = _conditions(problem, z)
-    return at is not None and _multipliers(at)[2] < ENDED
+    at = conditions(problem, z)
+    return at is not None and multipliers(at)[2] < ENDED
 
 
 def _as_solved(problem: TaskProblem, z: Floats, missed: float) -> Solved | None:
     here = problem.at(z)
     if here is None:
         return None
-    cost = _cost(problem, z) if problem.minimax else float(np.linalg.norm(here.left))
+    hopeless = _hopeless(problem, z)
+    cost = cost_of(problem, z) if problem.minimax else float(np.linalg.norm(here.left))
     room = float(here.room.min(initial=math.inf))
     ended: Ended = "optimum"
     if missed > SAID and cost > EXACT:
         ended = "edge" if _at_edge(problem, z) else "valley"
-    return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room, ended)
+    return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room, ended, hopeless)
 
 
 def _at_edge(problem: TaskProblem, z: Floats) -> bool:
     """Whether the linkage does not close, or the cost jumps, a small step down the slope that (1) leaves."""
-    at = _conditions(problem, _with_cost(problem, z))
+    at = conditions(problem, with_cost(problem, z))
     if at is None:
         return False
-    active, y, _ = _multipliers(at)
+    active, y, _ = multipliers(at)
     rest = (at.gradient - at.room_by[active].T @ y)[: len(z)]
     step = BEYOND * rest / max(float(np.abs(rest).max(initial=0.0)), 1e-300)
-    return _cost(problem, problem.within(z - step)) > JUMP * _cost(problem, z)
+    return cost_of(problem, problem.within(z - step)) > JUMP * cost_of(problem, z)
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,8 +232,12 @@ def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: fl
             missed = here.room < KEPT
             return np.concatenate([here.left_by, weight * missed[:, None] * here.room_by])
 
+        most = min(evaluations, model.effort.left)
+        if model.figure_musts and model.searched.measured:
+            # penalties only lead near: a measure has kinks at which their steps become short
+            most = min(most, NEAR_BY)
         nearest = nearest_least(
-            residuals, slopes, z, problem.low, problem.high, evaluations=evaluations, first=first
+            residuals, slopes, z, problem.low, problem.high, evaluations=most, first=first
         )
         if nearest is None:
             return None
@@ -227,53 +245,20 @@ def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: fl
         here = problem.at(z)
         if here is not None and not (here.room < KEPT).any():
             break
+        if not model.effort.left or _hopeless(problem, z):
+            break
     return _Squares(problem, z, stuck)
 
 
-# ---- the greatest residual
-
-
-def _heights(problem: TaskProblem, here: TaskValues) -> tuple[Floats, Floats]:
-    """Weighted sizes (h,) of single residuals, and their slopes: distances of places, others both ways.
-
-    For the greatest transmission angle how far the room of its squared sine is below 1.
-    """
-    if problem.model.task.goal == "transmission":
-        rows = slice(problem.looked_at)
-        return 1.0 - here.room[rows], -here.room_by[rows]
-    heights, slopes = [], []
-    count = 0
-    for one in problem.model.wanted:
-        rows = slice(count, count + one.count)
-        count += one.count
-        left, by = math.sqrt(one.count) * here.left[rows], math.sqrt(one.count) * here.left_by[rows]
-        height, height_by = heights_of(one, left, by)
-        heights.append(height)
-        slopes.append(height_by)
-    heights += [here.left[count:], -here.left[count:]]
-    slopes += [here.left_by[count:], -here.left_by[count:]]
-    return np.concatenate(heights), np.concatenate(slopes)
-
-
-def _rooms(problem: TaskProblem, z: Floats, here: TaskValues) -> tuple[Floats, Floats]:
-    """Rooms, then those to the bounds that there are, and their slopes."""
-    one = np.eye(len(z))
-    low, high = np.isfinite(problem.low), np.isfinite(problem.high)
-    return (
-        np.concatenate([here.room, (z - problem.low)[low], (problem.high - z)[high]]),
-        np.concatenate([here.room_by, one[low], -one[high]]),
-    )
-
-
 def _lowered(problem: TaskProblem) -> Floats:
-    def heights(z: Floats) -> MinimaxValues | None:
+    def valued(z: Floats) -> MinimaxValues | None:
         here = problem.at(z)
-        return None if here is None else MinimaxValues(*_heights(problem, here), *_rooms(problem, z, here))
+        return None if here is None else MinimaxValues(*heights(problem, here), *rooms_of(problem, z, here))
 
     start, worth = problem.within(problem.start), WORTH[problem.model.task.goal]
     if _exactly(problem.model):
-        return lowered(heights, start, worth=worth, mended=lambda z: _kept(problem, z))
-    return lowered(heights, start, worth=worth)
+        return lowered(valued, start, worth=worth, mended=lambda z: _kept(problem, z))
+    return lowered(valued, start, worth=worth)
 
 
 def _exactly(model: TaskModel) -> bool:
@@ -293,78 +278,6 @@ def _kept(problem: TaskProblem, z: Floats) -> Floats:
     return z
 
 
-def _programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
-    """The unknowns after sequential quadratic programs, which hold the rooms: better ones, or the same.
-
-    Where fewer heights are equal to the greatest than there are unknowns, linear programs go from side to
-    side of a valley; these know its curvature. Costs are relative to the first.
-    """
-    from scipy.optimize import minimize
-
-    # what was begun stays at its poses, which may not be found again from others
-    minimax = begun.minimax
-    problem = TaskProblem(begun.model, begun.seed(z), minimax=minimax)
-    x = problem.within(problem.start)
-    if minimax:
-        x = np.append(x, 1.0)
-    now, unit = begun.at(z), _cost(begun, z)
-    first = _conditions(problem, x, unit)
-    if now is None or first is None:
-        return begun, z
-    last = first
-    ends = list(zip(problem.low, problem.high, strict=True))
-    # bounds are no rooms here; of squares the whole sum counts
-    own = slice(len(first.room) - int(np.isfinite(ends).sum()))
-    times, per = (1.0, 1.0) if minimax else (2.0, unit)
-
-    def at(x: Floats) -> Conditions:
-        nonlocal last
-        last = _conditions(problem, x, unit) or last
-        return last
-
-    def cost(x: Floats) -> float:
-        here = _conditions(problem, x, unit)
-        return 1e3 if here is None else here.cost / per
-
-    def slopes(x: Floats) -> Floats:
-        problem.take(_unknowns(problem, x))
-        return times * at(x).gradient / per
-
-    rooms: Any = {"type": "ineq", "fun": lambda x: at(x).room[own], "jac": lambda x: at(x).room_by[own]}
-    with np.errstate(all="ignore"):
-        found = minimize(
-            cost,
-            x,
-            jac=slopes,
-            bounds=[*ends, (0.0, math.inf)] if minimax else ends,
-            constraints=[rooms] if len(first.room[own]) else [],
-            method="SLSQP",
-            options={"maxiter": FEWER if minimax else PROGRAMS, "ftol": 1e-14},
-        )
-    end = np.asarray(_unknowns(problem, found.x))
-    then = problem.at(end)
-    better = then is not None and (_lack(then), _cost(problem, end)) < (_lack(now), unit)
-    return (problem, end) if better else (begun, z)
-
-
-def _cost(problem: TaskProblem, z: Floats) -> float:
-    """The sum of squares, or the greatest height."""
-    here = problem.at(z)
-    if here is None:
-        return math.inf
-    return float(_heights(problem, here)[0].max()) if problem.minimax else float(here.left @ here.left)
-
-
-def _with_cost(problem: TaskProblem, z: Floats) -> Floats:
-    """The unknowns x of (1): z, and for the greatest residual t behind them."""
-    return np.append(z, _cost(problem, z)) if problem.minimax else z
-
-
-def _unknowns(problem: TaskProblem, x: Floats) -> Floats:
-    """The unknowns z of such x."""
-    return x[:-1] if problem.minimax else x
-
-
 def _descended(problem: TaskProblem, z: Floats) -> Floats:
     """The unknowns after Newton's method within a reach, by which narrow valleys are gone down to their end.
 
@@ -372,9 +285,11 @@ def _descended(problem: TaskProblem, z: Floats) -> Floats:
     the exact gradient. It ends at a room: there the programs know better.
     """
     reach = FARTHEST
-    at = _conditions(problem, z)
+    at = conditions(problem, z)
     for _ in range(DESCENTS):
-        if at is None or reach < SHORTEST or not len(z) <= MOST_UNKNOWNS or _multipliers(at)[2] < ENDED:
+        if not problem.model.effort.left:
+            break
+        if at is None or reach < SHORTEST or not len(z) <= MOST_UNKNOWNS or multipliers(at)[2] < ENDED:
             break
         low, high = z <= problem.low + ROUNDING, z >= problem.high - ROUNDING
         free = ~((low & (at.gradient > 0)) | (high & (at.gradient < 0)))
@@ -391,7 +306,7 @@ def _descended(problem: TaskProblem, z: Floats) -> Floats:
                     break
                 free &= ~stopped
             then_z = problem.within(z + step)
-            then = _conditions(problem, then_z)
+            then = conditions(problem, then_z)
             kept = then is not None and not (then.room < np.minimum(at.room, 0.0) - ROUNDING).any()
             if then is not None and kept and then.cost < at.cost:
                 z, at, reach = then_z, then, min(4 * reach, MOST_REACH)
@@ -417,60 +332,16 @@ def _within(gradient: Floats, curved: Floats, reach: float) -> Floats:
     return np.asarray(-ways @ (pull / (bends + high)))
 
 
-def _lack(here: TaskValues) -> float:
-    """What rooms lack, none where it is rounding."""
-    lack = -float(here.room.min(initial=0.0))
-    return lack if lack > ROUNDING else 0.0
-
-
-# ---- the conditions of an optimum
-
-
-def _conditions(problem: TaskProblem, x: Floats, per: float = 1.0) -> Conditions | None:
-    """At unknowns x; for the greatest residual heights, and t behind them, are relative to `per`."""
-    z = _unknowns(problem, x)
-    here = problem.at(z)
-    if here is None:
-        return None
-    room, by = _rooms(problem, z, here)
-    if not problem.minimax:
-        columns = np.linalg.norm(here.left_by, axis=0)
-        # at the least of a single figure its slopes vanish, so they alone are no unit
-        size = float(np.linalg.norm(here.left))
-        unit = max(size, LEAST) * max(float(columns.max(initial=0.0)), size, 1e-300)
-        curved, gradient = here.left_by.T @ here.left_by, here.left_by.T @ here.left
-        return Conditions(gradient, curved, float(here.left @ here.left), room, by, unit)
-    height, slopes = (own / per for own in _heights(problem, here))
-    gradient = np.append(np.zeros(len(z)), 1.0)
-    room = np.concatenate([x[-1] - height, room])
-    by = np.block([[-slopes, np.ones((len(height), 1))], [by, np.zeros((len(by), 1))]])
-    return Conditions(gradient, None, float(x[-1]), room, by, max(float(np.abs(slopes).max()), 1.0))
-
-
-def _multipliers(at: Conditions) -> tuple[Integers, Floats, float]:
-    """The active rooms, their multipliers >= 0, and by how much (1) is missed."""
-    from scipy.optimize import nnls
-
-    active = np.flatnonzero(at.room <= ACTIVE)
-    missed = max(float(-at.room.min(initial=0.0)), 0.0)
-    if not active.size:
-        return active, np.empty(0), max(float(np.abs(at.gradient).max(initial=0.0)) / at.unit, missed)
-    y, _ = nnls(at.room_by[active].T, at.gradient, maxiter=50 * len(active))
-    rest = np.abs(at.gradient - at.room_by[active].T @ y).max(initial=0.0) / at.unit
-    slack = float(np.abs(y * at.room[active]).max(initial=0.0)) / at.unit
-    return active, y, max(float(rest), missed, slack)
-
-
 def _settled(problem: TaskProblem, z: Floats) -> tuple[Floats, float]:
     """The unknowns after Newton's method on (1), where it makes them better; and what (1) is missed by."""
-    x = _with_cost(problem, z)
+    x = with_cost(problem, z)
     problem.take(z)
-    at = _conditions(problem, x)
+    at = conditions(problem, x)
     if at is None:
         return z, math.inf
-    active, y, missed = _multipliers(at)
+    active, y, missed = multipliers(at)
     for _ in range(STEPS):
-        if missed < MET:
+        if missed < MET or not problem.model.effort.left:
             break
         rows = active[y > 0]
         curved = _curved(problem, x, at, rows, y[y > 0])
@@ -478,15 +349,15 @@ def _settled(problem: TaskProblem, z: Floats) -> tuple[Floats, float]:
             break
         step = _newton(at, curved, rows)
         step *= min(1.0, FARTHEST / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-        then = _conditions(problem, x + step)
+        then = conditions(problem, x + step)
         if then is None:
             break
-        then_active, then_y, then_missed = _multipliers(then)
+        then_active, then_y, then_missed = multipliers(then)
         if not then_missed < missed:
             break
         x, at, active, y, missed = x + step, then, then_active, then_y, then_missed
-        problem.take(_unknowns(problem, x))
-    return _unknowns(problem, x), missed
+        problem.take(unknowns(problem, x))
+    return unknowns(problem, x), missed
 
 
 def _newton(at: Conditions, curved: Floats, active: Integers) -> Floats:
@@ -501,7 +372,7 @@ def _curved(problem: TaskProblem, x: Floats, at: Conditions, active: Integers, y
     """The second derivatives of f less those of the rooms by their multipliers."""
 
     def pull(point: Floats) -> Floats | None:
-        there = _conditions(problem, point)
+        there = conditions(problem, point)
         return None if there is None else there.gradient - there.room_by[active].T @ y
 
     exact = at.curved is not None and at.cost <= EXACT**2 and not len(active)

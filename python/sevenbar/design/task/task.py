@@ -127,9 +127,9 @@ class DwellWant:
 class StraightWant:
     """A named point moves along a straight line, a free one, while the input goes over a range (low, high).
 
-    `length` is how far it goes at least [length], which residuals, its distances from the line at `samples`
-    inputs, are relative to; without one they are relative to the linkage's size, and a point that rests
-    is straight.
+    `length` is how far it must go at least [length], between the two places farthest along the line; a design
+    that goes less far is refused. Residuals, its distances from the line at `samples` inputs, are relative to
+    it; without one they are relative to the linkage's size, and a point that rests is straight.
     """
 
     point: str

@@ -20,6 +20,7 @@ from sevenbar.kinematics.numbers.dimensions import Dimension, Following
 from sevenbar.kinematics.numbers.gradients import QUANTITIES, MeasureSlopes, measure_slopes
 from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
 from sevenbar.kinematics.ranges.extent_slopes import extent_slopes
+from sevenbar.kinematics.transmission.slopes import transmission_slopes
 from sevenbar.text.printing import Printed, lines, text_of
 
 #: A change that counts as small where no tolerance is given [share of the linkage's size, rad].
@@ -226,6 +227,7 @@ def sensitivities(
     measures = [
         one for one in measure_slopes(numbers, chosen, motion.speed) if not one.name.startswith("jerk_")
     ]
+    measures += transmission_slopes(numbers, chosen)
     measures += force_slopes(numbers, chosen, motion.speed)
     measures += extent_slopes(numbers, chosen)
     if following is not None:

@@ -137,12 +137,43 @@ def conservative(course: EnergyCourse, place: float, speed: float, duration: flo
     return _swing(seeker, place, way, (ahead[0], behind[0]), at_end=place == behind[0])
 
 
+def swing_between(
+    course: EnergyCourse, place: float, speed: float
+) -> tuple[Conservative, tuple[bool, bool]] | None:
+    """The motion to and fro on an open course that is thrown back at its ends, and at which ends it turns.
+
+    `None` where it rests, or comes ever nearer to a top.
+    """
+    mass, slope = (float(part[0]) for part in course.at(np.array([place]))[:2])
+    rests = speed == 0.0
+    if rests and abs(slope) <= BALANCED * course.steepest:
+        return None
+    way = 1 if (slope <= 0 if rests else speed > 0) else -1
+    seeker = _Seeker(course, (place, mass * speed**2 / 2))
+    ends, turns = [], []
+    for towards, last in ((-1, 0.0), (1, course.length)):
+        found = (place, "turn") if rests and towards != way else seeker.end(place, towards, last)
+        if found is not None and found[1] == "top":
+            return None
+        ends.append(last if found is None else found[0])
+        turns.append(found is not None)
+    at_end = place == ends[0 if way > 0 else 1]
+    both = turns[0], turns[1]
+    return _swing(seeker, place, way, (ends[0], ends[1]), at_end=at_end, turns=both), both
+
+
 def _swing(
-    seeker: _Seeker, place: float, way: int, ends: tuple[float, float], *, at_end: bool
+    seeker: _Seeker,
+    place: float,
+    way: int,
+    ends: tuple[float, float],
+    *,
+    at_end: bool,
+    turns: tuple[bool, bool] = (True, True),
 ) -> Conservative:
-    """A motion to and fro between two turning points, from a place between them or `at_end`."""
+    """A motion to and fro between two ends, from a place between them or `at_end`; it `turns` at them."""
     low, high = sorted(ends)
-    run = seeker.run(low, high, (True, True))
+    run = seeker.run(low, high, turns)
     first = _whole(0.0, run, way) if at_end else Leg(0.0, run, way, run.time_at(place))
     back = _whole(first.end, run, -way)
     again = _whole(back.end, run, way)

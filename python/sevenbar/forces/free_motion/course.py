@@ -19,7 +19,7 @@ from numpy.polynomial import legendre
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
-from sevenbar.curves.stationary import nodes_between
+from sevenbar.curves.stationary import nodes_between, series_through
 from sevenbar.errors import RequestError
 
 #: Points of Gauss's rule for the rise of U over a short way, and how short, in pieces.
@@ -72,6 +72,33 @@ class EnergyCourse:
         series = self.quantities.series.copy()
         series[:, :, SLOPE] -= torque * series[:, :, INPUT]
         return replace(self, quantities=Along(self.quantities.edges, series))
+
+    def between(self, low: float, high: float) -> EnergyCourse:
+        """The part from a place to a place, on a closed course of a lap at most: an open one from 0 on."""
+        length, one = self.length, SAME * self.length
+        laps = np.arange(np.floor(low / length), np.floor(high / length) + 1) if self.closed else np.zeros(1)
+
+        def within(places: Floats) -> Floats:
+            found = np.unique(np.round((places + laps[:, None] * length).ravel(), 15))
+            return np.asarray(found[(found > low + one) & (found < high - one)])
+
+        edges = np.concatenate([[low], within(self.quantities.edges), [high]])
+        edges = edges[np.append(np.diff(edges) > one, True)]
+        middle = (edges[:-1] + edges[1:]) / 2
+        lap = self.laps(middle)
+        own = self.quantities.edges
+        pieces = np.clip(np.searchsorted(own, middle - lap * length, "right") - 1, 0, len(own) - 2)
+        terms = self.quantities.series.shape[1]
+        before = lap * length
+        grid = nodes_between(edges[:-1] - before, edges[1:] - before, terms)
+        values = self.quantities.on(np.repeat(pieces, terms), grid.ravel()).reshape(*grid.shape, -1)
+        # how far springs are wound up on a lap is part of the slope there
+        values[:, :, SLOPE] += lap[:, None] * values[:, :, WINDING]
+        values[:, :, WINDING] = 0.0
+        start = float(self.at(np.array([low]))[2][0])
+        return EnergyCourse(
+            Along(edges - low, series_through(values)), False, within(self.breaks) - low, start, self.tail
+        )
 
     @cached_property
     def _all(self) -> Along:

@@ -20,7 +20,7 @@ from sevenbar._core import driven as driven_rows
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
 from sevenbar.errors import RequestError
-from sevenbar.forces.free_motion.course import EnergyCourse
+from sevenbar.forces.free_motion.course import INPUT, SLOPE, EnergyCourse
 
 #: What a step of the two solutions may miss, as a part of a lap and of the motion's speed.
 TOLERANCE = 1e-12
@@ -79,17 +79,31 @@ class Driven:
         return place, speed
 
 
+def force_at(course: EnergyCourse, place: float, times: Floats, motor: Motor | None) -> Floats:
+    """What pushes at rest along the course (j,) [J for a unit of it], at a place and times (j,) [s]."""
+    own = course.quantities.at(np.array([place]))[0]
+    pushes = np.full(times.shape, -own[SLOPE])
+    return pushes if motor is None else pushes + motor.at(times, np.zeros(times.shape)) * own[INPUT]
+
+
 def driven(
-    course: EnergyCourse, place: float, speed: float, duration: float, motor: Motor | None, tolerance: float
+    course: EnergyCourse,
+    place: float,
+    speed: float,
+    duration: float,
+    motor: Motor | None,
+    tolerance: float,
+    *,
+    begin: float = 0.0,
 ) -> Driven:
-    """The motion from a place with s' = `speed` for a time [s]."""
+    """The motion from a place with s' = `speed` for a time [s]; it begins at the motor's time `begin` [s]."""
     length, edges = course.length, course.quantities.edges
     median = float(np.median(course.quantities.at((edges[:-1] + edges[1:]) / 2)[:, 0]))
     scale = max(
         abs(speed), math.sqrt(2 * float(np.ptp(course.at(course.marks(np.zeros(1)))[2])) / median), 1e-6
     )
-    times, series = [np.zeros(1)], []
-    time, ended = 0.0, False
+    times, series = [np.array([begin])], []
+    time, ended, until = begin, False, begin + duration
     start = place
     near = NEAR_MASSLESS * length
     course.refuse_massless(place - near, place + near)
@@ -102,7 +116,7 @@ def driven(
             edges,
             course.pushing,
             length if course.closed else None,
-            (time, place, speed, duration),
+            (time, place, speed, until),
             (tolerance * length, tolerance * scale),
             (low, high),
             None if motor is None else motor.asked,
@@ -123,7 +137,7 @@ def driven(
         place = hit + math.copysign(2 * PUSH * length, speed)
     else:
         raise RequestError("duration: loads set in and end too often; give a shorter one")
-    return Driven(Along(np.concatenate(times), np.concatenate(series)), ended)
+    return Driven(Along(np.concatenate(times) - begin, np.concatenate(series)), ended)
 
 
 def _stretch(course: EnergyCourse, breaks: Floats, place: float, *, upwards: bool) -> tuple[float, float]:

@@ -11,15 +11,18 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Integers, Words, counted, triple, whole_number
+from sevenbar.arrays import Floats, Integers, ReadOnly, Words, counted, triple, whole_number
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
 from sevenbar.kinematics.circuits.with_extents import ExtentAnswers, WithExtents
+from sevenbar.kinematics.loop.columns import column_named
 from sevenbar.kinematics.loop.rigid import placed, pose
 from sevenbar.text.printing import Printed
 
 # what a circuit gives when it is asked is imported by the answer, not with every circuit
 if TYPE_CHECKING:
+    import pandas as pd
+
     from sevenbar.forces.acting import Load, Spring
     from sevenbar.forces.bodies import Body
     from sevenbar.forces.counterweights import Balance
@@ -29,8 +32,15 @@ if TYPE_CHECKING:
     from sevenbar.forces.result import Forces
     from sevenbar.kinematics.circuits.instant_centres import InstantCentres
     from sevenbar.kinematics.circuits.link_motion import LinkMotion
+    from sevenbar.kinematics.circuits.one_pose import OnePose
     from sevenbar.kinematics.loop.geometry import Point
     from sevenbar.kinematics.loop.screw_axes import ScrewAxes, Twists
+
+#: Dead centres of input and output whose angles [rad, or relative to the size] differ by less are one pose.
+TOGETHER = 1e-7
+
+#: Extremes of the output [rad, or relative to the size] that differ by less differ by rounding.
+ALIKE = 1e-9
 
 #: An output that moves less than this compared with the input [rad, or relative to the size] rests.
 AT_REST = 1e-12
@@ -51,14 +61,20 @@ class Answers(ExtentAnswers, Protocol):
     def advantage(self, circuit: Circuit) -> Extremes | None:
         """The extremes of the mechanical advantage."""
 
+    def velocity(self, circuit: Circuit) -> Extremes | None:
+        """The extremes of the output's velocity where it has a limit at dead centres of the input."""
+
+    def rests_together(self, circuit: Circuit) -> Mapping[int, float]:
+        """d(output)/d(input) on the rows in which both rest."""
+
     def sensitivity(self, circuit: Circuit) -> Sensitivity:
         """By every number of the description."""
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) in the plane of a planar loop (..., 2), `None` for others."""
 
-    def loading(self, given: Mapping[str, Any]) -> Loading:
-        """What acts, with what is given in place of what the linkage has."""
+    def loading(self, circuit: Circuit, given: Mapping[str, Any]) -> Loading:
+        """What acts on one, with what is given in place of what the linkage has."""
 
     def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """On its rows, with what is given in place of what the linkage has."""
@@ -76,6 +92,19 @@ class Answers(ExtentAnswers, Protocol):
     def equilibria(self, circuit: Circuit, loading: Loading, torque: float) -> tuple[Equilibrium, ...]:
         """Where it can rest."""
 
+    def pose(
+        self,
+        circuit: Circuit,
+        value: float | str,
+        branch: int | None,
+        speed: float | str | None,
+        acceleration: float,
+    ) -> OnePose:
+        """At a value of the input."""
+
+    def frame(self, circuit: Circuit) -> pd.DataFrame:
+        """Its rows as a pandas table."""
+
 
 def _given(**acting: object) -> dict[str, object]:
     """What is given of what acts, in the place of what the linkage has."""
@@ -83,7 +112,7 @@ def _given(**acting: object) -> dict[str, object]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Circuit(Printed, WithExtents):
+class Circuit(ReadOnly, Printed, WithExtents):
     """One connected motion, row by row along it.
 
     `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n,
@@ -112,19 +141,17 @@ class Circuit(Printed, WithExtents):
     #: on the way.
     input_range: tuple[float, float] | None
     output_range: tuple[float, float] | None
-    #: Of the output's velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3]; `None` where they grow
-    #: without bound, or a change point lies within.
-    velocity: Extremes | None
+    #: Of the output's velocity [rad/s] as the core has it, acceleration [rad/s^2] and jerk [rad/s^3]; `None`
+    #: where they grow without bound, or a change point lies within.
+    _velocity: Extremes | None = field(repr=False)
     acceleration: Extremes | None
     jerk: Extremes | None
     #: Of the output itself [rad, or length]: its lowest and highest dead centre; `None` where it turns fully.
     angle: Extremes | None
     #: How far the output rocks [rad, or length]; `None` for one that turns fully.
     swing: float | None
-    #: Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output. `None`
-    #: also for a crank that turns back on the way, and at a change point where both ends of the output are at
-    #: one input: a stroke without time.
-    time_ratio: float | None
+    #: Time of the slower stroke over that of the quicker, as the core has it.
+    _time_ratio: float | None = field(repr=False)
     input_column: int
     output_column: int
     #: Whether input and output are angles, not slides.
@@ -139,6 +166,58 @@ class Circuit(Printed, WithExtents):
     _answers: Answers = field(repr=False)
     #: The extremes of the transmission angle where the closed form has them.
     _transmission: Extremes | None = field(repr=False)
+
+    @cached_property
+    def velocity(self) -> Extremes | None:
+        """The extremes of the output's velocity [rad/s, or length/s].
+
+        `None` where it grows without bound, or a change point lies within. At a dead centre of the input at
+        which the output rests, too, it has a limit.
+        """
+        ends = [d for d in self.dead_centres if d.kind == "input"]
+        if self._velocity is None and ends and len(self._together) == len(ends):
+            return self._answers.velocity(self.fleeting())
+        return self._velocity
+
+    @property
+    def _together(self) -> list[DeadCentre]:
+        """Dead centres of the input at which the output rests, too."""
+        units = [1.0 if turns else self.size for turns in (self.input_turns, self.output_turns)]
+
+        def same(one: DeadCentre, other: DeadCentre) -> bool:
+            apart = max(abs(one.input - other.input) / units[0], abs(one.output - other.output) / units[1])
+            return apart < TOGETHER
+
+        ends, turns = ([d for d in self.dead_centres if d.kind == kind] for kind in ("input", "output"))
+        return [one for one in ends if any(same(one, other) for other in turns)]
+
+    @property
+    def time_ratio(self) -> float | None:
+        """Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output.
+
+        `None` also for a crank that turns back on the way, at a change point where both ends of the output
+        are at one input, a stroke without time, and where `many_strokes` leave it open which count.
+        """
+        return None if self.many_strokes else self._time_ratio
+
+    @property
+    def many_strokes(self) -> bool:
+        """Whether the output is at its highest, or lowest, at several inputs: more than two strokes."""
+        unit = 1.0 if self.output_turns else self.size
+        ends = () if self.angle is None else (self.angle.lowest, self.angle.highest)
+        turns = [d for d in self.dead_centres if d.kind == "output"]
+        for end in ends:
+            inputs = [d.input for d in turns if abs(d.output - end) < ALIKE * unit]
+            apart = np.abs(np.sin((np.array(inputs) - inputs[0]) / 2)) if inputs else np.zeros(1)
+            if self.goes_round and float(apart.max()) > TOGETHER:
+                return True
+        return False
+
+    @property
+    def output_rests(self) -> bool:
+        """Whether the output rests while the input moves: there the advantage has no bound."""
+        turns = sum(d.kind == "output" for d in self.dead_centres)
+        return turns > len(self._together)
 
     @cached_property
     def transmission(self) -> Extremes | None:
@@ -158,12 +237,15 @@ class Circuit(Printed, WithExtents):
     def transmission_angle(self) -> Floats | None:
         """The transmission angle [rad] on each row (n,), from 0 to a right angle; `None` where not defined.
 
-        0 at dead centres of the input, NaN on rows without a pose. The pressure angle is a right angle less
-        it.
+        0 at dead centres of the input, but its limit where the output rests, too; NaN on rows without
+        a pose. The pressure angle is a right angle less it.
 
         Source: docs/theory_measures.md, (4) to (6).
         """
-        return self._answers.transmission_angle(self)
+        angle = self._answers.transmission_angle(self)
+        if angle is not None:
+            angle.setflags(write=False)
+        return angle
 
     @property
     def mechanical_advantage(self) -> Floats:
@@ -171,7 +253,7 @@ class Circuit(Printed, WithExtents):
 
         Torque over torque has no unit; a force at a slide over a torque is in 1/length, a torque over a
         force in length. Negative where they go opposite ways; without bound (inf) at dead centres of the
-        output, 0 at those of the input, NaN where a row has no rates.
+        output, 0 at those of the input, its limit at those of both, NaN where a row has no rates.
 
         Source: docs/theory_measures.md, (11).
         """
@@ -183,6 +265,9 @@ class Circuit(Printed, WithExtents):
         ).T
         ratio[driven <= AT_REST * driving] = np.inf
         ratio[self.status == "dead-centre"] = 0.0
+        if self._together:
+            for row, rate in self._answers.rests_together(self).items():
+                ratio[row] = 1 / rate if rate else np.inf
         return np.asarray(ratio)
 
     @cached_property
@@ -205,6 +290,43 @@ class Circuit(Printed, WithExtents):
     def fleeting(self) -> Circuit:
         """The circuit for one look at its rows: those of a long one are not kept with it."""
         return self
+
+    def __getitem__(self, name: str) -> Floats:
+        """A joint along the rows (n,) [rad, or length], by the name of its column: `circuit["theta_4"]`.
+
+        `KeyError` names the columns there are.
+        """
+        return self.q[:, column_named(self.columns, name)]
+
+    @ends_here
+    def at(
+        self,
+        value: float | str,
+        *,
+        branch: int | None = None,
+        speed: float | str | None = None,
+        acceleration: float = 0.0,
+    ) -> OnePose:
+        """The pose at a value of the input, as in "45 deg": rates, points, links, forces.
+
+        The input has there the `speed` of the circuit, or this one, and this `acceleration` [rad/s, rad/s^2,
+        or lengths]; where a law drives, the linkage's own speed. `branch` is the pass between dead centres of
+        the input where more than one of them has the value.
+
+            >>> import sevenbar as sb
+            >>> pose = sb.load("planar_4r").motion().circuits[0].at("45 deg")
+            >>> round(pose["theta_4"], 6), round(float(pose.dq[3]), 6)
+            (-2.418254, -0.081445)
+        """
+        return self._answers.pose(self, value, branch, speed, acceleration)
+
+    @ends_here
+    def to_frame(self) -> pd.DataFrame:
+        """Its rows as a pandas table (extra `[frame]`), with the columns of `Motion.to_frame`.
+
+        `attrs["units"]` has the unit of each column.
+        """
+        return self._answers.frame(self)
 
     @property
     def input(self) -> Floats:
@@ -357,6 +479,7 @@ class Circuit(Printed, WithExtents):
         torque: Any = None,
         torque_by_time: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
         samples: int = 361,
+        restitution: float | None = None,
         bodies: Mapping[int, Body | Sequence[Body]] | None = None,
         gravity: tuple[float, float, float] | None = None,
         loads: Sequence[Load] | None = None,
@@ -364,13 +487,15 @@ class Circuit(Printed, WithExtents):
     ) -> FreeMotion:
         """How the linkage moves by itself along this circuit for a `duration` [s, or "10s"].
 
-        It starts at the input `start` [rad, length, or text], the circuit's first row by default, with the
-        input's `speed` [rad/s, length/s, or text] or the kinetic `energy` [J], at rest by default; `branch`
-        counts the poses that have this input. `torque` acts on the input [N m, of a slide N]: a number, a
-        curve (speeds, torques), or a function of the speed; `torque_by_time` is a curve (times, torques).
-        Without dampers and with a torque that is a number at most, time is an integral along the circuit and
-        nothing is stepped. Change points are passed along the circuit's smooth continuation. Rows are
-        `samples` even times; the rest is as for `forces`.
+        It starts at the input `start` [rad, length, or text], by default in the drawn pose, or the circuit's
+        first row where it has none, with the input's `speed` [rad/s, length/s, or text] or the kinetic
+        `energy` [J], at rest by default; `branch` counts the poses that have this input. Stops of the linkage
+        end the way: they give back the part `restitution` of the speed, 0 (the default) to 1, and hold what
+        is pressed against them; by default it then starts in the first pose that they allow. `torque` acts
+        on the input [N m, of a slide N]: a number, a curve (speeds, torques), or a function of the speed;
+        `torque_by_time` is a curve (times, torques). Without dampers and with a torque that is a number at
+        most, time is an integral along the circuit and nothing is stepped. Change points are passed along the
+        circuit's smooth continuation. Rows are `samples` even times; the rest is as for `forces`.
 
         Raises `RequestError` where nothing has a mass, and for a start that the circuit does not have.
 
@@ -382,12 +507,12 @@ class Circuit(Printed, WithExtents):
             >>> fall.kind
             'oscillation'
 
-        Source: docs/theory_free.md, (1) to (13).
+        Source: docs/theory_free.md, (1) to (15).
         """
         given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
         return self._answers.free_motion(
             self,
-            self._answers.loading(given),
+            self._answers.loading(self, given),
             duration,
             speed=speed,
             energy=energy,
@@ -396,6 +521,7 @@ class Circuit(Printed, WithExtents):
             torque=torque,
             torque_by_time=torque_by_time,
             samples=samples,
+            restitution=restitution,
         )
 
     @ends_here
@@ -408,7 +534,7 @@ class Circuit(Printed, WithExtents):
         loads: Sequence[Load] | None = None,
         springs: Sequence[Spring] | None = None,
     ) -> tuple[Equilibrium, ...]:
-        """All poses of this circuit in which the linkage can rest, along the circuit.
+        """All poses of this circuit within the stops in which the linkage can rest, along the circuit.
 
         Under a constant `torque` [N m, of a slide N] at the input; the rest is as for `forces`. None where
         the potential is constant, as without gravity and springs: then it rests anywhere. Where a spring in a
@@ -424,7 +550,7 @@ class Circuit(Printed, WithExtents):
         Source: docs/theory_free.md, (11).
         """
         given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
-        return self._answers.equilibria(self, self._answers.loading(given), torque)
+        return self._answers.equilibria(self, self._answers.loading(self, given), torque)
 
     @ends_here
     def link_motion(self, link: int) -> LinkMotion:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from sevenbar.arrays import Floats, Words
+from sevenbar.arrays import Floats, ReadOnly, Words
 from sevenbar.text.printing import Printed
 
 #: What a row can hold, by the core's number: all; the pose but no rates (two reasons); nothing; all but the
@@ -43,7 +43,7 @@ class DeadCentre:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trace(Printed):
+class Trace(ReadOnly, Printed):
     """A point of a link along a circuit, in the report frame; arrays of shape (n, 3).
 
     `position` [length], `velocity` [length/s], `acceleration` [length/s^2], `jerk` [length/s^3]. Rows
@@ -68,7 +68,7 @@ class Tally:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Sensitivity(Printed):
+class Sensitivity(ReadOnly, Printed):
     """Derivatives of a circuit by the k numbers of its linkage's description, on its n rows.
 
     `names` and `units` (k,) are those of the numbers, as in the file. `position` (n, columns, k) [rad, or

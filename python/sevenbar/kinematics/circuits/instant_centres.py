@@ -15,14 +15,14 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Words
-from sevenbar.errors import RequestError
+from sevenbar.arrays import Floats, ReadOnly, Words
+from sevenbar.errors import RequestError, check_kind, shown
 from sevenbar.kinematics.loop.screw_axes import ScrewAxes
 from sevenbar.text.printing import Printed
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class InstantCentre(Printed):
+class InstantCentre(ReadOnly, Printed):
     """The instant centre of links `links` on n rows.
 
     `place` (n, 3) [length] in the report frame, `in_plane` (n, 2) in the plane of the loop. `status` (n,) is
@@ -44,17 +44,24 @@ class InstantCentres(Printed):
     centres: Mapping[tuple[int, int], InstantCentre]
 
     def __getitem__(self, links: tuple[int, int]) -> InstantCentre:
-        first, second = sorted(links)
-        if (first, second) not in self.centres:
-            known = ", ".join(f"{a}-{b}" for a, b in self.centres)
-            raise RequestError(f"links: {first} and {second} have no centre; give two of {known}")
-        return self.centres[first, second]
+        known = ", ".join(f"{a}-{b}" for a, b in self.centres)
+        try:
+            first, second = sorted(links)
+            found = self.centres.get((first, second))
+        except (TypeError, ValueError):
+            raise RequestError(f"links: {shown(links)} are no two links; give two of {known}") from None
+        if found is None:
+            raise RequestError(
+                f"links: {shown(first)} and {shown(second)} have no centre; give two of {known}"
+            )
+        return found
 
     def __len__(self) -> int:
         return len(self.centres)
 
     def columns(self, length: str) -> dict[str, npt.NDArray[np.generic]]:
         """The centres column by column, in the plane: `P12_x_mm`, `P12_y_mm`, `P12_status`."""
+        check_kind("length", length, str, "a unit of length; give a word, as in 'mm'")
         columns: dict[str, npt.NDArray[np.generic]] = {}
         for (a, b), centre in self.centres.items():
             name = f"P{a}{b}" if b < 10 else f"P{a}_{b}"

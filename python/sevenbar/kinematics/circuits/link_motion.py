@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, ReadOnly
 from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.loop.rigid import axial
 from sevenbar.text.printing import Printed
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LinkMotion(Printed):
+class LinkMotion(ReadOnly, Printed):
     """How a link turns along a circuit, in the report frame.
 
     `rotation` (n, 3, 3), its axes as columns; `velocity` [rad/s] and `acceleration` [rad/s^2] are vectors

@@ -8,12 +8,12 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats, Words
+from sevenbar.arrays import Floats, ReadOnly, Words
 from sevenbar.text.printing import Printed
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Output(Printed):
+class Output(ReadOnly, Printed):
     """Both branches of the closed form on n inputs; arrays (2, n), `None` above the order asked for.
 
     `position` [rad], `velocity` [rad/s], `acceleration` [rad/s^2], `jerk` [rad/s^3]. An input without
@@ -36,7 +36,7 @@ class Output(Printed):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Modes(Printed):
+class Modes(ReadOnly, Printed):
     """All assembly modes at one input: joint values (m, columns), angles in (-pi, pi].
 
     Turns of a ball that have no direction are NaN; `status` says which.

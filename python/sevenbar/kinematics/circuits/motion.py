@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, whole_number, within_turn
-from sevenbar.errors import RequestError, of_extra
+from sevenbar.arrays import Floats, ReadOnly, whole_number, within_turn
+from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.search import NearMotion, Search
-from sevenbar.kinematics.circuits.table import circuit_columns
+from sevenbar.kinematics.circuits.table import circuit_columns, frame_of
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.printing import Drawable
 
@@ -41,10 +41,11 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.loop.grashof import FourBar
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
+    from sevenbar.kinematics.loop.reason import Reason
 
 
 @dataclass(frozen=True, eq=False)
-class ChangePoint:
+class ChangePoint(ReadOnly):
     """A pose from which the loop can go on in more than one way, or that stands alone.
 
     `q` (columns,) are its joint values [rad in (-pi, pi], or length], `input` that of the input; `circuits`
@@ -105,9 +106,18 @@ class Solvable(Loop, ABC):
     def is_planar(self) -> bool:
         """Whether it can only move in a plane."""
 
+    @property
+    @abstractmethod
+    def normal(self) -> Floats | None:
+        """The direction (3,) across its plane, in the report frame; `None` of a loop that is not planar."""
+
     @abstractmethod
     def as_four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank."""
+
+    @abstractmethod
+    def reason_of(self, motion: Motion) -> Reason | None:
+        """Why a motion of it has no circuit, or which link has no length."""
 
     @abstractmethod
     def mobility(self, *, agree: float | None = None) -> Mobility:
@@ -154,7 +164,7 @@ class Solvable(Loop, ABC):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Motion(Drawable):
+class Motion(ReadOnly, Drawable):
     """The circuits of a linkage over the whole input range."""
 
     linkage: Solvable
@@ -238,6 +248,24 @@ class Motion(Drawable):
             agree = MOST_AGREE
         return NearMotion(widest.motion_type, miss, share, agree)
 
+    @cached_property
+    def reason(self) -> Reason | None:
+        """Why a rigid linkage does not move: joints off the plane or the point of the others, by how much.
+
+        Two neighbours that turn about one axis, so that the link between has no length, are named for every
+        linkage. `None` where no reason of these kinds is seen; joints that are off are named of drawn loops
+        only, since rows tell no pose.
+
+        >>> import sevenbar as sb
+        >>> places = {"a": (0, 0, 0), "b": (40, 0, 0), "c": (120, 70, 0), "d": (90, 0, 0)}
+        >>> joints = [{"kind": "R", "name": n, "at": p, "axis": (0, 0, 1)} for n, p in places.items()]
+        >>> joints[2]["axis"] = (0, 0.02, 1)
+        >>> reason = sb.from_axes(joints).motion().reason
+        >>> reason.off[0].joint, round(math.degrees(reason.off[0].by), 3), reason.motion_type
+        ('c', 1.146, 'crank-rocker')
+        """
+        return self.linkage.reason_of(self)
+
     @property
     def four_bar(self) -> FourBar | None:
         """Its links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank.
@@ -266,7 +294,7 @@ class Motion(Drawable):
             return self.circuits[index]
         except IndexError:
             count = len(self.circuits)
-            raise IndexError(f"motion: no circuit {index}; it has {count}, counted from 0") from None
+            raise IndexError(f"motion: no circuit {shown(index)}; it has {count}, counted from 0") from None
 
     def __bool__(self) -> bool:
         """A motion without circuits is a result as well."""
@@ -297,10 +325,13 @@ class Motion(Drawable):
             yield circuit_columns(circuit.fleeting(), self.linkage, si=si)
 
     def to_frame(self) -> pd.DataFrame:
-        """`columns` as a pandas table (extra `[frame]`)."""
-        with of_extra("frame", "to_frame needs pandas"):
-            import pandas as pd
-        return pd.DataFrame(self.columns())
+        """`columns` as a pandas table (extra `[frame]`); `attrs["units"]` has the unit of each column.
+
+        >>> import sevenbar as sb
+        >>> sb.load("planar_4r").motion(12).to_frame().attrs["units"]["theta_4_rad_s"]
+        'rad/s'
+        """
+        return frame_of(self.columns(), self.linkage)
 
 
 def chosen_circuit(motion: Motion, index: int) -> Circuit:

@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Any
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import truth
+from sevenbar.errors import of_extra
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.columns import joint_columns, point_column
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.units import LENGTHS
 
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: What the name of a quantity ends in that is counted by its unit.
+PER = "_per"
+
 
 def circuit_columns(circuit: Circuit, linkage: Loop, *, si: bool) -> dict[str, npt.NDArray[Any]]:
     """Every row of a circuit by column: degrees and the linkage's unit of length, or radians and metres."""
-    count = len(circuit.time)
+    count, si = len(circuit.time), truth("si", si)
     length, angle = ("m", "rad") if si else (linkage.length_unit, "deg")
     scale = LENGTHS[linkage.length_unit] if si else 1.0
     columns: dict[str, npt.NDArray[Any]] = {
@@ -51,8 +61,28 @@ def _advantage_column(circuit: Circuit, length: str, scale: float) -> tuple[str,
     """The column of the mechanical advantage, and a factor: torque over force is a length, and backwards."""
     match circuit.input_turns, circuit.output_turns:
         case True, False:
-            return f"mechanical_advantage_1_{length}", 1.0 / scale
+            return f"mechanical_advantage{PER}_{length}", 1.0 / scale
         case False, True:
             return f"mechanical_advantage_{length}", scale
         case _:
             return "mechanical_advantage", 1.0
+
+
+def frame_of(columns: Mapping[str, npt.NDArray[Any]], linkage: Loop) -> pd.DataFrame:
+    """Columns as a pandas table (extra `[frame]`).
+
+    Its `attrs` have the `linkage`'s name and the `units` of the columns that have one.
+    """
+    with of_extra("frame", "to_frame needs pandas"):
+        import pandas as pd
+    # `import sevenbar` needs no reader of tables
+    from sevenbar.text.table import name_and_unit
+
+    frame = pd.DataFrame(dict(columns))
+    units = {}
+    for head in columns:
+        name, unit = name_and_unit(head)
+        if unit:
+            units[head] = f"1/{unit}" if name.endswith(PER) else re.sub(r"(/s)(\d)$", r"\1^\2", unit)
+    frame.attrs |= {"linkage": linkage.name, "units": units}
+    return frame

@@ -17,7 +17,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, triple
 from sevenbar.curves.timed_rows import shares_of
-from sevenbar.errors import RequestError
+from sevenbar.errors import RequestError, shown
 from sevenbar.forces.counterweights import Balance, counterweights
 from sevenbar.forces.mounts import Mount
 from sevenbar.forces.result import Forces
@@ -35,6 +35,13 @@ def balance_of(
 
     Raises `RequestError` for a link that does not exist, and where a row has no shaking.
     """
+    try:
+        links = list(links)
+    except TypeError:
+        raise RequestError(f"links: {shown(links)} is no list of links; give one, as in [2, 4]") from None
+    twice = [link for i, link in enumerate(links) if link in links[:i]]
+    if twice:
+        raise RequestError(f"links: {twice[0]} is given twice; leave one out")
     mounts = [mount_of(linkage, circuit, link) for link in links]
     rows = np.concatenate(
         [forces.shaking, *(mount.unit.reshape(len(forces.time), -1) for mount in mounts)], axis=1

@@ -71,8 +71,7 @@ class EnergyBuilder:
         turns = self.solver.linkage.turns(self.path.input)
         values: list[float] = []
         for load in self.solver.loading.loads:
-            values += load.between or ()
-            values += load.table[0] if load.table is not None else ()
+            values += load.corners(turns=turns)
         found = [self.path.places(value, turns=turns) for value in values]
         return np.unique(np.concatenate([np.empty(0), *found]))
 

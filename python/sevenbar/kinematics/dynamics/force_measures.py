@@ -32,21 +32,25 @@ from sevenbar.text.units import LENGTHS
 def sized(circuit: Circuit, joints: Sequence[str] = ()) -> Sizing | None:
     """The sizing of a circuit's torque, with the bearings of these joints only.
 
-    `None` for a circuit that rocks: its measures are of constant speed.
+    `None` for a circuit that rocks: its measures are of constant speed. Between stops those of the part on
+    which the linkage is used.
     """
     found = circuit.forces()
     for name in joints:
         if name not in found.reactions:
             raise RequestError(f"measure: {no_joint(name, list(found.reactions))}")
-    if not circuit.goes_round:
+    own = found.within_stops
+    if own is None or (own.part is None and not circuit.goes_round):
         return None
-    return replace(found, reactions={name: found.reactions[name] for name in joints}).sizing()
+    return replace(own, reactions={name: own.reactions[name] for name in joints}).sizing()
 
 
 def peak_shaking(circuit: Circuit) -> float | None:
     """The greatest shaking force [N], between the rows, too; `None` where a row has none, or it rocks."""
-    forces = circuit.forces()
-    found = shaking_along(forces) if circuit.goes_round else None
+    own = circuit.forces().within_stops
+    if own is None or (own.part is None and not circuit.goes_round):
+        return None
+    found = shaking_along(own)
     return None if found is None else found.force.value
 
 
@@ -144,7 +148,9 @@ def _measured(
     def wanted(name: str) -> bool:
         return only is None or name in only
 
-    found = circuit.forces()
+    found = circuit.forces().within_stops
+    if found is None:
+        return
     joints = {
         name: one
         for name, one in found.reactions.items()
@@ -158,7 +164,12 @@ def _measured(
     def peak_of(
         name: str, unit: str, peak: Peak, of: Callable[[_Slopes], tuple[Floats, Floats]]
     ) -> Iterator[MeasureSlopes]:
-        """A peak and its derivatives where the quantity has its value; nothing where it has it nowhere."""
+        """A peak and its derivatives where the quantity has its value; nothing where it has it nowhere.
+
+        Nor at an end of a part between stops that moves with the dimensions.
+        """
+        if found.part is not None and found.part.moves(peak.input, found.driver):
+            return
         q = poses_at(solver.loop, circuit, peak.input)
         values, by = of(slopes(q[:, solver.input], q))
         best = nearest(np.abs(values - peak.value), abs(peak.value))

@@ -11,16 +11,17 @@ Source: docs/theory_forces.md, (1) to (6).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
 
 import sevenbar._core as _core
-from sevenbar.arrays import Booleans, Floats
+from sevenbar.arrays import Booleans, Floats, Integers, Words, truth
 from sevenbar.errors import RequestError
 from sevenbar.forces.acting import Load, Spring, Three
 from sevenbar.forces.bodies import Body
+from sevenbar.forces.heard import without_rounding
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -173,35 +174,67 @@ class ForceSolver:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class PosedRows:
+    """Rows (n,) of a circuit with the poses (n, columns) of the word; NaN where there are no rates.
+
+    `rates` (n, 2) are speed and acceleration of the input.
+    """
+
+    input: Floats
+    time: Floats
+    status: Words
+    branch: Integers
+    poses: Floats
+    rates: Floats
+
+
 def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -> Forces:
     """The forces on the rows of a circuit; see `Circuit.forces`."""
+    poses = _poses(solver, circuit)
+    poses[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
+    rates = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
+    rows = PosedRows(circuit.input, circuit.time, circuit.status, circuit.branch, poses, rates)
+    return replace(
+        forces_on(solver, circuit, rows, at_rest=at_rest),
+        periodic=circuit.goes_round
+        and not np.isnan(circuit.speed)
+        and not _winds_up(circuit, solver.loading),
+        through_change_points=circuit.motion_type == "change-point",
+        between=partial(_between, solver, circuit, at_rest),
+    )
+
+
+def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest: bool = False) -> Forces:
+    """The forces on rows of a circuit, which are no cycle."""
     linkage, loading = solver.linkage, solver.loading
     if loading.is_empty:
         raise RequestError(
             "forces: nothing has a mass and nothing acts; give bodies, loads or springs, or write [[body]]"
         )
-    poses = _poses(solver, circuit)
-    poses[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
-    speeds = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
-    if at_rest:
-        # rows without rates stay without
-        speeds = np.where(np.isfinite(speeds), 0.0, np.nan)
-    torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, poses, speeds)
+    at_rest = truth("at_rest", at_rest)
+    # rows without rates stay without
+    speeds = np.where(np.isfinite(rows.rates), 0.0, np.nan) if at_rest else rows.rates
+    found = solver.solved(rows.input, rows.poses, speeds)
+    torque, spin, energies, wrenches, seats, shaking, free, *_ = found
     size, metre = solver.size, LENGTHS[linkage.length_unit]
     if _nothing_pulls(solver, speeds, energies[:, 0] * size**2, shaking[:, 3:] * size):
         # not the rounding of a linkage that takes nothing; rows without values keep none
         torque, wrenches, shaking = 0.0 * torque, 0.0 * wrenches, 0.0 * shaking
     slides = not linkage.turns(circuit.input_column)
-    torque = torque * (size if slides else size**2)
+    pull, inertia = _acting_forces(solver, energies * size**2, shaking[:, 3:] * size)
+    torque = without_rounding(torque[:, None], pull / size)[:, 0] * (size if slides else size**2)
+    wrenches = without_rounding(wrenches, pull / size)
+    shaking = without_rounding(shaking, inertia / size)
     speed = speeds[:, 0]
     energies = energies * size**2
     reactions = _reactions(solver, wrenches, seats, free)
     return Forces(
-        input=circuit.input,
-        time=circuit.time,
+        input=rows.input,
+        time=rows.time,
         speed=speed,
-        status=circuit.status,
-        branch=circuit.branch,
+        status=rows.status,
+        branch=rows.branch,
         torque=torque,
         power=torque * speed * (metre if slides else 1.0),
         kinetic=energies[:, 0],
@@ -213,15 +246,31 @@ def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -
         indeterminate=linkage.mobility().redundant if free.shape[1] else (),
         slides=slides,
         length_unit=linkage.length_unit,
-        periodic=circuit.goes_round and not np.isnan(circuit.speed) and not _winds_up(circuit, loading),
+        periodic=False,
         loading=loading,
         bodies=solver.bodies,
         driver=linkage.columns[circuit.input_column],
         heading=linkage.heading,
         at_rest=at_rest,
-        through_change_points=circuit.motion_type == "change-point",
-        between=partial(_between, solver, circuit, at_rest),
+        pull=pull * (1.0 if slides else size),
     )
+
+
+def _acting_forces(solver: ForceSolver, energies: Floats, shaking: Floats) -> tuple[float, float]:
+    """How large the forces are [N] that act on the links, of all kinds and of inertia; torques by the size.
+
+    From energies (n, 3) [J, and W] and the shaking force (n, 3) [N].
+    """
+    loading, size = solver.loading, solver.size
+    kinetic, potential = (
+        np.abs(energies[:, i][np.isfinite(energies[:, i])]).max(initial=0.0) for i in (0, 1)
+    )
+    shaken = np.abs(shaking[np.isfinite(shaking)]).max(initial=0.0)
+    inertia = float(2 * kinetic / size + shaken)
+    weight = sum(body.mass for body in solver.bodies.values()) * float(np.linalg.norm(loading.gravity))
+    loads = [np.linalg.norm(load.force) + np.linalg.norm(load.torque) / size for load in loading.loads]
+    springs = float(potential) / size if loading.springs else 0.0
+    return float(weight + sum(loads) + springs) + inertia, inertia
 
 
 def _nothing_pulls(solver: ForceSolver, speeds: Floats, kinetic: Floats, shaking: Floats) -> bool:
@@ -283,6 +332,7 @@ def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Float
             determinate=determinate,
             known=known,
             known_values=np.einsum("nkj,nj->nk", known, wrench) if free.shape[1] else wrench,
+            size=size,
         )
     return found
 

@@ -1,38 +1,35 @@
 """Free motion and equilibria of a circuit: the path, what acts along it, and the state at any time.
 
-Source: docs/theory_free.md, (1) to (13).
+Source: docs/theory_free.md, (1) to (15).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from dataclasses import replace
+from functools import partial
 from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Words, finite_array, finite_number, whole_number
+from sevenbar.arrays import Floats, Words, finite_array, finite_number, truth, whole_number
 from sevenbar.errors import RequestError, shown
-from sevenbar.forces.free_motion.conservative import conservative
-from sevenbar.forces.free_motion.course import DAMPING, INPUT, MASS, MASSLESS_WAY, EnergyCourse
-from sevenbar.forces.free_motion.driven import COARSE, TOLERANCE, Motor, driven
-from sevenbar.forces.free_motion.equilibria import Equilibrium, resting_places
-from sevenbar.forces.free_motion.result import FreeMotion, FreeStates, TurningPoint
+from sevenbar.forces.free_motion.conservative import BALANCED
+from sevenbar.forces.free_motion.course import DAMPING, INPUT, MASS, EnergyCourse
+from sevenbar.forces.free_motion.driven import COARSE, TOLERANCE, Motor, force_at
+from sevenbar.forces.free_motion.equilibria import Equilibrium, Resting, resting_places
+from sevenbar.forces.free_motion.result import FreeMotion, FreeStates, Impact, TurningPoint
+from sevenbar.forces.free_motion.stages import Stages, Walls, elastic, staged, stepped, without_losses
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
-from sevenbar.kinematics.dynamics.energy_path import EnergyBuilder
-from sevenbar.kinematics.dynamics.forces import STILL, ForceSolver
-from sevenbar.kinematics.dynamics.free_rows import CourseRows
+from sevenbar.kinematics.dynamics.free_course import FreeCourse
 from sevenbar.kinematics.loop.columns import joint_columns
-from sevenbar.kinematics.loop.joint_text import joint_number, joint_speed
 from sevenbar.kinematics.loop.law import Law
-from sevenbar.kinematics.paths.circuit_path import CircuitPath
-from sevenbar.kinematics.paths.covered_path import covered_path
+from sevenbar.kinematics.paths.stretch import Stretch
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.units import LENGTHS
 
@@ -42,140 +39,13 @@ Torque = float | tuple[npt.ArrayLike, npt.ArrayLike] | Callable[[float], float]
 #: Damping below this part of the mass in a second is none.
 UNDAMPED = 1e-15
 
-#: A start is a dead centre of the input where that moves by less than this along the circuit.
-AT_DEAD_CENTRE = 1e-9
-
-
-@dataclass(frozen=True, eq=False)
-class FreeCourse:
-    """A circuit with its path and what acts along it, worked out once."""
-
-    linkage: Solvable
-    circuit: Circuit
-    loading: Loading
-
-    @cached_property
-    def solver(self) -> ForceSolver:
-        """The loop with what acts on it."""
-        return ForceSolver(self.linkage, self.loading, self.circuit.input_column)
-
-    @cached_property
-    def path(self) -> CircuitPath:
-        """The circuit by its arc length."""
-        return covered_path(self.linkage, self.circuit, self.solver.numbers)
-
-    @cached_property
-    def builder(self) -> EnergyBuilder:
-        """What asks the core along the path."""
-        return EnergyBuilder(self.solver, self.path)
-
-    @cached_property
-    def energy(self) -> EnergyCourse:
-        """Mass, potential and damping along it."""
-        course = self.builder.built()
-        if not course.quantities.reach[MASS] > STILL**2 * self.solver.inertia:
-            raise RequestError(
-                "bodies: nothing that moves on this circuit has a mass; give a body to a link that moves, as "
-                "[[body]], or take another circuit"
-            )
-        return course
-
-    @cached_property
-    def rows(self) -> CourseRows:
-        """All columns along it."""
-        return CourseRows(self.builder)
-
-    @property
-    def turns(self) -> bool:
-        """Whether the input is an angle."""
-        return self.linkage.turns(self.path.input)
-
-    @property
-    def first_row(self) -> int:
-        """The circuit's first row that has a pose."""
-        return int(np.flatnonzero(np.isfinite(self.circuit.q).all(axis=1))[0])
-
-    def start(self, value: float | str | None, branch: int | None) -> float:
-        """The place of a start: an input [rad, or length], on a pass between dead centres of the input."""
-        if value is None and branch is None:
-            return self._on_lap(self._first, float(self.circuit.q[self.first_row, self.path.input]))
-        if value is None:
-            raise RequestError("start: is missing; give the input at which the pass `branch` is entered")
-        number = joint_number("start", value, self.linkage, self.path.input)
-        places = self.path.places(number, turns=self.turns)
-        if not places.size:
-            unit = self.linkage.length_unit
-            place = f"{math.degrees(number):.9g} deg" if self.turns else f"{number:.9g} {unit}"
-            raise RequestError(f"start: the circuit has no pose at {place}; see its input_range")
-        first = self._first
-        ordered = places[np.argsort((places - first + 1e-9 * self.path.length) % self.path.length)]
-        if branch is None:
-            return self._on_lap(float(ordered[0]), number)
-        if (
-            isinstance(branch, bool)
-            or not isinstance(branch, (int, np.integer))
-            or not 0 <= branch < len(ordered)
-        ):
-            raise RequestError(
-                f"branch: {shown(branch)} is not offered; {len(ordered)} poses have this start, "
-                f"give 0 to {len(ordered) - 1}"
-            )
-        return self._on_lap(float(ordered[branch]), number)
-
-    def _on_lap(self, place: float, value: float) -> float:
-        """A place on the lap where the input has a value, not one by whole turns away."""
-        gain = float(self.path.gain[self.path.input])
-        if not gain:
-            return place
-        own = float(self.path.poses.part(self.path.input).at(np.array([place]))[0, 0])
-        return place + round((value - own) / gain) * self.path.length
-
-    @cached_property
-    def _first(self) -> float:
-        """The place of that row."""
-        circuit, path, row = self.circuit, self.path, self.first_row
-        value = float(circuit.q[row, path.input])
-        places = path.places(value, turns=self.turns)
-        if not places.size:
-            return 0.0
-        smooth = ~self.solver.numbers.is_ball
-        here = self.solver.numbers.poses(circuit.q[row : row + 1])[0]
-        off = path.poses.at(places)[:, smooth] - here[smooth]
-        turning = self.solver.numbers.turns[smooth]
-        off[:, turning] -= math.tau * np.round(off[:, turning] / math.tau)
-        return float(places[np.linalg.norm(off / self.solver.numbers.scales[smooth], axis=1).argmin()])
-
-    def rate(self, place: float, speed: float | str | None, energy: float | None) -> float:
-        """The rate s' at a place, from the input's speed [rad/s, or length/s] or the kinetic energy [J]."""
-        if speed is not None and energy is not None:
-            raise RequestError("energy: speed and energy are both given; give one of them")
-        inside = np.array([place % self.path.length if self.path.closed else place])
-        quantities = self.energy.quantities.at(inside)[0]
-        if (speed is not None or energy) and self.energy.is_massless(quantities[:1])[0]:
-            raise RequestError(MASSLESS_WAY)
-        by_s = float(self.path.poses.slope.at(inside)[0, self.path.input])
-        if energy is not None:
-            joule = finite_number("energy", energy)
-            if joule < 0:
-                raise RequestError(f"energy: {shown(energy)} is not a kinetic energy; give one >= 0")
-            way = -1.0 if by_s < 0 else 1.0
-            return way * math.sqrt(2 * joule / float(quantities[MASS]))
-        if speed is None:
-            return 0.0
-        value = joint_speed(speed, self.linkage, self.path.input)
-        scale = 1.0 if self.turns else self.solver.numbers.size
-        if abs(by_s) < AT_DEAD_CENTRE * scale and value:
-            raise RequestError(
-                "speed: the input stands still at this start, a dead centre; give energy, or another start"
-            )
-        return value / by_s if value else 0.0
-
-
 #: Courses live as long as their circuits.
 _COURSES: WeakKeyDictionary[Circuit, list[tuple[object, FreeCourse]]] = WeakKeyDictionary()
 
 
-def course_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> FreeCourse:
+def course_of(
+    linkage: Solvable, circuit: Circuit, loading: Loading, stretches: tuple[Stretch, ...] | None = None
+) -> FreeCourse:
     """The course of a circuit under a loading, made once for each."""
     if not any(loading.bodies.values()):
         raise RequestError("bodies: nothing has a mass; give bodies, or write [[body]]")
@@ -184,7 +54,7 @@ def course_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> FreeCour
     for own, course in known:
         if own == key:
             return course
-    course = FreeCourse(linkage, circuit, loading)
+    course = FreeCourse(linkage, circuit, loading, stretches)
     if known:
         # the path is that of the circuit, whatever acts
         course.__dict__["path"] = known[0][1].path
@@ -193,30 +63,69 @@ def course_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> FreeCour
 
 
 def equilibria_of(
-    linkage: Solvable, circuit: Circuit, loading: Loading, torque: float
+    linkage: Solvable,
+    circuit: Circuit,
+    loading: Loading,
+    torque: float,
+    stretches: tuple[Stretch, ...] | None = None,
 ) -> tuple[Equilibrium, ...]:
-    """All equilibria of a circuit; see `Circuit.equilibria`."""
-    course = course_of(linkage, circuit, loading)
+    """All equilibria of a circuit within its stops; see `Circuit.equilibria`."""
+    course = course_of(linkage, circuit, loading, stretches)
     energy = course.energy.driven_by(finite_number("torque", torque))
+    if stretches is None or any(one.is_whole for one in stretches):
+        begin = course.home if energy.winds else 0.0
+        found = []
+        for place, kind, frequency, rate, end in resting_places(energy, begin):
+            off = 0.0 if energy.winds else course.on_rows_lap(place) - place
+            found.append(_equilibrium(course, energy, (place + off, kind, frequency, rate, end + off)))
+        return tuple(found)
     found = []
-    begin = course.start(None, None) if energy.winds else 0.0
-    gain = course.path.gain[course.path.input]
-    first = float(circuit.q[course.first_row, course.path.input])
-    for inside, kind, frequency, rate in resting_places(energy, begin):
-        place = inside
-        if gain and not energy.winds:
-            # on the lap of the circuit's rows
-            own = float(course.path.poses.at(np.array([inside]))[0, course.path.input])
-            place -= math.floor((own - first) / gain + 1e-12) * course.path.length
-        here, still = np.array([place]), (np.zeros(1),) * 3
-        q = course.rows.at(here, still)[0][0]
-        found.append(
-            Equilibrium(
-                float(q[course.path.input]), circuit.columns, q, kind, frequency, rate,
-                float(energy.at(here)[2][0]), place,
-            )
-        )  # fmt: skip
+    for one in stretches:
+        own, begin = course.cut(energy, course.laid(one))
+        inner = [_equilibrium(course, own, each, begin=begin) for each in resting_places(own)]
+        first, last = (
+            [_on_stop(course, own, begin, place, stop, None, 0.0)]
+            if stop and way * force_at(own, place, np.zeros(1), None)[0] > BALANCED * energy.steepest
+            else []
+            for place, stop, way in ((0.0, one.first_stop, -1), (own.length, one.last_stop, 1))
+        )
+        found += [*first, *inner, *last]
     return tuple(found)
+
+
+def _equilibrium(
+    course: FreeCourse,
+    energy: EnergyCourse,
+    one: Resting,
+    *,
+    begin: float = 0.0,
+) -> Equilibrium:
+    """An equilibrium of a course that begins at a place of the path."""
+    place, kind, frequency, rate, end = one
+    until = course.input_at(begin + end) if math.isfinite(end) else math.nan
+    q = course.rows.at(np.array([begin + place]), (np.zeros(1),) * 3)[0][0]
+    potential = float(energy.at(np.array([place]))[2][0])
+    columns = course.circuit.columns
+    value = float(q[course.path.input])
+    spin = course.spin_at(np.array([begin + place]), np.zeros((1, 2)))
+    return Equilibrium(value, columns, q, kind, frequency, rate, potential, begin + place, until, spin=spin)
+
+
+def _on_stop(
+    course: FreeCourse,
+    energy: EnergyCourse,
+    begin: float,
+    place: float,
+    stop: str,
+    motor: Motor | None,
+    time: float,
+) -> Equilibrium:
+    """A rest at an end of a stretch that begins at a place of the path, and what the stop gives there."""
+    force = float(force_at(energy, place, np.array([time]), motor)[0])
+    holding, unit = course.pushed(force, begin + place, stop)
+    none = math.nan
+    found = _equilibrium(course, energy, (place, "on its stop", none, none, none), begin=begin)
+    return replace(found, stop=stop, holding=holding, holding_unit=unit)
 
 
 def free_motion_of(
@@ -232,38 +141,51 @@ def free_motion_of(
     torque: Torque | None = None,
     torque_by_time: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     samples: int = 361,
+    restitution: float | None = None,
+    stretches: tuple[Stretch, ...] | None = None,
 ) -> FreeMotion:
     """A free motion; see `Circuit.free_motion`."""
     seconds = _seconds(duration)
     samples = whole_number("samples", samples, 2, None, "a number of rows")
-    course = course_of(linkage, circuit, loading)
+    returned = _restitution(restitution, stretches)
+    course = course_of(linkage, circuit, loading, stretches)
     constant, motor = _motor(torque, torque_by_time, course)
-    own = course.energy.driven_by(constant)
     place = course.start(start, branch)
+    stretch = course.stretch_at(place)
+    assert stretch is not None
+    energies = course.energy.driven_by(constant)
+    own, begin = course.cut(energies, stretch)
     rate = course.rate(place, speed, energy)
     times = np.linspace(0.0, seconds, samples)
     damped = own.quantities.reach[DAMPING] > UNDAMPED * own.quantities.reach[MASS]
     difference = math.nan
-    period: float | None = None
-    turns: tuple[float, ...] = ()
-    if damped or motor is not None:
-        solved, coarse = (driven(own, place, rate, seconds, motor, tol) for tol in (TOLERANCE, COARSE))
-        kind = "ends" if solved.ended else "driven"
+    stepping = damped or motor is not None
+    walls = Walls(stretch.first_stop, stretch.last_stop, returned)
+    origin = (min(max(place - begin, 0.0), own.length) if begin or not walls.none else place, rate)
+    if stepping:
+        solved, coarse = (
+            staged(own, walls, origin, seconds, stepped(own, motor, tol), motor)
+            for tol in (TOLERANCE, COARSE)
+        )
         difference = float(np.nanmax(np.abs(solved.at(times)[0] - coarse.at(times)[0])))
-        state = solved.at
     else:
-        found = conservative(own, place, rate, seconds)
-        kind, period, turns, state = found.kind, found.period, found.turning, found.at
-    states = partial(_states, course, own, state, motor)
+        ideal = elastic(own, walls, origin) if returned == 1.0 else None
+        solved = ideal or staged(own, walls, origin, seconds, without_losses(own))
+    states = partial(_states, course, own, solved, motor, begin)
     rows = states(times)
+    turns = np.array(solved.turning, dtype=np.float64)
     still = (np.zeros(len(turns)),) * 3
-    at_turns = course.rows.at(np.array(turns, dtype=np.float64), still)[0][:, course.path.input]
-    heights = own.at(np.array(turns, dtype=np.float64))[2]
+    at_turns = course.rows.at(begin + turns, still)[0][:, course.path.input]
+    heights = own.at(turns)[2]
     error = math.nan
-    if not (damped or motor is not None):
-        total = rows.kinetic + rows.potential
-        most = float(np.nanmax(rows.kinetic))
+    if not stepping:
+        total = rows.kinetic + rows.potential + solved.lost_at(times)
+        most = max(float(np.nanmax(rows.kinetic)), float(solved.lost.max()))
         error = float(np.nanmax(np.abs(total - total[0]))) / most if most else 0.0
+    rest = None
+    if solved.kind == "on its stop":
+        last = float(solved.flights[-1].at(np.zeros(1))[0][0])
+        rest = _on_stop(course, own, begin, last, walls.at(last, own)[0], motor, seconds)
     return FreeMotion(
         time=times,
         columns=circuit.columns,
@@ -273,8 +195,8 @@ def free_motion_of(
         dddq=rows.dddq,
         kinetic=rows.kinetic,
         potential=rows.potential,
-        kind=kind,
-        period=period,
+        kind=solved.kind,
+        period=solved.period,
         turning=tuple(TurningPoint(float(x), float(h)) for x, h in zip(at_turns, heights, strict=True)),
         energy_error=error,
         difference=difference,
@@ -285,18 +207,56 @@ def free_motion_of(
         column_kinds=linkage.column_kinds,
         length_unit=linkage.length_unit,
         through_change_points=bool(course.path.centres.size),
+        impacts=_impacts(course, begin, solved),
+        rest=rest,
+        spin=course.spin_at(rows.place, np.stack([rows.dq, rows.ddq], axis=2)[:, course.path.input]),
+        rests_from=math.nan if rest is None else float(solved.begins[-1]),
+        restitution=returned,
         heading=linkage.heading,
         _states=states,
         _law=_as_law,
-        _motion=partial(_as_motion, course, state, motor, own),
+        _motion=partial(_as_motion, course, solved, motor, own, begin),
         _table=partial(_as_table, linkage),
+    )
+
+
+def _restitution(given: float | None, stretches: tuple[Stretch, ...] | None) -> float:
+    """What part of the speed a stop gives back; raises `RequestError` for what is no part."""
+    if given is None:
+        return 0.0
+    value = finite_number("restitution", given)
+    if not 0 <= value <= 1:
+        raise RequestError(
+            f"restitution: {shown(given)} is not a part of the speed; give 0 (no rebound) to 1 (no loss)"
+        )
+    if stretches is None:
+        raise RequestError(
+            "restitution: the linkage has no stops to rebound from; write [[stop]], or leave it out"
+        )
+    return value
+
+
+def _impacts(course: FreeCourse, begin: float, found: Stages) -> tuple[Impact, ...]:
+    """The stops that are met, by the input."""
+    if not found.met:
+        return ()
+    places = np.array([begin + one.place for one in found.met])
+    rates = np.array([one.rate for one in found.met])
+    none = np.zeros(len(rates))
+    q, dq, *_ = course.rows.at(places, (rates, none, none))
+    column = course.path.input
+    return tuple(
+        Impact(one.time, one.stop, float(value), float(speed))
+        for one, value, speed in zip(found.met, q[:, column], dq[:, column], strict=True)
     )
 
 
 def _seconds(duration: float | str) -> float:
     value = amount_in(duration, "s") if isinstance(duration, str) else finite_number("duration", duration)
     if value is None or value <= 0:
-        raise RequestError(f"duration: {shown(duration)} is not a time; give seconds > 0, as in 10 or '10s'")
+        raise RequestError(
+            f"duration: {shown(duration)} is not a time; give one > 0, as in 10, '10s' or '500ms'"
+        )
     return float(value)
 
 
@@ -330,14 +290,11 @@ def _motor(
     return finite_number("torque", torque), None
 
 
-State = Callable[[Floats], tuple[Floats, Floats]]
-
-
 def _rates(
-    own: EnergyCourse, state: State, motor: Motor | None, times: Floats
+    own: EnergyCourse, state: Stages, motor: Motor | None, times: Floats
 ) -> tuple[Floats, tuple[Floats, Floats, Floats], Floats, Floats]:
     """Places, s', s'' and s''', kinetic and potential energy at times."""
-    place, v = state(times)
+    place, v = state.at(times)
     known = np.isfinite(place)
     s = np.where(known, place, 0.0)
     mass, slope, potential, damping = own.at(s)
@@ -351,12 +308,12 @@ def _rates(
             by_s = own.quantities.at(inside)[:, INPUT]
             force = force + motor.at(times, by_s * v) * by_s
         # at a place without mass nothing is but at rest
-        massless = own.is_massless(mass)
-        a = np.where(massless, 0.0, force / mass)
+        still = own.is_massless(mass) | state.rests(times)
+        a = np.where(still, 0.0, force / mass)
         curvature = by[:, 1] + lap * by[:, 4]
         by_place = -(curvature + by[:, DAMPING] * v + second[:, MASS] * v**2 / 2 + a * by[:, MASS]) / mass
         by_speed = -(damping + by[:, MASS] * v) / mass
-        j = np.where(massless, 0.0, by_place * v + by_speed * a)
+        j = np.where(still, 0.0, by_place * v + by_speed * a)
         if motor is not None:
             j = np.full(v.shape, np.nan)
     kinetic = mass * v**2 / 2
@@ -366,9 +323,10 @@ def _rates(
 
 
 def _states(
-    course: FreeCourse, own: EnergyCourse, state: State, motor: Motor | None, times: Floats
+    course: FreeCourse, own: EnergyCourse, state: Stages, motor: Motor | None, begin: float, times: Floats
 ) -> FreeStates:
     place, rates, kinetic, potential = _rates(own, state, motor, times)
+    place = begin + place
     q, dq, ddq, dddq = course.rows.at(place, rates)
     return FreeStates(q, dq, ddq, dddq, kinetic, potential, place, rates[0])
 
@@ -382,6 +340,7 @@ def _as_law(found: FreeMotion) -> Law:
 
 def _as_table(linkage: Solvable, found: FreeMotion, si: bool) -> dict[str, npt.NDArray[Any]]:
     """Columns by names that end in their units."""
+    si = truth("si", si)
     length, angle = ("m", "rad") if si else (found.length_unit, "deg")
     scale = LENGTHS[found.length_unit] if si else 1.0
     rates = (found.q, found.dq, found.ddq)
@@ -390,11 +349,17 @@ def _as_table(linkage: Solvable, found: FreeMotion, si: bool) -> dict[str, npt.N
 
 
 def _as_motion(
-    course: FreeCourse, state: State, motor: Motor | None, own: EnergyCourse, found: FreeMotion
+    course: FreeCourse,
+    state: Stages,
+    motor: Motor | None,
+    own: EnergyCourse,
+    begin: float,
+    found: FreeMotion,
 ) -> Motion:
     """A motion whose one circuit has the rows of a free motion."""
     circuit, linkage = course.circuit, course.linkage
     place, rates, *_ = _rates(own, state, motor, found.time)
+    place = begin + place
     count = len(found.time)
     status: Words = np.where(np.isfinite(place), "ok", "no-solution").astype("<U15")
     status[(status == "ok") & np.isnan(found.q).any(axis=1)] = "turns-undefined"
@@ -415,7 +380,7 @@ def _as_motion(
         residual=np.zeros(count),
         condition=np.full(count, np.nan),
         speed=math.nan,
-        velocity=None,
+        _velocity=None,
         acceleration=None,
         jerk=None,
         _point=point,  # type: ignore[arg-type]

@@ -12,7 +12,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, triple
 from sevenbar.errors import RequestError, shown
-from sevenbar.forces.bodies import Body, as_one
+from sevenbar.forces.bodies import Body, as_one, flaw_alone
 from sevenbar.forces.loading import DRAWN_IN, Loading
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.loop.geometry import Loop
@@ -24,7 +24,7 @@ from sevenbar.text.units import LENGTHS
 SYMMETRIC = 1e-9
 
 
-def resolved(loading: Loading, linkage: Loop, *, circuit: int = 0) -> dict[int, Body]:
+def resolved(loading: Loading, linkage: Solvable, *, circuit: int = 0) -> dict[int, Body]:
     """The body of each link that has one, by the link's number; centres and axes as points are written.
 
     A rod lies between the places of its link's two joints. What is drawn are the solids of an export of that
@@ -90,7 +90,7 @@ def refuse_no_link(key: str, link: object, linkage: Loop, *, or_ground: bool = F
         raise RequestError(f"{key}: link {shown(link)} {what}; give 1 to {last}{more}")
 
 
-def _worked_out(body: Body, link: int, linkage: Loop, solids: Callable[[], Mapping[int, Body]]) -> Body:
+def _worked_out(body: Body, link: int, linkage: Solvable, solids: Callable[[], Mapping[int, Body]]) -> Body:
     """A body by its centre and inertia, whatever it was given by."""
     if body.solid == "rod":
         return _rod(body.mass, link, linkage)
@@ -98,7 +98,35 @@ def _worked_out(body: Body, link: int, linkage: Loop, solids: Callable[[], Mappi
         steel = solids()[link]
         share = body.mass / steel.mass if body.mass else 1.0
         return Body(share * steel.mass, steel.centre, share * steel.tensor)
-    return replace(body, solid=None)
+    if body.alone is None:
+        return replace(body, solid=None)
+    if flaw := flaw_in_plane(body, link, linkage):
+        raise RequestError(f"bodies[{link}]: inertia: {flaw}")
+    normal = across(linkage, link)
+    assert normal is not None
+    return body.about(normal)
+
+
+def flaw_in_plane(body: Body, link: int, linkage: Solvable) -> str:
+    """Why an inertia about one axis alone does not say enough of a body; empty where it does, or is whole."""
+    if body.alone is None:
+        return ""
+    _, axis = body.alone
+    normal = across(linkage, link)
+    apart = 0.0 if axis is None or normal is None else float(np.linalg.norm(np.cross(axis, normal)))
+    return flaw_alone(body) if normal is None or apart > SYMMETRIC else ""
+
+
+def across(linkage: Solvable, link: int) -> Floats | None:
+    """The direction (3,) across a planar linkage, as points of a link are written; `None` of any other."""
+    if linkage.normal is None:
+        return None
+    # motions in the plane leave it as it is, so joints are taken at zero
+    frame = linkage.base
+    for before in linkage.links[: link - 1]:
+        frame = frame @ before
+    frame = frame @ linkage.point_frames[link - 1]
+    return np.asarray(frame[:3, :3].T @ linkage.normal)
 
 
 def _rod(mass: float, link: int, linkage: Loop) -> Body:

@@ -22,6 +22,7 @@ L = TypeVar("L", bound=Loop)
 def loaded(linkage: L, **acting: Any) -> L:
     """The linkage with what acts, as `loading_with` takes it, in the place of its own."""
     given = loading_with(linkage, **acting)
+    given.check_input(turns=linkage.turns(linkage.drive.joint))
     tables: dict[str, Any] = {}
     if linkage.description:
         forces = dict(linkage.description.get("forces", {}))
@@ -56,8 +57,8 @@ def loading_with(
     given = Loading(
         own.gravity if gravity is None else triple("gravity", gravity),
         own.bodies if bodies is None else bodies,  # type: ignore[arg-type]
-        own.loads if loads is None else tuple(loads),
-        own.springs if springs is None else tuple(springs),
+        own.loads if loads is None else loads,  # type: ignore[arg-type]
+        own.springs if springs is None else springs,  # type: ignore[arg-type]
     )
     for link in given.bodies:
         refuse_no_link("bodies", link, linkage)
@@ -85,7 +86,9 @@ def _body(link: int, body: Body, mass_unit: str, linkage: Loop) -> dict[str, Any
     if body.centre is not None:
         table["centre"] = list(body.centre)
     if body.tensor.any():
-        table["inertia"] = entries_of(body.tensor / (kilogram * metre**2))
+        unit = kilogram * metre**2
+        across = body.alone is not None and body.alone[1] is None
+        table["inertia"] = body.alone[0] / unit if body.alone and across else entries_of(body.tensor / unit)
     return table
 
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.errors import shown
 from sevenbar.kinematics.loop.geometry import Loop
 
 #: What the unit of a rate of order 0 to 3 ends in.
@@ -15,6 +16,17 @@ RATES = ("", "_s", "_s2", "_s3")
 
 #: What stands before the axis in the name of a point's position, velocity, acceleration.
 LETTERS = ("", "v", "a")
+
+
+def column_named(columns: Sequence[str], name: str) -> int:
+    """The place of a column by its name; `KeyError` names those there are.
+
+    >>> column_named(("crank", "rocker"), "rocker")
+    1
+    """
+    if name not in columns:
+        raise KeyError(f"no column {shown(name)}; there are {', '.join(columns)}")
+    return columns.index(name)
 
 
 def shown_in(linkage: Loop, column: int | str) -> tuple[str, float]:

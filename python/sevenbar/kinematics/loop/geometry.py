@@ -12,8 +12,8 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Booleans, Floats
-from sevenbar.errors import RequestError, no_joint
+from sevenbar.arrays import Booleans, Floats, whole_number
+from sevenbar.errors import RequestError, check_kind, no_joint
 from sevenbar.forces.loading import UNLOADED, Loading
 from sevenbar.kinematics.loop.joints import Freedom, JointKind, Step, X, Z, kind_row
 from sevenbar.kinematics.loop.rigid import about, inverse, pose, product
@@ -26,6 +26,9 @@ Form = Literal["rssr", "rows", "planar", "drawn"]
 
 #: A place in a description: keys of tables, and counts from 0 in lists.
 Place = tuple[str | int, ...]
+
+#: Lengths below this part of how far off they are drawn are the rounding of places, as for the core.
+NO_SIZE = 64 * float(np.finfo(float).eps)
 
 #: What a linkage is called that was made without a name.
 UNNAMED = "linkage"
@@ -152,7 +155,9 @@ class Loop(Drawable):
     stops: Stops = field(default=NO_STOPS, repr=False)
 
     def __post_init__(self) -> None:
-        for array in (self.base, self.ground, self.links, self.point_frames):
+        for name in ("base", "ground", "links", "point_frames"):
+            array = getattr(self, name)
+            check_kind(name, array, np.ndarray, "an array; make linkages with load, from_axes, from_dh, rssr")
             array.setflags(write=False)
 
     def __reduce__(self) -> tuple[type[Loop], tuple[Any, ...]]:
@@ -163,6 +168,14 @@ class Loop(Drawable):
     def transforms(self) -> Floats:
         """The G's of all links (n, 4, 4), the ground's last: `Z(q1) G1 .. Z(qn) Gn = 1`."""
         return np.concatenate([self.links, [inverse(self.ground) @ self.base]])
+
+    @property
+    def size(self) -> float:
+        """The size [length], as the core has it: all links' lengths, and pitches by radian; 1 if none."""
+        lengths = float(np.linalg.norm(self.transforms[:, :3, 3], axis=1).sum())
+        size = lengths + sum(abs(joint.pitch) / math.tau for joint in self.joints)
+        reach = max(math.hypot(*frame[:3, 3]) for frame in (self.base, self.ground))
+        return size if size > NO_SIZE * reach else 1.0
 
     @cached_property
     def kind(self) -> str:
@@ -207,8 +220,13 @@ class Loop(Drawable):
 
     def turns(self, column: int | str) -> bool:
         """Whether a column, by its number or name, is an angle, not a length."""
-        place = self.columns.index(column) if isinstance(column, str) else column
-        return self.column_kinds[place] == "turn"
+        return self.column_kinds[self._place(column)] == "turn"
+
+    def _place(self, column: int | str) -> int:
+        """The place of a column by its number or name; `RequestError` for what is neither."""
+        if isinstance(column, str):
+            return self.columns.index(column) if column in self.columns else self.column(column, "column")
+        return whole_number("column", column, 0, len(self.columns) - 1, "the number of a column")
 
     def unit_of(self, column: int | str) -> str:
         """The unit of a column's values, by its number or name: "rad", or the length unit."""
@@ -225,11 +243,14 @@ class Loop(Drawable):
         return [
             name
             for index, (name, owner) in enumerate(zip(self.columns, owners, strict=True))
-            if not owner.row.is_ball and index != without
+            if not owner.row.is_ball and (without is None or index != self._place(without))
         ]
 
     def column(self, name: str, key: str) -> int:
         """The place of a column named by the caller; a joint's name stands for its first one."""
+        names = [joint.name for joint in self.joints]
+        if not isinstance(name, str):
+            raise RequestError(f"{key}: {no_joint(name, names)}")
         for joint in self.joints:
             if joint.row.is_ball and name in (joint.name, *joint.columns):
                 raise RequestError(
@@ -239,7 +260,7 @@ class Loop(Drawable):
             if name == joint.name:
                 return self.columns.index(joint.first)
         if name not in self.columns:
-            raise RequestError(f"{key}: {no_joint(name, [joint.name for joint in self.joints])}")
+            raise RequestError(f"{key}: {no_joint(name, names)}")
         return self.columns.index(name)
 
     def input_column(self, name: str | None = None, key: str = "input") -> int:
@@ -260,6 +281,7 @@ class Loop(Drawable):
 
     def other_column(self, column: int) -> int:
         """The output where only the input was named: the drive's, else that of the last other joint."""
+        column = self._place(column)
         if self.columns[column] != self.drive.output:
             return self.columns.index(self.drive.output)
         last = [

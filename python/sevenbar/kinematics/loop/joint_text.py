@@ -10,6 +10,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.text.given import given_number
 from sevenbar.text.units import examples_of, sliding_speed, turning_speed, usable_speed
 
 
@@ -31,27 +32,6 @@ def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
             f"give {examples_of(unit)}"
         )
     return value
-
-
-def given_number(key: str, value: object, unit: str) -> object:
-    """What a caller gives for a number in a unit, "rad" or a length: a text is read, anything else as it is.
-
-    Raises `RequestError` for a text that is no number with a unit that fits.
-    """
-    if not isinstance(value, str):
-        return value
-    # `import sevenbar` needs no reader of formulas
-    from sevenbar.text.amounts import amount_in, lacks_unit
-
-    number = None if lacks_unit(value, "angle" if unit == "rad" else "length") else amount_in(value, unit)
-    if number is None:
-        example = "one as in '30 deg'" if unit == "rad" else f"one as in '12 {unit}'"
-        plain = "radians" if unit == "rad" else unit
-        raise RequestError(
-            f"{key}: {shown(value)} is not a number with a unit that fits; give {example}, "
-            f"or a number in {plain}"
-        )
-    return number
 
 
 def check_own_unit(key: str, angle: str) -> None:

@@ -27,9 +27,13 @@ class Law(Printed):
 
     def __post_init__(self) -> None:
         for name in ("t", "q", "dq", "ddq", "dddq"):
-            array = np.array(getattr(self, name), dtype=np.float64)
+            array = finite_array(name, getattr(self, name)).copy()
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+            if array.size != self.t.size or not array.size:
+                raise RequestError(
+                    f"{name}: {array.size} values where t has {self.t.size}; give as many, or Law.of"
+                )
 
     def __reduce__(self) -> tuple[type[Law], tuple[Floats, ...]]:
         return Law, (self.t, self.q, self.dq, self.ddq, self.dddq)

@@ -18,7 +18,8 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Words
+from sevenbar.arrays import Floats, ReadOnly, Words
+from sevenbar.errors import check_kind
 from sevenbar.text.printing import Printed
 
 #: Turns slower than this, for the size of the linkage and against the velocity, are none: the axis is farther
@@ -30,7 +31,7 @@ AT_REST = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ScrewAxes(Printed):
+class ScrewAxes(ReadOnly, Printed):
     """The screw axis of link `link` against link `relative_to` on each of n rows.
 
     `point` and `direction` (n, 3) are a point of the axis and a unit vector along it, right-handed, in the
@@ -59,6 +60,7 @@ class ScrewAxes(Printed):
 
     def columns(self, length: str) -> dict[str, npt.NDArray[np.generic]]:
         """The rows column by column, each name ending in its unit; `length` is the length unit."""
+        check_kind("length", length, str, "a unit of length; give a word, as in 'mm'")
         columns: dict[str, npt.NDArray[np.generic]] = {"status": self.status}
         for name, unit in product(("", "fixed_", "moving_"), (f"_{length}", "")):
             vector = f"{name}point" if unit else f"{name}direction"

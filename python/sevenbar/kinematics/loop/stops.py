@@ -9,7 +9,9 @@ from dataclasses import dataclass, field
 import numpy.typing as npt
 
 from sevenbar.arrays import finite_array, finite_number, triple
+from sevenbar.curves.turn import is_beyond_a_turn
 from sevenbar.errors import RequestError, shown
+from sevenbar.text.given import given_number
 
 Three = tuple[float, float, float]
 
@@ -26,9 +28,10 @@ def direction(key: str, value: npt.ArrayLike) -> Three:
 class Cone:
     """How far a ball or universal joint may be bent, and from where.
 
-    `angle` [rad] is the greatest between `seat` and `stud`, directions of the link before and of the link
-    after, written as points of these are; `None` for no limit. A direction left out: of an idle link that of
-    its rod; else the stud is the rod of the link after, and the seat the middle of the motion.
+    `angle` [rad], or a text as in "45 deg", is the greatest between `seat` and `stud`, directions of the link
+    before and of the link after, written as points of these are; `None` for no limit. A direction left out:
+    of an idle link that of its rod; else the stud is the rod of the link after, and the seat the middle of
+    the motion.
     """
 
     angle: float | None = None
@@ -39,9 +42,13 @@ class Cone:
         for key in ("seat", "stud"):
             if (value := getattr(self, key)) is not None:
                 object.__setattr__(self, key, direction(key, value))
-        if self.angle is not None and not 0 < finite_number("cone", self.angle) <= math.pi:
+        if self.angle is None:
+            return
+        angle = finite_number("cone", given_number("cone", self.angle, "rad"))  # type: ignore[arg-type]
+        object.__setattr__(self, "angle", angle)
+        if not 0 < angle <= math.pi:
             raise RequestError(
-                f"cone: {math.degrees(self.angle):.6g} deg is no cone; give an angle above 0, up to 180 deg"
+                f"cone: {math.degrees(angle):.6g} deg is no cone; give an angle above 0, up to 180 deg"
             )
 
 
@@ -76,8 +83,7 @@ def check_range(key: str, low: float, high: float, *, turns: bool) -> tuple[floa
     ends = finite_number(key, low), finite_number(key, high)
     if not ends[0] < ends[1]:
         raise RequestError(f"{key}: the low end is not below the high end; give [low, high]")
-    # a few rounding errors beyond a turn are a turn
-    if turns and ends[1] - ends[0] > math.tau * (1 + 1e-12):
+    if turns and is_beyond_a_turn(*ends):
         degrees = math.degrees(ends[1] - ends[0])
         raise RequestError(f"{key}: {degrees:.6g} deg is more than a turn; a stop is within one")
     return ends

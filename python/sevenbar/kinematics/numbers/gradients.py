@@ -1,4 +1,4 @@
-"""Derivatives of what is measured of a circuit: extremes, swing, limits, time ratio, transmission angle.
+"""Derivatives of what is measured of a circuit's output: extremes, swing, limits, time ratio.
 
 An extreme of y(x, p) over x changes with p as y itself does at that place, dy*/dp = partial y/partial p (the
 envelope theorem); where a symmetric linkage has it at two places, this is true of one of them. The place
@@ -26,9 +26,6 @@ from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
 QUANTITIES = ("position", "velocity", "acceleration", "jerk")
 PER_TIME = ("", "/s", "/s^2", "/s^3")
 
-#: The complex step: its square is nothing beside 1.
-STEP = 1e-30
-
 #: A pose found is the extreme's own where it gives its value to this share of the quantity's greatest one.
 SAME_VALUE = 1e-6
 
@@ -37,9 +34,6 @@ NEAREST = 8
 
 #: A time ratio nearer to 1 is 1 up to rounding; there either stroke may become the slower: a kink.
 EQUAL_STROKES = 1e-9
-
-#: 1 - sin of a transmission angle of 90 degrees, and sin of one of 0: there it has a kink, or stays.
-RIGHT_ANGLE, DEAD = 1e-12, 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +51,9 @@ class MeasureSlopes:
 
 
 def measure_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> tuple[MeasureSlopes, ...]:
-    """All measures of a circuit that has them, with their derivatives; NaN by numbers that open the loop."""
+    """Extremes of a circuit's output and its limits, with derivatives; NaN by numbers that open the loop."""
     loop = numbers.loop(circuit.input_column)
-    found = [*_extremes(loop, circuit, speed), *_limits(numbers, circuit), *_transmission(numbers, circuit)]
+    found = [*_extremes(loop, circuit, speed), *_limits(numbers, circuit)]
     opening = loop.opening(circuit)
     for one in found:
         one.slopes[opening] = np.nan
@@ -168,43 +162,3 @@ def nearest(apart: Floats, size: float = 1.0) -> int | None:
         return None
     best = int(np.nanargmin(apart))
     return best if apart[best] <= SAME_VALUE * (size or 1.0) else None
-
-
-def _transmission(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
-    """The transmission angle's extremes: its sine is the coupler's part along the output ball's way.
-
-    The ball's way is square to the output's axis, on which two marks lie.
-    """
-    # of other loops it is not written by points of the description
-    if numbers.linkage.kind != "RSSR" or circuit.transmission is None:
-        return
-    loop = numbers.loop(circuit.input_column, marks=circuit.output_column)
-    # A and B are the first two points of every RSSR, the marks are the last
-    a, b, foot, end = 0, 1, -2, -1
-    arm = b if circuit.output_column else a
-    for name in ("lowest", "highest"):
-        value, at = getattr(circuit.transmission, name), getattr(circuit.transmission, f"{name}_at")
-        slopes = np.full(len(numbers.names), np.nan)
-        q = poses_at(loop, circuit, at)
-        here = loop.slopes(q, 0)
-        places, by = here.points[:, :, 0], here.points_by_number[:, :, 0]
-        sines = _sine(places, a, b, arm, foot, end)
-        apart = np.abs(np.arcsin(np.minimum(np.abs(sines), 1.0)) - value)
-        best = nearest(apart)
-        if best is not None and np.isfinite(by[best]).all() and 1 - abs(sines[best]) > RIGHT_ANGLE:
-            size = float(sines[best])
-            # by a complex step: exact to rounding, since it is analytic
-            stepped = places[best] + 1j * STEP * np.moveaxis(by[best], 1, 0)
-            by_p = _sine(stepped, a, b, arm, foot, end).imag / STEP
-            slopes = np.degrees(math.copysign(1.0, size) * by_p / math.sqrt(1 - size * size))
-        if value < DEAD:
-            # it is 0 at every dead centre of the input
-            slopes = np.zeros(len(slopes))
-        yield MeasureSlopes(f"transmission_{name}", "deg", math.degrees(value), slopes, math.radians(1.0))
-
-
-def _sine(places: Floats, a: int, b: int, arm: int, foot: int, end: int) -> Floats:
-    """The coupler's part along the way of the output's ball, of points (n, points, 3), real or complex."""
-    along = places[:, a] - places[:, b]
-    way = np.cross(places[:, end] - places[:, foot], places[:, arm] - places[:, foot])
-    return np.asarray((along * way).sum(axis=1) / np.sqrt((along**2).sum(axis=1) * (way**2).sum(axis=1)))

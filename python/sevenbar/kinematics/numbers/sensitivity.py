@@ -131,15 +131,13 @@ class Numbers:
         input: int,
         p: Floats | None = None,
         only: Sequence[int] | None = None,
-        marks: int | None = None,
         extra: Sequence[_core.Carried] = (),
     ) -> NumberedLoop:
         """The loop driven by a column at numbers p, the description's own by default.
 
-        Derivatives are by all numbers, or `only` by some, (k,) then being these. With `marks`, a column, two
-        more points come last that lie on its axis, the size apart; then those `extra`.
+        Derivatives are by all numbers, or `only` by some, (k,) then being these. Points `extra` come last.
         """
-        return NumberedLoop(self, input, self.nominal if p is None else p, only, marks, extra)
+        return NumberedLoop(self, input, self.nominal if p is None else p, only, extra)
 
     def driven(self, column: int) -> NumberedLoop:
         """The loop driven by a column at the description's own numbers, without derivatives; made once."""
@@ -205,16 +203,11 @@ class NumberedLoop:
         input: int,
         p: Floats,
         only: Sequence[int] | None = None,
-        marks: int | None = None,
         extra: Sequence[_core.Carried] = (),
     ) -> None:
         self.numbers, self.input, self.p = numbers, input, p
         self.only = range(len(p)) if only is None else only
         points = list(numbers.points)
-        if marks is not None:
-            count = next(k for k, step in enumerate(numbers.word.steps, 1) if marks in step.columns)
-            axis = _core.Product()
-            points += [_core.Carried(count, axis, None, (0.0, 0.0, end)) for end in (0.0, numbers.size)]
         #: What the core knows of it.
         self.core = numbers.core.at(p, input, self.only, [*points, *extra])
 

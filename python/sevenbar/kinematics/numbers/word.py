@@ -148,6 +148,12 @@ class Word:
         behind = self._behind(link)
         return Carried(steps, behind), Carried(steps, behind + self.links[link - 1])
 
+    def axis(self, column: int, length: float) -> tuple[Carried, Carried]:
+        """Two points on the axis of the joint of a column, so far apart."""
+        count = next(k for k, step in enumerate(self.steps, 1) if column in step.columns)
+        first, second = (Carried(count, Product(), None, (0.0, 0.0, end)) for end in (0.0, length))
+        return first, second
+
     def place(self, link: int, at: tuple[float, float, float]) -> Carried:
         """A point of a link, counted from 1, that no number moves on it."""
         return Carried(*self.carrier(link), None, at)

@@ -55,6 +55,10 @@ DRIVES = 0.15
 #: Rows nearer to each other than this part of the circuit are one.
 APART = 1e-6
 
+#: An input that misses a value by less [rad, or shares of the size] at a dead centre, or at the seam of a
+#: closed circuit, has it: both are known to rounding.
+HAS = 1e-12
+
 #: Where the passive joints' volume is below this part of its greatest, and least, a change point may be near.
 NEAR_CHANGE_POINT = 0.05
 
@@ -97,15 +101,19 @@ class CircuitPath:
     def places(self, value: float, *, turns: bool) -> Floats:
         """Where the input has a value, an angle by whole turns, in order."""
         heights = self.poses.part(self.input).at(self.input_marks)[:, 0]
+        # of a slide by its own way, of an angle by a radian, and by the turns that were counted
+        touch = HAS * max(1.0 if turns else float(np.ptp(heights)), abs(value))
         if not turns:
-            return self.poses.crossings(self.input, value, self.input_marks)
+            return self.poses.crossings(self.input, value, self.input_marks, touch)
         first = math.ceil((heights.min() - value) / math.tau - APART)
         last = math.floor((heights.max() - value) / math.tau + APART)
         found = [
-            self.poses.crossings(self.input, value + math.tau * k, self.input_marks)
+            self.poses.crossings(self.input, value + math.tau * k, self.input_marks, touch)
             for k in range(first, last + 1)
         ]
         places = np.unique(np.concatenate(found)) if found else np.empty(0)
+        # an edge that is a dead centre up to rounding is one place
+        places = places[np.diff(places, prepend=-np.inf) > HAS * self.length]
         if self.closed and places.size > 1 and places[-1] - places[0] > self.length * (1 - APART):
             places = places[:-1]
         return places

@@ -17,6 +17,7 @@ from sevenbar.kinematics.circuits.poses import frames_along, joint_frames
 from sevenbar.kinematics.loop.rods import rod_distance
 from sevenbar.kinematics.loop.stops import Cone
 from sevenbar.kinematics.paths.circuit_path import CircuitPath
+from sevenbar.kinematics.paths.stretch import RANGE_OF, Stretch
 from sevenbar.kinematics.ranges.circuit_extents import chosen, rod_pairs
 from sevenbar.kinematics.ranges.joint_course import JointCourse, joint_course
 
@@ -48,10 +49,10 @@ def allowed(linkage: Solvable, circuit: Circuit) -> Allowed:
         whole = (AllowedSpan(start, end, "", "", 1.0, _back(circuit)),)
         return Allowed(whole, known, np.full(len(known), "", dtype="<U1"))
     course = joint_course(linkage, circuit)
-    stops = [*_ranges(linkage, course), *_cones(linkage, course), *_rods(linkage, circuit, course)]
+    stops = _stops(linkage, circuit, course)
     inside = np.array([stop.rows(circuit.q) | ~known for stop in stops]).reshape(len(stops), len(known))
     stopped = np.array([_passed(stops, row) for row in inside.T], dtype=np.str_)
-    return Allowed(_spans(course, circuit, stops), known & inside.all(axis=0), stopped)
+    return Allowed(tuple(_spans(course, circuit, stops)), known & inside.all(axis=0), stopped)
 
 
 def _passed(stops: list[_Stop], inside: Flags) -> str:
@@ -74,7 +75,17 @@ def _back(circuit: Circuit) -> int:
     return sum(centre.kind == "input" for centre in circuit.dead_centres)
 
 
-def _spans(course: JointCourse, circuit: Circuit, stops: list[_Stop]) -> tuple[AllowedSpan, ...]:
+def stretches(linkage: Solvable, circuit: Circuit) -> tuple[Stretch, ...]:
+    """The parts of a circuit's path within all stops, in order; all of it where nothing stops it."""
+    course = joint_course(linkage, circuit)
+    return tuple(_stretches(course, _stops(linkage, circuit, course)))
+
+
+def _stops(linkage: Solvable, circuit: Circuit, course: JointCourse) -> list[_Stop]:
+    return [*_ranges(linkage, course), *_cones(linkage, course), *_rods(linkage, circuit, course)]
+
+
+def _stretches(course: JointCourse, stops: list[_Stop]) -> Iterator[Stretch]:
     length, closed = course.path.length, course.path.closed
     marks = np.unique(np.concatenate([[0.0, length], *(stop.crossings for stop in stops)]))
     marks = marks[np.append(np.diff(marks) > SAME * length, True)]
@@ -82,33 +93,46 @@ def _spans(course: JointCourse, circuit: Circuit, stops: list[_Stop]) -> tuple[A
     inside = np.array([stop.within(middles) for stop in stops]).reshape(len(stops), len(middles))
     free: Flags = np.asarray(inside.all(axis=0))
     if free.all():
-        return (AllowedSpan(*_ends(circuit), "", "", 1.0, _back(circuit)),)
-
+        yield Stretch(0.0, length, "", "")
+        return
     count = len(middles)
-    back = course.path.poses.stationary(course.path.input) if circuit.turns_back else np.empty(0)
     # of a closed circuit the stretches go on over its end
     first = int(np.argmin(free)) if closed else 0
-    order = [(first + k) % count for k in range(count)]
-    found, run = list[AllowedSpan](), list[int]()
-    for stretch in [*order, None]:
+    run = list[int]()
+    for stretch in [*((first + k) % count for k in range(count)), None]:
         if stretch is not None and free[stretch]:
             run.append(stretch)
             continue
         if run:
             before, after = run[0] - 1, run[-1] + 1
-            way = float(sum(marks[k + 1] - marks[k] for k in run))
-            found.append(
-                AllowedSpan(
-                    course.input_at(float(marks[run[0]])),
-                    course.input_at(float(marks[run[-1] + 1])),
-                    _passed(stops, inside[:, before % count]) if closed or before >= 0 else "",
-                    _passed(stops, inside[:, after % count]) if closed or after < count else "",
-                    way / length,
-                    _between(back, float(marks[run[0]]), way, course.path),
-                )
+            begin = float(marks[run[0]])
+            yield Stretch(
+                begin,
+                begin + float(sum(marks[k + 1] - marks[k] for k in run)),
+                _passed(stops, inside[:, before % count]) if closed or before >= 0 else "",
+                _passed(stops, inside[:, after % count]) if closed or after < count else "",
             )
         run = []
-    return tuple(found)
+
+
+def _spans(course: JointCourse, circuit: Circuit, stops: list[_Stop]) -> Iterator[AllowedSpan]:
+    path = course.path
+    back = path.poses.stationary(path.input) if circuit.turns_back else np.empty(0)
+    for one in _stretches(course, stops):
+        if one.is_whole:
+            yield AllowedSpan(*_ends(circuit), "", "", 1.0, _back(circuit))
+            return
+        way = one.end - one.begin
+        # the end of a path is its seam only where another piece begins there
+        end = one.end - path.length if path.closed and one.end > path.length else one.end
+        yield AllowedSpan(
+            course.input_at(one.begin),
+            course.input_at(end),
+            one.first_stop,
+            one.last_stop,
+            way / path.length,
+            _between(back, one.begin, way, path),
+        )
 
 
 def _between(places: Floats, begin: float, way: float, path: CircuitPath) -> int:
@@ -148,7 +172,7 @@ def _range(course: JointCourse, column: int, low: float, high: float, slack: flo
         return np.asarray((beyond >= -slack) & (beyond <= width + slack))
 
     return _Stop(
-        f"range of {course.linkage.columns[column]}",
+        f"{RANGE_OF}{course.linkage.columns[column]}",
         np.concatenate([one.crossings(0, value, marks) for value in values]),
         lambda s: between(one.at(s)[:, 0]),
         lambda q: between(q[:, column]),

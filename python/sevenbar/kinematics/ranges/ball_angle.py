@@ -111,6 +111,8 @@ def line_angles(ends: Floats, by: Floats) -> tuple[Floats, Floats]:
 def joint_at(linkage: Loop, name: str) -> int:
     """The place of a joint S or U of a name; `RequestError` where there is none."""
     bent = [joint.name for joint in linkage.joints if joint.row.bends]
+    if not isinstance(name, str):
+        raise RequestError(f"joint: {no_joint(name, [joint.name for joint in linkage.joints])}")
     for place, joint in enumerate(linkage.joints):
         if name == joint.name and joint.row.bends:
             return place

@@ -69,6 +69,7 @@ def bends(linkage: Solvable, circuit: Circuit) -> dict[str, Floats]:
 
 def cone_of(linkage: Solvable, circuit: Circuit, joint: str, given: Cone | None = None) -> BallCone:
     """How far one joint is bent, with directions given or those of the linkage's stops."""
+    joint_at(linkage, joint)
     course = joint_course(linkage, circuit)
     cone = linkage.stops.cones.get(joint, Cone()) if given is None else given
     bend, free, known = chosen(linkage, joint, cone)

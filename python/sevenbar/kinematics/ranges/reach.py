@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +12,10 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits.extents import Flags
 from sevenbar.kinematics.circuits.timed_walk import SAME_ROW, TimedWalk
 from sevenbar.kinematics.paths.circuit_path import NotFollowedError
+
+#: A row at the drawn input is the drawn pose if all joints are nearer to 0 [rad, or shares of the size]: rows
+#: are joined by lines, and other passes are farther off.
+DRAWN_NEAR = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +140,41 @@ def reaches(way: TimedWalk) -> tuple[Reach, ...]:
         high, last_stop = end(past - 1 - over, past - over)
         found.append(Reach(way, low, high + over, first_stop, last_stop))
     return tuple(found)
+
+
+def used_reach(way: TimedWalk) -> Reach | None:
+    """The stretch on which the linkage is used: of the drawn pose, else of the first row, else the first.
+
+    `None` where no stop ends the walk. The same rule as `used_stretch` of its path.
+    """
+    found = reaches(way)
+    for home in (drawn_row(way), 0.0):
+        for one in found:
+            if home is not None and one.holds(home):
+                return one
+    return found[0] if found else None
+
+
+def drawn_row(way: TimedWalk) -> float | None:
+    """The row of a walk in the drawn pose, where all joints are at 0; `None` where it has none."""
+    if way.linkage.form != "drawn":
+        return None
+    circuit, turning = way.circuit, way.linkage.turning
+    scales = np.where(turning, 1.0, circuit.size)
+    best, nearest = None, DRAWN_NEAR
+    for row in way.rows_at(0.0):
+        # a pose between two rows is near the line between them
+        low = min(int(row), len(way.path.rows) - 2)
+        a, b = circuit.q[way.path.rows[low]], circuit.q[way.path.rows[low + 1]]
+        step = b - a
+        step[turning] -= math.tau * np.round(step[turning] / math.tau)
+        off = a + (row - low) * step
+        off[turning] -= math.tau * np.round(off[turning] / math.tau)
+        # turns of a ball may be undefined there
+        distance = float(np.nanmax(np.abs(off / scales), initial=0.0))
+        if distance < nearest:
+            best, nearest = row, distance
+    return best
 
 
 def _runs(free: Flags, *, closed: bool) -> list[tuple[int, int]]:

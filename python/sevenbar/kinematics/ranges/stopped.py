@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 
 from sevenbar.arrays import finite_number
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, check_kind, shown
 from sevenbar.kinematics.dynamics.link_bodies import refuse_no_link
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.joint_text import given_number
 from sevenbar.kinematics.loop.stops import Cone, Stops, check_range
 from sevenbar.kinematics.ranges.ball_angle import joint_at
+from sevenbar.text.given import given_number
 from sevenbar.text.units import ANGLES, as_written
 
 L = TypeVar("L", bound=Loop)
@@ -29,6 +29,9 @@ def stopped(
 ) -> L:
     """The linkage with what is given in the place of its own; raises `RequestError`."""
     own = linkage.stops
+    for key, value in (("ranges", ranges), ("cones", cones), ("radii", radii)):
+        if value is not None:
+            check_kind(key, value, Mapping, "a mapping; give one, as in {'crank': (-1, 1)}")
     given = Stops(
         own.ranges if ranges is None else _ranges(linkage, ranges),
         own.cones if cones is None else _cones(linkage, cones),
@@ -62,7 +65,8 @@ def _ranges(linkage: Loop, given: Ranges) -> dict[str, tuple[float, float]]:
         key = f"ranges[{shown(name)}]"
         column = linkage.column(name, key)
         unit = linkage.unit_of(column)
-        if isinstance(ends, str) or not np.shape(ends) == (2,):
+        several = isinstance(ends, Sequence | np.ndarray) and not isinstance(ends, str)
+        if not several or getattr(ends, "ndim", 1) != 1 or len(ends) != 2:
             raise RequestError(f"{key}: {shown(ends)} is not a range; give two values, low and high")
         low, high = (finite_number(key, given_number(key, end, unit)) for end in ends)  # type: ignore[arg-type]
         found[linkage.columns[column]] = check_range(key, low, high, turns=unit == "rad")

@@ -13,7 +13,7 @@ import numpy.typing as npt
 import sevenbar._core as _core
 from sevenbar.arrays import Booleans, Floats, Integers
 from sevenbar.kinematics.loop.geometry import Loop, following_coupler
-from sevenbar.kinematics.solvers.general import expanded, merged, size_of
+from sevenbar.kinematics.solvers.general import expanded, merged
 from sevenbar.text.printing import Printed
 
 #: The core's codes of motion types, and of dimensions that make no linkage.
@@ -143,7 +143,7 @@ def _limits(raw: _core.LoopBatch, linkage: Integers, linkages: Sequence[Loop], *
     inputs = raw.limits
     bounds = np.searchsorted(owner, np.arange(count + 1))
     found = [
-        merged(inputs[first:last], turns=turns, size=1.0 if turns else size_of(loop))
+        merged(inputs[first:last], turns=turns, size=1.0 if turns else loop.size)
         for loop, (first, last) in zip(linkages, pairwise(bounds), strict=True)
     ]
     limits = np.full((count, max(map(len, found), default=0)), np.nan)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import accumulate
 
 import numpy as np
 
@@ -11,8 +12,8 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.grashof import FourBar, four_bar_of_links, least, slider_crank_of_links
 from sevenbar.kinematics.loop.rigid import cross, inverse
-from sevenbar.kinematics.solvers.general import expanded
-from sevenbar.kinematics.solvers.plane_and_sphere import in_plane, sphere_of
+from sevenbar.kinematics.solvers.general import Expanded, expanded
+from sevenbar.kinematics.solvers.plane_and_sphere import SAME, in_plane, sphere_of
 
 #: The links of a loop with four joints, where the first and the last are input and output.
 ROLES = ("input link", "coupler", "output link", "ground")
@@ -24,8 +25,8 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     """The four-bar or slider-crank that a loop is, driven by a column and read at another; `None` for others.
 
     A loop is one where four of its joints move in its plane, all turning or one sliding, or where it has four
-    axes through one point. Links are called by what
-    they do where input and output are at the ground, else by numbers.
+    axes through one point. With two of them on one axis, so that the link between has no length, it is none.
+    Links are called by what they do where input and output are at the ground, else by numbers.
 
         >>> import sevenbar as sb
         >>> found = four_bar_of(sb.load("planar_4r"), "theta_1", "theta_4")
@@ -56,19 +57,33 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     roles = _roles(names, input, output)
     if found is None:
         arcs = [math.atan2(math.hypot(*cross(m[:3, 2], _Z)), float(m[2, 2])) for m in between]
-        return four_bar_of_links("spherical", least(arcs), names, roles)
-    lengths = [math.hypot(m[0, 3], m[1, 3]) for m in between]
+        return None if min(arcs) <= SAME else four_bar_of_links("spherical", least(arcs), names, roles)
+    normals = _normals(parts, moves, found.plane.normal)
+    lengths = [math.hypot(*cross(n, m[:3, 3])) for n, m in zip(normals, between, strict=True)]
+    # two joints on one axis are one
+    shortest = SAME * loop.size
     if "P" not in letters:
-        return four_bar_of_links("planar", lengths, names, roles)
+        return None if min(lengths) <= shortest else four_bar_of_links("planar", lengths, names, roles)
     slide = letters.index("P")
     a, b, c = ((slide + k) % 4 for k in (1, 2, 3))
+    if min(lengths[a], lengths[b]) <= shortest:
+        return None
     # from the pin on the slider to that on the other side of the slide, in the frame of the slide
     to_slide = inverse(between[c])
     apart = between[slide][:3, 3] - to_slide[:3, 3]
-    offset = abs(float(apart @ cross(to_slide[:3, 2], _Z)))
+    offset = abs(float(apart @ cross(normals[slide], _Z)))
     return slider_crank_of_links(
         lengths[a], lengths[b], offset, [names[k] for k in (a, b, c)], (roles[a], roles[b])
     )
+
+
+def _normals(parts: Expanded, moves: Sequence[int], normal: Floats) -> list[Floats]:
+    """The normal (3,) of the plane in the frame of each joint that moves: z of one that turns.
+
+    Balls and slides may have any frame; all joints at zero, which changes nothing where all move in a plane.
+    """
+    frames = list(accumulate([parts.base, *parts.links], np.matmul))
+    return [_Z if parts.letters[i] == "R" else frames[i][:3, :3].T @ normal for i in moves]
 
 
 def _between(links: Sequence[Floats], last: Floats, moves: Sequence[int]) -> list[Floats]:

@@ -68,23 +68,19 @@ class GeneralLoop:
         """Freedoms that move one link only, in words."""
         names = [joint.name for joint in self._linkage.joints]
 
-        def text(word: str, link: int, held: int, other: int) -> str:
-            first, second = names[held], names[other]
+        def text(word: str, links: range, held: int, other: int) -> str:
+            first, second, who = names[held], names[other], _named(links)
             match word:
                 case "between-balls" if self._linkage.kind == "RSSR":
-                    return f"spin of the coupler (link {link}) about the line of {first} and {second}"
-                case "between-balls":
-                    return f"spin of link {link} about the line of {first} and {second}"
-                case "chain-between-balls":
-                    links = [str(i) for i in range(held + 1, other + 1)]
-                    listed = f"{', '.join(links[:-1])} and {links[-1]}"
-                    return f"spin of links {listed} together about the line of {first} and {second}"
+                    return f"spin of the coupler ({who}) about the line of {first} and {second}"
+                case "between-balls" | "chain-between-balls":
+                    return f"spin of {who} about the line of {first} and {second}"
                 case "ball-on-axis":
-                    return f"spin of link {link} about the axis of {first}, on which {second} lies"
+                    return f"spin of {who} about the axis of {first}, on which {second} lies"
                 case "one-axis":
-                    return f"turn of link {link} about the common axis of {second} and {first}"
+                    return f"turn of {who} about the common axis of {second} and {first}"
                 case _:
-                    return f"slide of link {link} along the common direction of {second} and {first}"
+                    return f"slide of {who} along the common direction of {second} and {first}"
 
         return tuple(text(*freedom) for freedom in self._idle())
 
@@ -109,8 +105,8 @@ class GeneralLoop:
     def idle_links(self) -> frozenset[int]:
         """The links that have such a freedom, counted from 1."""
         found: set[int] = set()
-        for word, link, held, other in self._idle():
-            found |= set(range(held + 1, other + 1)) if word == "chain-between-balls" else {link}
+        for _, links, _, _ in self._idle():
+            found |= set(links)
         return frozenset(found)
 
     def unheld(self) -> str | None:
@@ -136,14 +132,15 @@ class GeneralLoop:
                 owner[inner] = owner[inner + 1]
         return owner
 
-    def _idle(self) -> list[tuple[str, int, int, int]]:
-        """Each such freedom: the core's word, the link, and the joints held and beside it."""
+    def _idle(self) -> list[tuple[str, range, int, int]]:
+        """Each such freedom: the core's word, links counted from 1, the joints held and on the other side."""
         owner = self._owners()
-        count = len(self._linkage.joints)
         found = []
         for word, held, other in self._core.idle:
             a, b = owner[held], owner[other]
-            found.append((word, 1 + (a if (a + 1) % count == b else b), a, b))
+            # the cross of a joint with two axes on one line counts as the link after it
+            first = min(a, b) + 1
+            found.append((word, range(first, max(a, b, first) + 1), a, b))
         return found
 
     def modes(self, column: int, value: float) -> Modes:
@@ -159,6 +156,7 @@ class GeneralLoop:
 
     def mobility(self, column: int) -> Mobility:
         """How freely the loop moves; poses are looked for over the values of a column."""
+        column = self._free((column,))[0]
         if column not in self._found:
             self._found[column] = self._mobility(self._solve(column, partial(self._core.mobility, column)))
         return self._found[column]
@@ -168,11 +166,14 @@ class GeneralLoop:
         linkage = self._linkage
         table = None if law is None else law.table
         keep = samples < LONG
-        raw = self._solve(column, partial(self._core.motion, column, output, samples, speed, table, keep))
+        first, last = self._free((column, output))
+        raw = self._solve(first, partial(self._core.motion, first, last, samples, speed, table, keep))
         assert raw.search is not None
+        if raw.circuits and (first, last) != (column, output):
+            raise self._held_end(column if first != column else output, is_input=first != column)
         mobility = self._mobility(raw.search.found)
         if law is None:
-            self._found[column] = mobility
+            self._found[first] = mobility
         if raw.moving is not None and not raw.circuits:
             raise self._rests(column, raw.moving)
         circuits = tuple(
@@ -224,6 +225,23 @@ class GeneralLoop:
         return RequestError(
             f"input: joint '{linkage.columns[column]}' stands still while others move, so it cannot "
             f"drive{advice}"
+        )
+
+    def _free(self, ends: tuple[int, ...]) -> tuple[int, ...]:
+        """Columns that move in the place of those that an idle freedom holds: a rigid loop is so for each."""
+        columns = expanded(self._linkage).columns
+        held = {columns[joint] for word, joint, _ in self._core.idle if "between-balls" not in word}
+        names = self._linkage.columns
+        others = [names.index(name) for name in self._linkage.drivable()]
+        spare = [c for c in others if c not in held and c not in ends]
+        return tuple(spare.pop() if c in held and spare else c for c in ends)
+
+    def _held_end(self, column: int, *, is_input: bool) -> RequestError:
+        linkage = self._linkage
+        end, what = ("input", "drives the loop") if is_input else ("output", "the input moves")
+        return RequestError(
+            f"{end}: joint '{linkage.columns[column]}' has no freedom that {what} "
+            f"({'; '.join(self.idle())}); give another: {', '.join(linkage.drivable(column))}"
         )
 
     def _solve(self, column: int, call: Callable[[], T]) -> T:
@@ -304,6 +322,12 @@ class GeneralLoop:
         return Trace(position, velocity, acceleration, jerk, own)
 
 
+def _named(links: range) -> str:
+    """Links in a row, in words: "link 1", or "links 1, 2 and 3 together"."""
+    *others, last = map(str, links)
+    return f"links {', '.join(others)} and {last} together" if others else f"link {last}"
+
+
 class Expanded(NamedTuple):
     """The joints as the core takes them, each about or along z of its frame.
 
@@ -342,12 +366,6 @@ def expanded(linkage: Loop) -> Expanded:
             ahead = linkage.links[i] if ahead is STILL else ahead @ linkage.links[i]
     ground = linkage.ground if ahead is STILL else linkage.ground @ inverse(ahead)
     return Expanded(letters, advances, fixed[0], fixed[1:], ground, last, columns)
-
-
-def size_of(linkage: Loop) -> float:
-    """The size [length] of a loop, as the core has it: all links' lengths, and pitches by radian."""
-    lengths = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
-    return lengths + sum(abs(joint.pitch) / math.tau for joint in linkage.joints) or 1.0
 
 
 def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:

@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, ReadOnly, places_array, positive_length, triple
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rigid import cross, inverse, unit
-from sevenbar.kinematics.solvers.general import AGREE, expanded, size_of
+from sevenbar.kinematics.solvers.general import AGREE, expanded
 from sevenbar.text.printing import Printed
 
 #: How far axes may be from parallel [rad], or from one point and one height [share of the size]: as far as
@@ -31,7 +31,7 @@ _REPORT_AXES = np.eye(3)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MotionPlane(Printed):
+class MotionPlane(ReadOnly, Printed):
     """The plane of a planar loop, in the report frame.
 
     `origin` (3,) [length] lies in it, the `normal` is square to it, `x` and `y` are unit vectors (3,) in it,
@@ -46,8 +46,8 @@ class MotionPlane(Printed):
     y: Floats
 
     def __post_init__(self) -> None:
-        for vector in (self.origin, self.normal, self.x, self.y):
-            vector.setflags(write=False)
+        for name in ("origin", "normal", "x", "y"):
+            object.__setattr__(self, name, _vector(name, getattr(self, name)))
 
     def coordinates(self, places: npt.ArrayLike) -> Floats:
         """Places (..., 3) [length] of the report frame as x and y in the plane (..., 2).
@@ -57,11 +57,11 @@ class MotionPlane(Printed):
         >>> plane.coordinates([7.0, 3.0, 4.0]).tolist()
         [3.0, 4.0]
         """
-        return (np.asarray(places, dtype=np.float64) - self.origin) @ np.stack([self.x, self.y], axis=-1)
+        return (places_array("places", places) - self.origin) @ np.stack([self.x, self.y], axis=-1)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MotionSphere(Printed):
+class MotionSphere(ReadOnly, Printed):
     """The centre (3,) [length] of a spherical loop in the report frame, and a radius [length] to draw it.
 
     All motion is a turn about the centre, so that the radius is free. It is the distance of the farthest
@@ -72,7 +72,15 @@ class MotionSphere(Printed):
     radius: float
 
     def __post_init__(self) -> None:
-        self.centre.setflags(write=False)
+        object.__setattr__(self, "centre", _vector("centre", self.centre))
+        object.__setattr__(self, "radius", positive_length("radius", self.radius))
+
+
+def _vector(name: str, value: npt.ArrayLike) -> Floats:
+    """Three finite numbers as an array of their own that cannot be written."""
+    array = np.array(triple(name, value))
+    array.setflags(write=False)
+    return array
 
 
 def plane_of(loop: Loop) -> MotionPlane | None:
@@ -160,7 +168,7 @@ def _in_plane(
         return False
     back = end[:3, :3].T @ normal
     off = math.hypot(*(back - normal)) if whole else max(abs(back[2]), abs(normal[2]))
-    level = out == 1 or bool(abs(end[:3, 3] @ normal) <= SAME * size_of(loop))
+    level = out == 1 or bool(abs(end[:3, 3] @ normal) <= SAME * loop.size)
     return len(balls) <= MOST_BALLS and out <= 1 and off <= SAME and level
 
 
@@ -192,8 +200,8 @@ def sphere_of(loop: Loop) -> MotionSphere | None:
     axes = np.stack([frame[:3, 2] for frame in frames])
     turning = [i for i, letter in enumerate(parts.letters) if letter == "R"]
     balls = [i for i, letter in enumerate(parts.letters) if letter == "S"]
-    near = SAME * size_of(loop)
-    centre = _meeting_point(places[turning], axes[turning])
+    near = SAME * loop.size
+    centre = meeting_point(places[turning], axes[turning])
     if centre is None:
         return None
     off = np.linalg.norm(np.cross(places[turning] - centre, axes[turning]), axis=1)
@@ -215,7 +223,7 @@ def sphere_of(loop: Loop) -> MotionSphere | None:
     return MotionSphere(np.array(centre), float(drawn) if drawn > near else 1.0)
 
 
-def _meeting_point(places: Floats, axes: Floats) -> Floats | None:
+def meeting_point(places: Floats, axes: Floats) -> Floats | None:
     """Where the two most inclined of several lines (n, 3) come nearest; `None` where all are parallel."""
     pairs = list(combinations(range(len(axes)), 2))
     first, second = max(

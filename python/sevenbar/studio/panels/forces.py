@@ -13,7 +13,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.force_panels import ROUNDING, greatest_of
 from sevenbar.drawing.style import REACTION
 from sevenbar.kinematics.circuits.poses import at_row
-from sevenbar.reporting.force_words import NOTHING_ACTS, drive_facts, open_facts
+from sevenbar.reporting.force_words import NOTHING_ACTS, drive_facts, open_facts, part_facts
 from sevenbar.reporting.shown import number
 from sevenbar.studio.panels.controls import on_change, put, settle
 from sevenbar.studio.panels.scenery import arrow_unit
@@ -159,7 +159,8 @@ class ForcesPanel:
         if forces is None:
             found = [("forces", acting.reason(view))]
         else:
-            found = [*drive_facts(forces, drive_sizing(forces)), *open_facts(forces)]
+            own = forces.within_stops or forces
+            found = [*part_facts(own), *drive_facts(own, drive_sizing(forces)), *open_facts(own)]
         title = f"circuit {view.circuit.index}"
         self._text = facts_block([fact for fact in found if fact[1]], title=title)
         self._show_facts(stale=bool(self._session.problem))

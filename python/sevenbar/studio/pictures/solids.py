@@ -127,11 +127,9 @@ def plan(frame: Skeleton, ends: tuple[str, str]) -> SolidPlan:
         if not joint.kind.rides:
             _add_ground(solids, joint, link, every, unit, size)
     points = paths(frame, ends)[: len(frame.points)]
-    for (start, place, end), (_, colour), point in zip(
-        frame.stays, points, frame.linkage.added_points, strict=True
-    ):
+    for (start, place, end), (_, colour), link in zip(frame.stays, points, frame.owners, strict=True):
         for corner in (start, end):
-            solids.add("cylinder", (corner, place), STAY * unit, links[point.link - 1], moves=False)
+            solids.add("cylinder", (corner, place), STAY * unit, links[link], moves=False)
         solids.add("ball", (place, place), POINT * unit, colour, length=POINT * unit, moves=False)
     return _made(solids, frame, every[0], size)
 

@@ -124,7 +124,8 @@ def _named(sort: str, acting: Sequence[Load] | Sequence[Spring], words: Sequence
 
 def drive_sizing(forces: Forces) -> Sizing | None:
     """Peaks of torque and power as `sizing` has them; without bearings, which take most of its time."""
-    return sizing_of(replace(forces, reactions={}))
+    own = forces.within_stops
+    return None if own is None else sizing_of(replace(own, reactions={}))
 
 
 def known_force(reaction: Reaction) -> Floats:

@@ -9,11 +9,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from sevenbar.description.draft import Draft
+from sevenbar.description.files import toml_tables
+from sevenbar.description.load_tables import refuse_tables
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Place
 from sevenbar.kinematics.ranges.reach import Reach, reaches, stopped_by, within
 from sevenbar.reporting.facts import meaning
+from sevenbar.reporting.reason_text import reason_text
 from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
 
@@ -53,7 +56,11 @@ class Session:
         self._take(self.draft)
 
     def open(self, text: str, source: str) -> None:
-        """Shows a TOML text as one more step; raises `DescriptionError`, and then nothing has changed."""
+        """Shows a TOML text as one more step; raises `DescriptionError`, and then nothing has changed.
+
+        It may come from another machine, so it names no files of this one.
+        """
+        refuse_tables(toml_tables(text, source), source)
         draft = Draft.of(text, source, agree=self.draft.agree)
         self.view, self.forwards = None, True
         self._step(draft)
@@ -74,7 +81,8 @@ class Session:
         self.motion = motion
         self.problem = ""
         if not motion.circuits:
-            self.problem = f"{motion.motion_type}: {meaning(motion) or 'it closes along no circuit'}"
+            why = "; ".join(filter(None, (meaning(motion), reason_text(motion))))
+            self.problem = f"{motion.motion_type}: {why or 'it closes along no circuit'}"
         elif any(np.isnan(circuit.input).any() for circuit in motion):
             self.problem = "its dimensions differ so much in size that its motion is lost in rounding"
         else:

@@ -18,6 +18,13 @@ _SAVING = threading.Lock()
 ENDING, MARK = ".toml", b"\xef\xbb\xbf"
 
 
+#: What no name of a file has: separators of folders, and what Windows keeps for itself.
+_NO_NAME = frozenset('\\/:*?"<>|')
+_DEVICES = frozenset(
+    {"CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(10))}
+)
+
+
 class ChangedError(OutputError):
     """A file that is not as the studio knows it, and so is not replaced without a question."""
 
@@ -56,12 +63,18 @@ class Shelf:
 
     def _path(self, name: str) -> Path:
         name = name.strip()
-        if not name or name.startswith(".") or Path(name).name != name or "\\" in name or "\0" in name:
+        bare = name.partition(".")[0].strip().upper()
+        plain = name.isprintable() and not name.startswith(".") and _NO_NAME.isdisjoint(name)
+        if not name or not plain or Path(name).name != name or bare in _DEVICES:
             raise OutputError(
                 f"file: {shown(name)} is not the name of a file in {self.folder}; "
                 "give a name without folders, as in linkage.toml"
             )
-        return (self.folder / (name if name.endswith(ENDING) else name + ENDING)).resolve()
+        path = (self.folder / (name if name.endswith(ENDING) else name + ENDING)).resolve()
+        # one that was opened by its link is this tab's own
+        if path not in self._known and path.parent != self.folder.resolve():
+            raise OutputError(f"file: {shown(name)} is a link out of {self.folder}; give another name")
+        return path
 
 
 def _content(path: Path) -> bytes | None:

@@ -13,7 +13,7 @@ from sevenbar.drawing.figure import shown_value, slides
 from sevenbar.forces.result import Forces, Reaction
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.circuits.poses import along
-from sevenbar.kinematics.transmission import coupling_of
+from sevenbar.kinematics.transmission.angle import coupling_of
 from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.view import View
 from sevenbar.text.units import LENGTHS

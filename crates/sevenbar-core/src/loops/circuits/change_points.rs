@@ -16,6 +16,7 @@ use crate::loops::equation::rotations::squared_up;
 use crate::loops::mobility::singular_place::{LAST_STEP, MOST_STEPS, Place, STEADY, singular_place};
 use crate::loops::modes::polish::CLOSED;
 use crate::random::Random;
+use crate::stopping;
 
 /// Distance from the pose at which curves are cut [rad, or relative to the size]. Closer in, rounding turns their tangents by more than
 /// the curves bend.
@@ -112,6 +113,13 @@ const SURFACE: f64 = 0.05;
 /// Ways out that cannot be followed are one where they are nearer to each other than this part of the radius: the place where curves
 /// coincide is known to the square root of rounding.
 const SAME_LOST_WAY: f64 = 1e-2;
+
+/// Ways out whose directions have a greater cosine, either way, are along one line; on a surface directions are tried all round.
+const ONE_LINE: f64 = 0.95;
+
+/// So many on one line are no surface, on which each direction leads to a pose of its own: of the directions on a circle these are
+/// an eighth of a turn.
+const ENOUGH_ON_LINE: usize = 6;
 
 /// A way out of a pose.
 #[derive(Clone, Copy, Debug)]
@@ -248,6 +256,8 @@ fn ways_out(chain: &Chain, place: &Place, radius: f64) -> Ways {
         let near = |f: &Configuration| length(&chain.difference(f, at)) < part * radius;
         known.iter().any(near)
     };
+    // how often the same of those that coincide
+    let mut again = 0;
     for (tried, direction) in directions(place).into_iter().enumerate() {
         if tried == MOST_IN_VAIN && found.single.is_empty() && found.finite == 0 {
             break;
@@ -255,14 +265,18 @@ fn ways_out(chain: &Chain, place: &Place, radius: f64) -> Ways {
         let Some(at) = on_sphere(chain, place, &direction, radius) else {
             continue;
         };
-        if near(&found.single, &at, SAME_WAY)
-            || near(&found.lost, &at, SAME_LOST_WAY)
-            || opens_with_distance(chain, place, &at, radius)
-        {
+        if near(&found.single, &at, SAME_WAY) || opens_with_distance(chain, place, &at, radius) {
+            continue;
+        }
+        let redundant = chain.is_redundant();
+        if near(&found.lost, &at, SAME_LOST_WAY) {
+            again += 1;
+            if redundant && again == ENOUGH_ON_LINE && found.single.is_empty() {
+                break;
+            }
             continue;
         }
         let (values, vectors) = singular_values(&chain.screws(&at));
-        let redundant = chain.is_redundant();
         let least = if redundant {
             f64::INFINITY
         } else {
@@ -276,9 +290,21 @@ fn ways_out(chain: &Chain, place: &Place, radius: f64) -> Ways {
         } else if !redundant && !is_on_surface(chain, place, &at, &vectors[rank..], radius) {
             found.lost.push(at);
         } else if freedoms == place.free.len() {
-            // one surface accounts for all free directions
-            found.finite = freedoms;
-            break;
+            let way = chain.difference(&place.at, &at);
+            let along = |known: &Configuration| {
+                let first = chain.difference(&place.at, known);
+                dot(&first, &way).abs() > ONE_LINE * length(&first) * length(&way)
+            };
+            if !redundant || !found.lost.first().is_none_or(along) {
+                // one surface accounts for all free directions
+                found.finite = freedoms;
+                if redundant {
+                    found.lost.clear();
+                }
+                break;
+            }
+            // a motion along which a constraint is met twice over has as many free directions, and goes one way only
+            found.lost.push(at);
         } else {
             found.finite = found.finite.max(freedoms);
             continue;
@@ -315,6 +341,7 @@ fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> 
     let mut before = f64::INFINITY;
     let first = if place.may_touch() { FIRST_STEPS } else { 0 };
     for step in 0..MOST_STEPS {
+        stopping::piece();
         let zero = if step < first { radius } else { chain.no_rank() };
         let placed = chain.place(&at);
         let off = chain.difference(&place.at, &at);

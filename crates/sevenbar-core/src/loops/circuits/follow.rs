@@ -4,6 +4,7 @@ use super::curve::{self, Curve, End, Node, Stand};
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
 use crate::loops::equation::dense::{COLUMNS, Columns, dot, length};
 use crate::simd::{self, Kernel};
+use crate::stopping;
 use crate::vectors::{self, LANES, LaneKernel, Vector};
 
 /// Shorter steps mean a place where the curve is not smooth: a change point.
@@ -29,6 +30,9 @@ const MOST_NARROWING_AT_ALL: usize = 16_000;
 
 /// Nearer to a change point than this [rad, or relative to the size] steps are not counted: it is what the curve runs into.
 const NEAR_STOP: f64 = 0.1;
+
+/// Most nodes of curves that are walked side by side, 260 MB; those that are still under way by then end there.
+const MOST_TOGETHER: usize = 600_000;
 
 /// Slides [share of the size] and screws [rad] are not followed farther than this.
 const FARTHEST: f64 = 50.0;
@@ -105,9 +109,12 @@ fn follow_until(chain: &Chain, starts: &[Start], stops: &[Stop], until: Until) -
     curves
 }
 
-/// Whether a curve ended since it had too many nodes: it may have no end, as on a surface of poses.
-pub(super) fn is_endless(curve: &Curve) -> bool {
-    curve.nodes.len() >= MOST_NODES
+/// Whether a curve ended since there were too many nodes: it may have no end, as on a surface of poses, or be so long that rounding
+/// leads it on, as where lengths of one loop differ by many powers of ten.
+pub(super) fn is_endless(chain: &Chain, curve: &Curve) -> bool {
+    let ends = curve.ends().into_iter().zip(curve.why);
+    ends.into_iter()
+        .any(|(at, why)| why == End::Far && !is_far(chain, at))
 }
 
 /// A walk from an end, with the reason of that end.
@@ -157,6 +164,7 @@ fn walk_until(
         curves: &mut curves,
         reached: &mut reached,
         narrowing: &mut narrowing,
+        nodes: 0,
     };
     match starts.len() {
         0 => {}
@@ -201,6 +209,8 @@ struct Walk<'a> {
     reached: &'a mut [Option<usize>],
     /// How many of each one's last steps led to a greater norm of the screws' inverse.
     narrowing: &'a mut [usize],
+    /// How many nodes there are on all.
+    nodes: usize,
 }
 
 impl LaneKernel for Walk<'_> {
@@ -232,6 +242,7 @@ impl LaneKernel for Walk<'_> {
         let mut growth = [0.0; LANES];
         let mut step = curve::likely(self.chain, &here.node, V::load(&growth)).store();
         while walker.iter().any(|&w| w < count) {
+            stopping::piece();
             let tried = curve::step(self.chain, &here, V::load(&step));
             let (mut allowed, tube) = (tried.allowed.store(), tried.tube.store());
             growth = tried.growth.store();
@@ -292,6 +303,7 @@ impl Kernel for Walk<'_> {
         self.record(0, here.node);
         let mut step = curve::likely(self.chain, &here.node, 0.0);
         loop {
+            stopping::piece();
             let tried = curve::step(self.chain, &here, step);
             let allowed = tried.allowed >= 0.0 && tried.next.node.inverse_norm.is_finite();
             let end = if allowed {
@@ -390,6 +402,7 @@ impl Walk<'_> {
     fn record(&mut self, walker: usize, node: Node) {
         if let Some(curve) = self.curves.get_mut(walker) {
             curve.nodes.push(node);
+            self.nodes += 1;
         }
     }
 
@@ -431,6 +444,7 @@ impl Walk<'_> {
         }
         let narrower = next.inverse_norm > NARROWING && next.inverse_norm > curve.nodes[last].inverse_norm;
         curve.nodes.push(next);
+        self.nodes += 1;
         let mut stopped = next.inverse_norm > BLIND;
         let mut near = false;
         for stop in self.stops {
@@ -465,7 +479,7 @@ impl Walk<'_> {
         } else {
             MOST_NODES
         };
-        (far || curve.nodes.len() > most).then_some(End::Far)
+        (far || curve.nodes.len() > most || self.nodes > MOST_TOGETHER).then_some(End::Far)
     }
 }
 

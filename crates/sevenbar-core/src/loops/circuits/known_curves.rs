@@ -24,8 +24,8 @@ const NARROW: f64 = 1e-5;
 const SHARP: f64 = 1e4;
 const BESIDE_BEND: f64 = 30.0;
 
-/// Curves with too many nodes after which modes at sharp bends are followed no more: on what is nearly a surface of poses each leads to
-/// another such curve.
+/// Curves with too many nodes after which no mode is followed any more: on what is nearly a surface of poses each leads to another such
+/// curve, and each takes a second.
 const MOST_ENDLESS: usize = 2;
 
 /// All curves of a chain.
@@ -39,6 +39,8 @@ pub(crate) struct Curves {
     /// Modes at sharp bends, left for the last; and whether they are followed now.
     unfollowed: Vec<Configuration>,
     pub last: bool,
+    /// Curves with too many nodes so far, be they kept or not.
+    endless: usize,
     /// Columns whose limits say what is a change point.
     pub wished: Vec<usize>,
     /// Curves through some of the modes to come.
@@ -55,6 +57,7 @@ impl Curves {
             arcs: Arcs::new(),
             unfollowed: Vec::new(),
             last: false,
+            endless: 0,
             wished: wished.to_vec(),
             ahead: Vec::new(),
         }
@@ -125,11 +128,7 @@ impl Curves {
             if self.curves.iter().any(beside_bend) {
                 continue;
             }
-            if self.curves.iter().filter(|c| follow::is_endless(c)).count() < MOST_ENDLESS {
-                self.take_together(chain, &[mode], self.wished[0]);
-            } else {
-                self.search.unfollowed += 1;
-            }
+            self.take_together(chain, &[mode], self.wished[0]);
         }
         self.curves.extend(self.arcs.joined(chain, self.wished[0]));
         self.forget_parts(chain);
@@ -233,6 +232,10 @@ impl Curves {
                 }
                 continue;
             }
+            if foreseen.is_none() && self.endless >= MOST_ENDLESS {
+                self.search.unfollowed += 1;
+                continue;
+            }
             let mut direction = [0.0; COLUMNS];
             direction[..chain.columns].copy_from_slice(&vectors[chain.columns - 1]);
             if direction[rising] < 0.0 {
@@ -257,6 +260,8 @@ impl Curves {
             let Some(mut curve) = curve.or_else(|| followed.next()) else {
                 unreachable!()
             };
+            let known_endless = follow::is_endless(chain, &curve);
+            self.endless += usize::from(known_endless);
             // two modes may lie on one circuit
             if lies_on_any(chain, &fresh, &start.0)
                 || lies_on_any(chain, &fresh, curve.plainest())
@@ -270,6 +275,7 @@ impl Curves {
                 (self.led_to(chain, curve), self.arcs.stops())
             });
             self.arcs.patience = self.arcs.patience.min(patience);
+            self.endless += usize::from(!known_endless && follow::is_endless(chain, &curve));
             let stuck = curve.is_stuck() && curve.nodes.len() > 2;
             // a way into a change point that none of its ways out leads back is kept as it is
             let held = |at: &Configuration| self.arcs.hold(chain, at);

@@ -2,6 +2,7 @@
 
 use super::curve::{self, Curve, Node, REACH};
 use crate::loops::equation::chain::{Chain, Configuration};
+use crate::stopping;
 
 pub(super) fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
     curves.iter().any(|c| lies_on(chain, c, mode))
@@ -46,6 +47,7 @@ fn place_within<'a>(
     mode: &Configuration,
 ) -> Option<&'a Node> {
     // no nearer to the mode than this, in the turn that is farthest off
+    stopping::piece();
     let mut least = 0.0;
     for (k, reach) in reaches.enumerate() {
         if least <= reach {

@@ -20,6 +20,7 @@ use crate::loops::numbers::numbered_loop::{Around, NumberedLoop};
 use crate::loops::numbers::slopes::{By, Changes, Moving, Orders, derived, moving};
 use crate::loops::rates::velocities::ORDERS;
 use crate::rigid::{Pose, Vec3, add, sub};
+use crate::stopping;
 use crate::taylor::Taylor;
 
 /// Where a joint's wrench is counted: a frame against that before one of the loop's joints.
@@ -136,6 +137,7 @@ pub fn reactions(
         shaking_by_number: nan(numbers * 6),
     };
     for (row, at) in values.chunks(width).enumerate() {
+        stopping::piece();
         let (speed, acceleration) = (speeds[2 * row], speeds[2 * row + 1]);
         if !(at.iter().all(|x| x.is_finite()) && speed.is_finite() && acceleration.is_finite()) {
             continue;

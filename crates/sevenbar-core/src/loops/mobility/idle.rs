@@ -35,6 +35,9 @@ impl Idle {
 /// With more balls than these, joints between two of them take part when all links there spin about their line.
 const MOST_SPINNING_BALLS: usize = 3;
 
+/// Axes are parallel whose sine is below this, and screws depend on each other to this part of the greatest.
+const PARALLEL: f64 = 1e-9;
+
 /// All idle freedoms, and which joints are held at zero by them.
 pub(crate) fn idle_freedoms(kinds: &[Kind], links: &[Pose]) -> (Vec<Idle>, Vec<bool>) {
     let mut idle = beside_each_other(kinds, links);
@@ -68,22 +71,49 @@ fn beside_each_other(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
     let mut found: Vec<Idle> = Vec::new();
     let mut taken = vec![false; count];
     // the ground cannot spin, so the last joint and the first are no such pair
-    for i in 0..count.saturating_sub(1) {
-        let next = i + 1;
-        if taken[i] || taken[next] || !dependent(kinds[i], kinds[next], &links[i]) {
+    let neighbours = (0..count.saturating_sub(1)).map(|i| (i, i + 1));
+    let across = (0..count.saturating_sub(2))
+        .filter(|&i| passes_on(&kinds[i..i + 3], &links[i..i + 2]))
+        .map(|i| (i, i + 2));
+    for (i, next) in neighbours.chain(across) {
+        let link = links[i + 1..next]
+            .iter()
+            .fold(links[i], |way, link| way.then(link));
+        if taken[i] || taken[next] || !dependent(kinds[i], kinds[next], &link) {
             continue;
         }
         let idle = match (kinds[i], kinds[next]) {
             (Kind::Ball, Kind::Ball) => Idle::BetweenBalls(i),
             (Kind::Ball, _) => Idle::BallOnAxis(next, i),
             (_, Kind::Ball) => Idle::BallOnAxis(i, next),
+            // the last joint is read, so that it moves
+            (Kind::Slide, Kind::Slide) if next + 1 == count => Idle::OneDirection(i, next),
             (Kind::Slide, Kind::Slide) => Idle::OneDirection(next, i),
+            _ if next + 1 == count => Idle::OneAxis(i, next),
             _ => Idle::OneAxis(next, i),
         };
         taken[idle.held().unwrap_or(i)] = true;
         found.push(idle);
     }
     found
+}
+
+/// Whether a joint between two others carries an axis of theirs into itself, as the slide of a cylindrical joint does: it takes no part
+/// in what the two do.
+fn passes_on(kinds: &[Kind], links: &[Pose]) -> bool {
+    // the axes of the two are one where their screws depend
+    let (own, link) = if kinds[0] == Kind::Ball {
+        (kinds[2], &links[1])
+    } else {
+        (kinds[0], &links[0])
+    };
+    let other = match own {
+        Kind::Turn => Kind::Slide,
+        Kind::Slide => Kind::Turn,
+        _ => return false,
+    };
+    let [x, y, _] = link.turn([0.0, 0.0, 1.0]);
+    kinds[1] == other && x.hypot(y) < PARALLEL
 }
 
 /// Whether the screws of two neighbours depend on each other in every pose: looked at in a few poses at random.
@@ -106,6 +136,6 @@ fn dependent(first: Kind, second: Kind, link: &Pose) -> bool {
             *ball = ball_rotation(&std::array::from_fn(|_| 3.0 * random.uniform()));
         }
         let (values, _) = singular_values(&chain.screws(&at));
-        values[values.len() - 1] < 1e-9 * values[0]
+        values[values.len() - 1] < PARALLEL * values[0]
     })
 }

@@ -8,6 +8,7 @@ use crate::loops::equation::dense::{COLUMNS, Columns, least_squares, length, sin
 use crate::loops::equation::rotations::squared_up;
 use crate::loops::equation::screws::{Twist, twist_of};
 use crate::loops::rates::velocities;
+use crate::stopping;
 
 /// Singular values below this part of the greatest, and this many times the one that is known to vanish near by, vanish there too.
 const NEARLY_ZERO: f64 = 1e-3;
@@ -160,6 +161,7 @@ pub(super) fn settled_at_rank(chain: &Chain, rough: &Configuration, rank: usize)
     let mut at = *rough;
     let mut before = f64::INFINITY;
     for _ in 0..MOST_STEPS {
+        stopping::piece();
         let placed = chain.place(&at);
         let split = Split::new(chain, &placed.screws, rank);
         let count = split.seen.len() + split.left.len() * split.free.len();

@@ -8,6 +8,7 @@
 use super::phases::{FACTORS, PhaseLanes, Phases, Watch};
 use crate::loops::equation::closure::{Linear, Slides, Solution, UNKNOWNS, infinite, moved, size};
 use crate::loops::equation::lanes::Lanes;
+use crate::stopping;
 use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
 use num_complex::Complex64;
 
@@ -193,6 +194,7 @@ impl<H: Homotopy> LaneKernel for Follow<'_, H> {
         let mut next = 0;
         self.load(&mut walk, [true; LANES], &mut next);
         while walk.path.iter().any(|&p| p < self.starts.len()) {
+            stopping::piece();
             let finished = self.advance(&mut walk);
             if finished.contains(&true) {
                 self.load(&mut walk, finished, &mut next);

@@ -9,6 +9,7 @@ use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, Columns, Factored, ROWS, least_squares, singular_values};
 use crate::loops::equation::rotations::squared_up;
 use crate::loops::mobility::rank::{rank, unyielding};
+use crate::stopping;
 
 /// The closure error [rad, or relative to the size] that a mode may keep in constraints that count.
 pub(crate) const CLOSED: f64 = 1e-11;
@@ -45,6 +46,7 @@ pub(crate) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
     let mut at = *rough;
     let mut best = f64::INFINITY;
     for step in 0..MOST_STEPS {
+        stopping::piece();
         let placed = chain.place(&at);
         let residual = chain.residual(&placed);
         if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
@@ -99,6 +101,7 @@ pub(super) fn polish_with_spare(
     let mut best = f64::INFINITY;
     let mut looked = f64::INFINITY;
     for step in 0..MOST_WITH_SPARE {
+        stopping::piece();
         let placed = chain.place(&at);
         let residual = chain.residual(&placed);
         // a pose that closes by a square is as near as rounding lets it come, not where it first closes

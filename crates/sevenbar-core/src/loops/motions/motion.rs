@@ -182,6 +182,8 @@ fn motion_type(
     let Some((first, others)) = circuits.split_first() else {
         return match &search.found {
             Some(found) if found.finite > 1 => "two-inputs",
+            // a motion was seen beside a pose, and could not be followed
+            Some(found) if found.finite == 1 => "not-followed",
             Some(_) => "rigid",
             None if !change_points.is_empty() => "rigid",
             // rank six at most

@@ -7,6 +7,7 @@ use crate::loops::equation::screws::{bordered_inverse, input_row};
 use crate::loops::rates::velocities::{self, ORDERS, Rates};
 use crate::number::Number;
 use crate::outcome::RowStatus;
+use crate::stopping;
 
 /// The input at unit speed.
 pub(super) const UNIT: [f64; ORDERS] = [1.0, 0.0, 0.0];
@@ -67,6 +68,7 @@ pub(super) fn solved(
     let row = input_row(input);
     let mut moved = 0.0;
     for step in 0..MOST_CORRECTIONS {
+        stopping::piece();
         let placed = chain.place(&at);
         let inverse = bordered_inverse(&placed.screws, chain.columns, &row);
         let mut by = inverse.times(&placed.error).map(|x| -x);

@@ -6,6 +6,7 @@ use crate::loops::equation::dense::{COLUMNS, length};
 use crate::loops::equation::screws::{bordered_inverse, correction, input_row};
 use crate::loops::rates::velocities::ORDERS;
 use crate::outcome::RowStatus;
+use crate::stopping;
 use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 
 /// A last correction [rad, or relative to the size] after which the next is rounding.
@@ -44,6 +45,7 @@ impl LaneKernel for RowsNear<'_> {
     #[inline(always)]
     fn run<V: Vector>(mut self) {
         for block in self.starts.chunks(LANES) {
+            stopping::piece();
             let mut each = [Configuration::ZERO; LANES];
             for (lane, at) in each.iter_mut().enumerate() {
                 let near = &block[lane.min(block.len() - 1)];

@@ -13,6 +13,7 @@ use crate::loops::rates::turns::value_series;
 use crate::loops::rates::velocities::{ORDERS, Rates};
 use crate::outcome::RowStatus;
 use crate::rigid::{Pose, Vec3, Vec3Taylor, scale};
+use crate::stopping;
 use crate::taylor::Taylor;
 
 /// Numbers that a row is kept as: joint values, balls, rates, and status, pass, residual and condition.
@@ -164,6 +165,7 @@ pub fn joint_table(linkage: &Loop, rows: &Rows) -> Vec<f64> {
     let ball_turn: Vec<bool> = (0..columns).map(|c| is_ball_turn(linkage, c)).collect();
     let mut table = vec![[0.0; 4]; columns];
     for (n, row) in rows.rows.iter().enumerate() {
+        stopping::piece();
         if row.status == RowStatus::NoSolution {
             continue;
         }
@@ -198,6 +200,7 @@ pub fn point(linkage: &Loop, rows: &Rows, link: usize, at: Vec3) -> Vec<f64> {
     let count = rows.len();
     let mut out = vec![f64::NAN; 12 * count];
     for (n, row) in rows.rows.iter().enumerate() {
+        stopping::piece();
         let Some(moved) = carried_point(linkage, rows, row, link, scale(at, 1.0 / linkage.size)) else {
             continue;
         };

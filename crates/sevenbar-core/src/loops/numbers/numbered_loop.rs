@@ -21,6 +21,7 @@ use crate::loops::equation::dense::{COLUMNS, Factored, ROWS, singular_values};
 use crate::loops::equation::rotations::{Rotation, product, rotation};
 use crate::loops::equation::screws::Twist;
 use crate::rigid::Pose;
+use crate::stopping;
 use std::sync::Arc;
 
 /// Newton's steps on the closure: the most, the longest [rad, or relative to the size], and one after which only rounding is left.
@@ -401,6 +402,7 @@ impl NumberedLoop {
             self.walk(&self.nominal, &start, &mut around);
             let side = self.side(&around);
             for (number, design) in designs.iter().enumerate() {
+                stopping::piece();
                 let place = number * rows + row;
                 let mut at = start.clone();
                 if let Some(steps) = steps {

@@ -7,6 +7,7 @@ use crate::loops::equation::rotations::cross;
 use crate::loops::equation::screws::{Twist, bracket};
 use crate::loops::rates::velocities::ORDERS;
 use crate::rigid::add;
+use crate::stopping;
 
 /// Norm of the pseudo-inverse [per rad, or size] beyond which the input does not determine what follows: a dead centre.
 const DEAD: f64 = 1e7;
@@ -94,6 +95,7 @@ pub fn slopes(numbered: &NumberedLoop, values: &[f64], order: usize) -> Slopes {
         points_idle: nan(idle * points * 3),
     };
     for (row, at) in values.chunks(width).enumerate() {
+        stopping::piece();
         if !at.iter().all(|x| x.is_finite()) {
             continue;
         }

@@ -14,13 +14,15 @@ from sevenbar.description.contradictions import FORMS
 from sevenbar.description.draft import Draft
 from sevenbar.description.files import near_files, toml_tables, toml_text
 from sevenbar.description.gallery import names as gallery_names
+from sevenbar.description.named_files import file_below
 from sevenbar.description.values import TableForm
 from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
-from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form
+from sevenbar.design.task.file.schema import FunctionForm, LimitsForm, TaskForm, check_form
 from sevenbar.design.task.file.tables import must_of, want_of
 from sevenbar.design.task.file.units import amount
 from sevenbar.design.task.task import DesignTask, FreeNumber, Most, Must, Want
+from sevenbar.design.wish import degrees_hint
 from sevenbar.errors import (
     DescriptionError,
     Problem,
@@ -31,15 +33,17 @@ from sevenbar.errors import (
     suggestion,
 )
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.paths import is_file, is_folder, is_there
 
 
 @dataclass(frozen=True, eq=False)
 class TaskFile:
-    """A task as its file has it: its `name`, and where it came from."""
+    """A task as its file has it: its `name`, where it came from, and hints of what may have been meant."""
 
     task: DesignTask
     name: str
     source: str
+    hints: tuple[str, ...] = ()
 
 
 @ends_here
@@ -56,9 +60,9 @@ def task_file(path: str | os.PathLike[str], *, agree: float | None = None) -> Ta
     """The same with the task's name and source."""
     source = str(path)
     file = Path(path)
-    if file.is_dir():
+    if is_folder(file):
         raise DescriptionError.of_all(source, "is a folder; give the path of a task file (TOML) in it")
-    if not file.is_file():
+    if not is_file(file):
         raise DescriptionError.of_all(
             source, f"no such file; {near_files(file)}give the path of a task file (TOML)"
         )
@@ -66,7 +70,7 @@ def task_file(path: str | os.PathLike[str], *, agree: float | None = None) -> Ta
 
 
 def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskFile:
-    """The task of a TOML text; files that it names lie in its folder, that of `source`."""
+    """The task of a TOML text; files that it names lie below its folder, that of `source`."""
     raw = toml_tables(text, source)
     folder = Path(source).parent
     draft = _draft(raw, source, folder, agree)
@@ -98,7 +102,13 @@ def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskF
         mistakes.found += list(contradictions(task)) or list(start_flaws(task))
     if mistakes.found:
         raise DescriptionError(list(dict.fromkeys(mistakes.found)), source)
-    return TaskFile(task, form.name or draft.linkage.heading, source)
+    return TaskFile(task, form.name or draft.linkage.heading, source, tuple(_hints(form)))
+
+
+def _hints(form: TaskForm) -> Iterator[str]:
+    for i, want in enumerate(form.want):
+        if isinstance(want, FunctionForm) and want.y is not None and (hint := degrees_hint(want.y, want.x)):
+            yield f"want[{i + 1}].y: {hint}"
 
 
 class _Mistakes:
@@ -146,10 +156,13 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
         )
         raise wrong(f"{what}; {hint}")
     name = given.strip()
-    path = folder / name
-    if not path.exists() and name in gallery_names():
+    try:
+        path = file_below(folder, name, "rssr.toml")
+    except RequestError as error:
+        raise wrong(str(error)) from None
+    if not is_there(path) and name in gallery_names():
         return Draft.of(toml_text(name), name, agree=agree)
-    if not path.is_file():
+    if not is_file(path):
         near = suggestion(name, gallery_names())
         raise wrong(
             f"{shown(name)}: no such file in the folder of this one, nor such a name in the gallery; {near}"

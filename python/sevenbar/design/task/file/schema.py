@@ -161,7 +161,7 @@ class PosesForm(TableForm):
 class FigureForm(TableForm):
     """A measure of the circuit."""
 
-    kind: Annotated[Literal["figure"], key("this want")]
+    kind: Annotated[Literal["figure"], key("this want; measure is the same")]
     name: Annotated[Text, key("the measure, as in swing, time_ratio, transmission_lowest, peak_torque")]
     value: Annotated[Goal, key("what it shall be, or 'small', or 'great'", "of the measure")]
     unit: Annotated[Unit, key("what counts as 1", "of the measure")] = 1.0
@@ -184,7 +184,7 @@ class StraightForm(TableForm):
     kind: Annotated[Literal["straight"], key("this want")]
     point: Annotated[Text, key("the name of the linkage's point")]
     range: Annotated[Span, key("of the input", _OF_INPUT)]
-    length: Annotated[Length | None, key("how far it goes at least", "length")] = None
+    length: Annotated[Length | None, key("how far it must go at least", "length")] = None
     samples: Annotated[Samples, key("inputs of the range that count")] = 41
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
@@ -231,7 +231,7 @@ class ApartMust(TableForm):
 class FigureMustForm(TableForm):
     """A measure of the circuit stays within ends."""
 
-    kind: Annotated[Literal["figure"], key("this must")]
+    kind: Annotated[Literal["figure"], key("this must; measure is the same")]
     name: Annotated[Text, key("the measure")]
     least: Annotated[Value | None, key("the least that it may be", "of the measure")] = None
     most: Annotated[Value | None, key("the most that it may be", "of the measure")] = None
@@ -257,7 +257,8 @@ class LimitsForm(TableForm):
     ] = None
     size: Annotated[Span | None, key("shortest link and longest dimension", "length")] = None
     transmission: Annotated[
-        Angle, key("the least transmission angle of an RSSR given by its dimensions, where it is used")
+        Angle,
+        key("the least transmission angle where it is used; of measures alone, over the whole circuit"),
     ] = 0.0
 
 
@@ -272,8 +273,16 @@ def _by_kind(forms: Any) -> dict[str, type[TableForm]]:
 #: The forms of the tables by their kinds.
 WANTS, MUSTS = _by_kind(WantForm), _by_kind(MustForm)
 
-_Want = Annotated[WantForm, Field(discriminator="kind")]
-_Must = Annotated[MustForm, Field(discriminator="kind")]
+
+def _as_figure(value: object) -> object:
+    """A table whose kind is the word of the docs, a measure."""
+    return (
+        {**value, "kind": "figure"} if isinstance(value, dict) and value.get("kind") == "measure" else value
+    )
+
+
+_Want = Annotated[WantForm, Field(discriminator="kind"), BeforeValidator(_as_figure)]
+_Must = Annotated[MustForm, Field(discriminator="kind"), BeforeValidator(_as_figure)]
 
 
 class TaskForm(TableForm):
@@ -281,7 +290,7 @@ class TaskForm(TableForm):
 
     linkage: Annotated[
         str | dict[str, Any],
-        key("a file in the folder of this one, a name of the gallery, or tables of a linkage file"),
+        key("a file below the folder of this one, a name of the gallery, or tables of a linkage file"),
     ]
     want: Annotated[tuple[_Want, ...], key("what is wanted; one or more")]
     free: Annotated[

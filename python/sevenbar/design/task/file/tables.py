@@ -10,6 +10,7 @@ from typing import Literal, TypeVar, cast
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.description.named_files import file_below
 from sevenbar.design.curve_table import read_curve, read_poses
 from sevenbar.design.task import task as kinds
 from sevenbar.design.task.file import schema
@@ -77,7 +78,7 @@ def _function(form: schema.FunctionForm, linkage: Linkage, folder: Path) -> kind
     else:
         if not all(map(linkage.turns, columns)):
             raise RequestError("table: holds angles, and a joint of the drive slides; give pairs")
-        x, y = _read("table", read_pairs, folder / str(form.table))
+        x, y = _read(read_pairs, folder, str(form.table))
     zeros = (
         _zero("input_zero", form.input_zero, linkage, columns[0]),
         _zero("output_zero", form.output_zero, linkage, columns[1]),
@@ -126,7 +127,7 @@ def _path(form: schema.PathForm, linkage: Linkage, folder: Path) -> kinds.PathWa
     if form.table is not None:
         drive = linkage.drive.joint
         rows, inputs = _read(
-            "table", lambda path: read_curve(path, linkage, drive, point=form.point), folder / form.table
+            lambda path: read_curve(path, linkage, drive, point=form.point), folder, form.table
         )
     else:
         rows = np.array(form.places, dtype=float)
@@ -145,7 +146,7 @@ def _poses(form: schema.PosesForm, linkage: Linkage, folder: Path) -> kinds.Pose
     _one_of(form, "poses", "table")
     inputs: Floats | None = None
     if form.table is not None:
-        poses, inputs = _read("table", lambda path: read_poses(path, linkage), folder / form.table)
+        poses, inputs = _read(lambda path: read_poses(path, linkage), folder, form.table)
     else:
         poses = np.array([_pose(f"poses[{i + 1}]", one) for i, one in enumerate(form.poses or ())])
     if form.frame is not None:
@@ -199,12 +200,12 @@ def _zero(key: str, value: Given, linkage: Linkage, column: str) -> float | None
     return None if value == "free" else reading(key, value, linkage, column)
 
 
-def _read(key: str, reader: Callable[[Path], T], path: Path) -> T:
-    """What a reader finds in a table; its mistakes are those of the key."""
+def _read(reader: Callable[[Path], T], folder: Path, name: str) -> T:
+    """What a reader finds in the table that a file in a folder names; its mistakes are those of the key."""
     try:
-        return reader(path)
-    except TableError as error:
-        raise RequestError(f"{key}: {error}") from None
+        return reader(file_below(folder, name, "wanted.csv"))
+    except (TableError, RequestError) as error:
+        raise RequestError(f"table: {str(error).removeprefix('table: ')}") from None
 
 
 def must_of(form: schema.MustForm, linkage: Linkage, wants: Sequence[Want]) -> Must:

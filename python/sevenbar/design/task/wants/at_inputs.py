@@ -9,14 +9,14 @@ from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.placing import Placing
 from sevenbar.design.task.task import DwellWant, FunctionWant, StraightWant
-from sevenbar.design.task.wants.wanted import Begun, Stations
+from sevenbar.design.task.wants.wanted import Begun, Bound, Stations, Wanted, both_signs, distances
 from sevenbar.kinematics.circuits.circuit import Circuit
 
 #: So many of the best starts of a free input zero are tried.
 TRIED = 2
 
 
-class ReadingsWanted:
+class ReadingsWanted(Wanted):
     """The output's `readings` (n,) at `inputs` (n,), both from zeros that may be unknowns."""
 
     def __init__(self, loop: TaskLoop, want: FunctionWant | DwellWant) -> None:
@@ -53,6 +53,10 @@ class ReadingsWanted:
         off = here.q[:, self._column] - self.readings - self.zeros(u)[1]
         return self._apart(off) / self.unit, by / self.unit
 
+    def heights(self, left: Floats, by: Floats) -> tuple[Floats, Floats]:
+        """What the output is off, to either side."""
+        return both_signs(left, by)
+
     def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:  # noqa: ARG002
         """From the best starts of the inputs."""
         fixed, inputs, outputs = self.stations.fixed, one.inputs, one.outputs
@@ -79,12 +83,12 @@ class ReadingsWanted:
         return self._apart(circuit.output[rows] - self.readings - self.zeros(u)[1])
 
 
-class LineWanted:
+class LineWanted(Wanted):
     """Distances of a point p from the line through two unknown places a and b, in three parts.
 
     r = p - a - t (b - a),    t = (p - a) . (b - a) / |b - a|^2
 
-    and what the point's way from first to last lacks of the length, where one is given.
+    Where a length is given, the point must go as far: the distance of the two places farthest along the line.
     """
 
     turns = False
@@ -96,7 +100,8 @@ class LineWanted:
         self.unit = loop.size if want.length is None else want.length
         inputs = np.linspace(*want.inputs, want.samples)
         self.stations = Stations(inputs, np.zeros((want.samples, 6)), np.full(6, loop.size))
-        self.count = 3 * want.samples + (want.length is not None)
+        self.count = 3 * want.samples
+        self._length_unit = loop.linkage.length_unit
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         """The residuals (r,), and their slopes (r, k + 6)."""
@@ -107,10 +112,6 @@ class LineWanted:
         t = off @ way / square
         across = np.eye(3) - np.outer(way, way) / square
         left = (off - t[:, None] * way).ravel()
-        gone = p[-1] - p[0]
-        size = float(np.linalg.norm(gone)) or 1.0
-        if self._length is not None:
-            left = np.append(left, min(size - self._length, 0.0))
         if not by.shape[-1]:
             return left / self.unit, np.empty((len(left), 0))
         slopes = np.einsum("ij,njk->nik", across, by)
@@ -118,11 +119,24 @@ class LineWanted:
         t_b = (off - 2 * t[:, None] * way) / square
         slopes[:, :, -6:-3] += (t[:, None, None] - 1) * np.eye(3) - np.einsum("i,nj->nij", way, t_a)
         slopes[:, :, -3:] += -t[:, None, None] * np.eye(3) - np.einsum("i,nj->nij", way, t_b)
-        slopes = slopes.reshape(3 * len(p), -1)
-        if self._length is not None:
-            short = size < self._length
-            slopes = np.concatenate([slopes, (short * gone @ (by[-1] - by[0]) / size)[None]])
-        return left / self.unit, slopes / self.unit
+        return left / self.unit, slopes.reshape(3 * len(p), -1) / self.unit
+
+    def heights(self, left: Floats, by: Floats) -> tuple[Floats, Floats]:
+        """Distances from the line."""
+        return distances(left, by)
+
+    def bound(self, here: Here) -> Bound | None:
+        """That the point goes as far as the length."""
+        if self._length is None:
+            return None
+        p, by = here.points[:, self.numbers[0]], here.points_by[:, self.numbers[0]]
+        first, last = farthest(p)
+        gone = p[last] - p[first]
+        size = float(np.linalg.norm(gone))
+        slopes = gone @ (by[last] - by[first]) / max(size, 1e-300) / self.unit
+        asked = f"at least {self._length:g} {self._length_unit} is asked"
+        missed = f"the point goes {size:.4g} {self._length_unit}, {asked}"
+        return Bound("length", (size - self._length) / self.unit, slopes, missed)
 
     def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:  # noqa: ARG002
         """On a pass that has the range of inputs, with the best line of its rows."""
@@ -143,3 +157,9 @@ class LineWanted:
         way = (u[3:] - u[:3]) / np.linalg.norm(u[3:] - u[:3])
         off = np.cross(circuit.point(self._name).position[rows] - u[:3], way)
         return np.asarray(np.linalg.norm(off, axis=1))
+
+
+def farthest(p: Floats) -> tuple[int, int]:
+    """The two of some places (n, 3) that are farthest from each other along their best line."""
+    along = p @ np.linalg.svd(p - p.mean(axis=0), full_matrices=False)[2][0]
+    return int(along.argmin()), int(along.argmax())

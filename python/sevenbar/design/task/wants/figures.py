@@ -9,6 +9,7 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.task import FigureWant
+from sevenbar.design.task.transmitting import LeastAngle
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.measures import gradient, mass_gradient, measures_named
@@ -26,7 +27,12 @@ class Figures:
     def __init__(self, loop: TaskLoop, names: Sequence[str]) -> None:
         self._loop = loop
         self.names = tuple(names)
+        #: Motions that were measured, with slopes two.
+        self.motions = 0
         self._measures = measures_named(names) if names else ()
+        self._angle = LeastAngle(loop) if self.names == ("transmission_lowest",) else None
+        #: Whether a value takes a motion that is measured, and counts.
+        self.measured = bool(self.names) and not (self._angle and self._angle.known)
         self._columns = [c for c, ball in enumerate(loop.numbers.is_ball) if not ball]
 
     def at(self, values: Floats, anchor: Floats, *, slopes: bool = True) -> tuple[Floats, Floats] | None:
@@ -34,6 +40,10 @@ class Figures:
 
         `None` where the circuit is gone or one of the measures has no value.
         """
+        quick = None if self._angle is None else self._angle.at(values, anchor, slopes=slopes)
+        if quick is not None:
+            return quick
+        self.motions += 1 + slopes
         found = self.circuit(values, anchor)
         if found is None:
             return None

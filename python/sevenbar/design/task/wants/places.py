@@ -12,7 +12,7 @@ from sevenbar.design.task.match import Match, by_length, in_order, matched
 from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.placing import Placing, placed
 from sevenbar.design.task.task import PathWant, PoseWant
-from sevenbar.design.task.wants.wanted import Begun, Stations, Wanted
+from sevenbar.design.task.wants.wanted import Begun, Stations, Wanted, distances
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.stops import Three
 
@@ -20,17 +20,7 @@ from sevenbar.kinematics.loop.stops import Three
 FIRST_AT = 2
 
 
-def heights_of(one: Wanted, left: Floats, by: Floats) -> tuple[Floats, Floats]:
-    """Sizes (h,) of a want's residuals, and their slopes (h, k): distances of places, others both ways."""
-    if not isinstance(one, PlacesWanted):
-        return np.concatenate([left, -left]), np.concatenate([by, -by])
-    left = left.reshape(-1, 3)
-    size = np.linalg.norm(left, axis=1)
-    slopes = np.einsum("ni,nik->nk", left, by.reshape(*left.shape, by.shape[-1]))
-    return size, slopes / np.maximum(size, 1e-300)[:, None]
-
-
-class PlacesWanted:
+class PlacesWanted(Wanted):
     """Places (n, p, 3) that p points of one link shall take at n stations, relative to a `unit` [length]."""
 
     turns = False
@@ -64,6 +54,10 @@ class PlacesWanted:
         found, by = here.points[:, self.numbers], here.points_by[:, self.numbers]
         left = found.reshape(-1, 3)
         return left, by.reshape(*left.shape, by.shape[-1])
+
+    def heights(self, left: Floats, by: Floats) -> tuple[Floats, Floats]:
+        """Distances of the places."""
+        return distances(left, by)
 
     def curve(self, one: InputPass) -> Floats:
         """The points along a pass (rows, p, 3)."""

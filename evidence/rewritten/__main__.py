@@ -1,0 +1,103 @@
+"""`python -m evidence.rewritten`: one linkage in many ways, every answer compared; writes docs/rewritten.md.
+
+With `--share 0.1` a tenth of the lattice, and no page except where `--out` says; `--only NAME` takes the
+families whose names hold it, and prints every difference.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+import warnings
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from evidence import ROOT
+from evidence.circumstances import circumstances
+from evidence.rewritten.answers import Answers, answers_of, differences, reason
+from evidence.rewritten.drawing import Drawing
+from evidence.rewritten.families import families, lattice
+from evidence.rewritten.page import Compared, written
+from evidence.rewritten.ways import ways
+from sevenbar.errors import SevenbarError
+
+#: Loops of the lattice in a whole run, and how many a process takes at once.
+LATTICE, AT_ONCE = 3000, 10
+
+
+def compared(one: Drawing, seed: int) -> Compared:
+    """A drawing in all ways."""
+    start, first, found = time.process_time(), None, Compared(one.name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for way in ways(one, np.random.default_rng(seed)):
+            found.ways += 1
+            try:
+                answers = answers_of(way)
+            except SevenbarError as error:
+                answers = Answers({"refused": type(error).__name__}, [], [], {}, False)
+            if first is None:
+                first = answers
+                found.moves = bool(answers.circuits)
+                continue
+            why = reason(first, answers)
+            for difference in differences(way, first, answers):
+                (found.explained if why else found.differences).append(f"{difference}{why and ': '}{why}")
+    found.seconds = time.process_time() - start
+    return found
+
+
+def _family(name: str, seed: int) -> list[Compared]:
+    return [compared(families()[name](), seed)]
+
+
+def _lattice(first: int, last: int, seed: int) -> list[Compared]:
+    return [compared(lattice(index, seed), seed) for index in range(first, last)]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The command; 1 where answers differ without a reason."""
+    parser = argparse.ArgumentParser(prog="python -m evidence.rewritten", description=__doc__)
+    parser.add_argument("--share", type=float, default=1.0, help="part of the loops on the lattice")
+    parser.add_argument("--only", default="", help="families whose names hold this, and no lattice")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--out", type=Path, metavar="FILE", help="the page; docs/rewritten.md of a whole run")
+    given = parser.parse_args(arguments)
+    made = circumstances("scipy") | {"seed": given.seed}
+    names = [name for name in families() if given.only in name]
+    count = 0 if given.only else round(given.share * LATTICE)
+    rows: dict[str, list[Compared]] = {}
+    with ProcessPoolExecutor(given.processes) as pool:
+        for name, found in _in_order(pool, names, count, given.seed):
+            rows.setdefault(name, []).extend(found)
+            for one in found:
+                for line in [*one.differences, *(one.explained if given.only else ())]:
+                    print(f"{one.name if name == 'lattice' else name}: {line}", flush=True)
+    out = given.out or (ROOT / "docs/rewritten.md" if given.share == 1.0 and not given.only else None)
+    page = written(rows, made)
+    if out is None:
+        print(page)
+    else:
+        out.write_text(page, encoding="utf-8")
+    return int(any(one.differences for found in rows.values() for one in found))
+
+
+def _in_order(
+    pool: ProcessPoolExecutor, names: Sequence[str], count: int, seed: int
+) -> Iterator[tuple[str, list[Compared]]]:
+    firsts = range(0, count, AT_ONCE)
+    yield from zip(names, pool.map(partial(_family, seed=seed), names), strict=True)
+    pieces = pool.map(
+        _lattice, firsts, [min(first + AT_ONCE, count) for first in firsts], [seed] * len(firsts)
+    )
+    yield from (("lattice", found) for found in pieces)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,157 @@
+"""What a linkage answers, in the values of the drawing, and where two answers differ."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from evidence.rewritten.ways import Way
+from sevenbar.kinematics.circuits.circuit import Circuit
+
+#: Samples of a turn.
+SAMPLES = 36
+
+#: How nearly numbers agree: limits are known to the root of the rounding of what is written.
+SAME = 2e-6
+
+#: Numbers that are roots of roundings: at change points.
+ROUGH = 2e-3
+
+#: Of a circuit, the numbers that are compared.
+Numbers = dict[str, float | None]
+
+
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """Words of a motion, by what they are of, and the numbers of each circuit [rad, or length as drawn]."""
+
+    words: dict[str, object]
+    limits: list[float]
+    circuits: list[Numbers]
+    four_bar: Numbers
+    is_change: bool
+
+
+def answers_of(way: Way) -> Answers:
+    """All that is compared of one way of writing a linkage."""
+    linkage = way.linkage
+    motion = linkage.motion(SAMPLES, input=way.input, output=way.output)
+    search, mobility = motion.search, motion.mobility
+    turns = linkage.turns(way.input)
+    words: dict[str, object] = {
+        "motion type": motion.motion_type,
+        "circuits": len(motion.circuits),
+        "types of circuits": sorted(circuit.motion_type for circuit in motion.circuits),
+        "circuits that close": sorted(circuit.closed for circuit in motion.circuits),
+        "change points": len(motion.change_points),
+        "dead centres": sorted(len(circuit.dead_centres) for circuit in motion.circuits),
+        "not followed": search.unfollowed,
+        "freedoms": mobility.freedoms,
+        "finite": mobility.finite,
+        "idle": len(mobility.idle),
+        "redundant": len(mobility.redundant),
+        # a closed form knows all circuits, as a count does
+        "completeness": "counted" if motion.completeness == "closed-form" else motion.completeness,
+    }
+    if way.same_ground:
+        words["planar"], words["spherical"] = linkage.is_planar, linkage.sphere is not None
+    four_bar: Numbers = {}
+    if way.same_ground and (links := motion.four_bar) is not None:
+        words["Grashof"] = links.grashof
+        unit = 1.0 if links.kind == "spherical" else way.scale
+        lengths = sorted(length / unit for length in links.links.values())
+        four_bar = {f"link {k + 1}": length for k, length in enumerate(lengths)}
+    limits = [_input(way, value, turns) for value in motion.limits]
+    is_change = bool(len(motion.change_points)) or "change" in motion.motion_type
+    return Answers(
+        words, sorted(limits), [_circuit(way, one) for one in motion.circuits], four_bar, is_change
+    )
+
+
+def _input(way: Way, value: float, turns: bool) -> float:
+    sign, shift = way.signs[0], way.shifts[0]
+    drawn = sign * (value - shift) / (1.0 if turns else way.scale)
+    return drawn % math.tau if turns else drawn
+
+
+def _circuit(way: Way, circuit: Circuit) -> Numbers:
+    found: Numbers = {}
+    for name, ends, turns in (
+        ("input", circuit.input_range, circuit.input_turns),
+        ("output", circuit.output_range, circuit.output_turns),
+    ):
+        found[f"extent of the {name}"] = (
+            None if ends is None else (ends[1] - ends[0]) / (1.0 if turns else way.scale)
+        )
+    unit_in, unit_out = (1.0 if turns else way.scale for turns in (circuit.input_turns, circuit.output_turns))
+    found["swing"] = None if circuit.swing is None else circuit.swing / unit_out
+    found["time ratio"] = circuit.time_ratio
+    if circuit.velocity is not None:
+        # a rate against the input, whatever the speed
+        rates = [
+            way.signs[0] * way.signs[1] * value
+            for value in (circuit.velocity.lowest, circuit.velocity.highest)
+        ]
+        per = abs(circuit.speed) * unit_out / unit_in
+        found["lowest velocity"], found["highest velocity"] = sorted(rate / per for rate in rates)
+    if way.same_ground and (angle := circuit.transmission) is not None:
+        found["lowest transmission angle"], found["highest transmission angle"] = angle.lowest, angle.highest
+    return found
+
+
+def differences(way: Way, drawn: Answers, written: Answers) -> Iterator[str]:
+    """What differs from the drawing, in words; nothing where all agrees."""
+    for word, value in written.words.items():
+        if word in drawn.words and value != drawn.words[word]:
+            yield f"{word}: {drawn.words[word]!r} as drawn, {value!r} {way.name}"
+    near = (ROUGH if drawn.is_change or written.is_change else SAME) * max(1.0, way.rounding / 10)
+    if len(drawn.limits) != len(written.limits):
+        yield f"limits: {len(drawn.limits)} as drawn, {len(written.limits)} {way.name}"
+    else:
+        yield from _apart("limits", drawn.limits, written.limits, near, way)
+    yield from _numbers("four-bar", drawn.four_bar, written.four_bar, near, way)
+    if len(drawn.circuits) == len(written.circuits):
+        rest = list(written.circuits)
+        for one in drawn.circuits:
+            best = min(rest, key=lambda other: _distance(one, other))
+            rest.remove(best)
+            yield from _numbers("circuit", one, best, near, way)
+
+
+def reason(drawn: Answers, written: Answers) -> str:
+    """Why answers may differ, as docs/not-covered.md has it; empty where they may not."""
+    if "searched" in (drawn.words.get("completeness"), written.words.get("completeness")):
+        return "searched, screws and slides within bounds that count from how it is written"
+    return ""
+
+
+def _apart(name: str, one: list[float], other: list[float], near: float, way: Way) -> Iterator[str]:
+    """Whether sorted numbers agree, angles by whole turns."""
+    missed = 0.0
+    for value in one:
+        missed = max(missed, min(_gap(value, there) for there in other))
+    if missed > near:
+        yield f"{name}: {missed:.1e} apart {way.name}"
+
+
+def _gap(one: float, other: float) -> float:
+    apart = abs(one - other)
+    return min(apart, abs(math.tau - apart)) / max(1.0, abs(one))
+
+
+def _numbers(name: str, one: Numbers, other: Numbers, near: float, way: Way) -> Iterator[str]:
+    for key in one.keys() & other.keys():
+        a, b = one[key], other[key]
+        if (a is None) != (b is None):
+            yield f"{name}, {key}: {a} as drawn, {b} {way.name}"
+        elif a is not None and b is not None and not abs(a - b) <= near * max(1.0, abs(a)):
+            yield f"{name}, {key}: {a:.9g} as drawn, {b:.9g} {way.name}"
+
+
+def _distance(one: Numbers, other: Numbers) -> float:
+    found = 0.0
+    for key in one.keys() & other.keys():
+        a, b = one[key], other[key]
+        found += 10.0 if (a is None) != (b is None) else 0.0 if a is None or b is None else abs(a - b)
+    return found

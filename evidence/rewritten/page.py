@@ -1,0 +1,75 @@
+"""The page on rewritten linkages, from what was compared: it has no number that the run did not count."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from evidence.circumstances import in_words
+from evidence.markdown import table
+
+#: Differences of a family that the page lists.
+LISTED = 12
+
+
+@dataclass
+class Compared:
+    """What was seen of a drawing: its ways, what differs without and with a reason, processor time [s]."""
+
+    name: str
+    ways: int = 0
+    moves: bool = False
+    differences: list[str] = field(default_factory=list)
+    explained: list[str] = field(default_factory=list)
+    seconds: float = 0.0
+
+
+def written(rows: Mapping[str, Sequence[Compared]], made: Mapping[str, Any]) -> str:
+    """The page as Markdown."""
+    parts: dict[str, list[Compared]] = {}
+    for name, found in rows.items():
+        parts.setdefault(name.split()[0].rstrip(",") if name != "lattice" else name, []).extend(found)
+    every = [one for found in rows.values() for one in found]
+    lines = [
+        "# One linkage, written in many ways",
+        "",
+        "A linkage does not know how it is written. Turned, moved a hundred of its sizes off, mirrored, "
+        "a millionth to a million times as large, with axes reversed or places moved along them, from the "
+        "other end, from each other joint on, as rows in place of axes: motion type, circuits, limits, "
+        "ranges, dead centres, change points, mobility, four-bar, transmission angle, extremes and "
+        "completeness must be the same.",
+        "",
+        f"`python -m evidence.rewritten` writes this page ({in_words(made)}; seed {made['seed']}).",
+        "",
+        f"{len(rows) - ('lattice' in rows)} named linkages, {len(rows.get('lattice', ()))} random loops with "
+        f"places and axes in whole numbers; {sum(one.ways for one in every):,} ways, "
+        f"{sum(one.seconds for one in every) / 60:.0f} min of processor time. "
+        f"{sum(bool(one.differences) for one in every)} linkages differ without a known reason.",
+        "",
+        table(
+            ["family", "linkages", "move", "ways", "differ", "differ with a reason"],
+            [
+                [
+                    name,
+                    str(len(found)),
+                    str(sum(one.moves for one in found)),
+                    f"{sum(one.ways for one in found):,}",
+                    str(sum(bool(one.differences) for one in found)),
+                    str(sum(bool(one.explained) for one in found)),
+                ]
+                for name, found in parts.items()
+            ],
+        ),
+        "",
+    ]
+    for heading, kind in (("Differences", "differences"), ("Differences with a reason", "explained")):
+        differ = [(name, one) for name, found in rows.items() for one in found if getattr(one, kind)]
+        lines += [f"## {heading}", ""] + ([] if differ else ["None.", ""])
+        for name, one in differ:
+            own = getattr(one, kind)
+            lines += [f"- {one.name if name == 'lattice' else name}: {'; '.join(own[:LISTED])}"]
+            if len(own) > LISTED:
+                lines[-1] += f"; {len(own) - LISTED} more"
+        lines += [""] * bool(differ)
+    return "\n".join(lines)

@@ -1,0 +1,72 @@
+"""How power closes along a cycle: a check of torque, loads and energies against each other.
+
+Source: docs/theory_forces.md, (7).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from sevenbar.arrays import Floats
+from sevenbar.curves.curve import mean
+from sevenbar.curves.cycle_series import ENOUGH, CycleSeries
+from sevenbar.curves.pieces import smooth_pieces
+from sevenbar.curves.stationary import nodes
+
+
+class Closing(NamedTuple):
+    """What is left of `total - dE/dx` at most, and of the mean of `total`, as parts of the peak."""
+
+    power: float
+    work: float
+
+
+def closing(
+    energy: Floats,
+    total: Floats,
+    drive: float,
+    *,
+    first: float,
+    period: float,
+    least: float = 0.0,
+    evaluate: Callable[[Floats], Floats] | None = None,
+) -> Closing:
+    """How well what is given over a cycle is the slope of the energy by the input x.
+
+    Rows (n,) are the energy E [J] and what is given in `total` [J by the input], of which `drive` is the peak
+    of the drive's part. A slope of `least` is rounding. Where the rows are too few, `evaluate` gives both
+    (m, 2) at any inputs (m,), and the slope is that of pieces.
+    """
+    slope = CycleSeries(energy, first, period).finer(1, 1)
+    if max(float(np.abs(slope).max()), drive) <= least:
+        return Closing(0.0, 0.0)
+    found = _closing(slope, total, drive, float(np.mean(total)))
+    if evaluate is None or max(found) <= ENOUGH:
+        return found
+    rows = np.stack([energy, total], axis=1)
+    # the slope is as large as what is given
+    units = np.array([np.abs(energy).max(), max(np.abs(total).max(), np.abs(slope).max())])
+    units[units == 0] = 1.0
+    own = smooth_pieces(lambda inputs: evaluate(inputs) / units, rows / units, first, period)
+    if own.tail > found.power:
+        return found
+    half = (own.ends - own.starts) / 2
+    slopes = chebyshev.chebder(own.series[:, :, 0], axis=1) / half[:, None]
+    given = units[1] * _values(own.series[:, :, 1])
+    finer = _closing(units[0] * _values(slopes), given, drive, units[1] * mean(own.part(1)))
+    return Closing(min(found.power, finer.power), min(found.work, finer.work))
+
+
+def _closing(slope: Floats, total: Floats, drive: float, gained: float) -> Closing:
+    peak = max(float(np.abs(slope).max()), drive)
+    left = float(np.abs(total - slope).max())
+    return Closing(left / peak if peak else 0.0, abs(gained) / drive if drive else 0.0)
+
+
+def _values(series: Floats) -> Floats:
+    """Series (pieces, terms) at the nodes of the pieces."""
+    return np.asarray(chebyshev.chebval(nodes(), series.T))

@@ -1,0 +1,305 @@
+"""Extremes along a circuit of what its rows have: the transmission angle, the output's velocity.
+
+They are searched between the rows of many even inputs, or, on a pass between two dead centres, along (7),
+in which everything is smooth: by the polynomial through exact poses about each row that is lower or higher
+than its neighbours, and about each end of such a pass.
+
+Source: docs/theory_measures.md, (7).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from sevenbar.arrays import Floats
+from sevenbar.curves.stationary import curve_through, nodes_between, real_roots
+from sevenbar.errors import RequestError
+from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.circuit_values import Extremes
+from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.circuits.poses import Walk, walk
+from sevenbar.kinematics.loop.law import Law
+from sevenbar.kinematics.transmission.angle import ALIKE, Angles, Coupling, angles_along, coupling_of
+from sevenbar.kinematics.transmission.axes import axes_along, best_row, ratios_at_rest
+from sevenbar.kinematics.transmission.closed import closed_extremes
+
+#: Rows in a turn between which extremes are searched, whatever the motion's samples; on a pass; and most.
+SAMPLES, ON_A_PASS, MANY = 360, 72, 19_440
+
+#: An angle [rad] below this is that of a dead centre of the input, known to the root of rounding.
+AT_DEAD_CENTRE = 1e-7
+
+#: Where u or w is a smaller part of what it could be an angle is left to the limit near by: it is known to
+#: 1e-11, and differs from the limit by 1e-10.
+NEAR_LIMIT = 1e-5
+
+#: A polynomial whose last terms are above this part of the greatest does not resolve its curve; rounds in
+#: which its bracket is narrowed to what lies about the least value.
+RESOLVED, ROUNDS = 1e-11, 12
+
+
+def transmission_extremes(linkage: Solvable, circuit: Circuit) -> Extremes | None:
+    """The lowest and highest transmission angle [rad] of a circuit; `None` where it is not defined.
+
+    Of four-bars and slider-cranks in closed form. Else they are at dead centres of the input, where it is 0
+    or has a limit, where it passes 0 at a change point, and where the derivative of (4) or (5) is zero.
+
+    Source: docs/theory_measures.md, (7).
+    """
+    coupling = coupling_of(linkage, circuit.input_column, circuit.output_column)
+    if coupling is None:
+        return None
+    circuit = _with_rows(linkage, circuit)
+    row = best_row(circuit)
+    if row is None:
+        return None
+    found = closed_extremes(coupling, axes_along(linkage, circuit, np.array([row])), circuit, row)
+    return found or _AngleSearch(linkage, circuit, circuit.q[row], coupling).extremes()
+
+
+def velocity_extremes(linkage: Solvable, circuit: Circuit) -> Extremes | None:
+    """Those of the output's velocity where the output rests at each dead centre of the input.
+
+    There it has a limit. `None` for a circuit with another dead centre, where it grows without bound.
+    """
+    circuit = _with_rows(linkage, circuit)
+    row = best_row(circuit)
+    if row is None or math.isnan(circuit.speed):
+        return None
+    return _VelocitySearch(linkage, circuit, circuit.q[row]).extremes()
+
+
+def _with_rows(linkage: Solvable, circuit: Circuit) -> Circuit:
+    """The circuit, at more inputs where it turns back before the next one of its rows."""
+    if best_row(circuit) is not None or not circuit.turns_back or math.isnan(circuit.speed):
+        return circuit
+    names = linkage.columns
+    first, second = names[circuit.input_column], names[circuit.output_column]
+    motion = linkage.motion(MANY, input=first, output=second, speed=circuit.speed)
+    return motion.circuits[circuit.index] if circuit.index < len(motion.circuits) else circuit
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """A search on the circuit through a pose (columns,), with the input and output of `like`."""
+
+    linkage: Solvable
+    like: Circuit
+    pose: Floats
+
+    def dense(self) -> Circuit:
+        """The circuit at so many inputs that every pass has rows enough."""
+        passes = [self.like.pass_range(int(number)) for number in np.unique(self.like.branch)]
+        ranges = [ends[1] - ends[0] for ends in passes if ends is not None and self.like.input_turns]
+        least = min((extent for extent in ranges if extent > 0), default=math.tau)
+        wanted = math.ceil(ON_A_PASS * math.tau / least)
+        return self.rows(min(max(SAMPLES, wanted), MANY))
+
+    def brackets(self, way: Walk, sizes: Floats) -> list[tuple[int, _Stretch, float, float]]:
+        """About each row of a walk where a size (n,) is lower or higher than its neighbours, and the ends."""
+        found: list[tuple[int, _Stretch, float, float]] = []
+        for number, part in enumerate(way.passes):
+            x, s = way.input[part], sizes[part]
+            if len(x) < 3:
+                continue
+            stretch = _Stretch.of(x, turns_back=len(way.passes) > 1)
+            if stretch.round and len(x) > 3:
+                # once more over the start, which may be an extreme itself
+                x, s = np.append(x, x[-1] + x[1] - x[0]), np.append(s, s[1])
+            u = stretch.place(x)
+            peaks = (s[1:-1] - s[:-2]) * (s[1:-1] - s[2:]) >= 0
+            if not stretch.round:
+                peaks[[0, -1]] = True
+            found += [(number, stretch, u[i], u[i + 2]) for i in np.flatnonzero(peaks)]
+        return found
+
+    def at(
+        self, values: Callable[[Circuit], Floats], passes: list[int], inputs: list[Floats]
+    ) -> list[Floats]:
+        """Values (n, ..) at inputs, each list of them on one of the passes; NaN where rows are missing."""
+        every = np.concatenate(inputs)
+        rows = self.rows(Law.of(np.arange(float(every.size)), every, 1.0, 0.0))
+        known = values(rows)
+        found, start = [], 0
+        for number, own in zip(passes, inputs, strict=True):
+            here = np.flatnonzero(rows.branch == number)
+            place = here[start : start + own.size] if here.size == every.size else np.array([], dtype=int)
+            start += own.size
+            found.append(known[place] if place.size else np.full((own.size, *known.shape[1:]), np.nan))
+        return found
+
+    def rows(self, how: int | Law) -> Circuit:
+        """The circuit through the pose at so many samples in a turn, or at the inputs of a law."""
+        names = self.linkage.columns
+        first, second = names[self.like.input_column], names[self.like.output_column]
+        samples, law = (SAMPLES, how) if isinstance(how, Law) else (how, None)
+        try:
+            return self.linkage.circuit(self.pose, samples, input=first, output=second, law=law)
+        except RequestError:
+            # through change points where the input may stand still, only the whole motion finds the way
+            motion = self.linkage.motion(samples, input=first, output=second, law=law, method="general")
+            return motion.circuits[self.like.index]
+
+
+@dataclass(frozen=True, eq=False)
+class _AngleSearch(_Search):
+    coupling: Coupling
+
+    def extremes(self) -> Extremes | None:
+        """The lowest and highest angle, with their inputs."""
+        rows = self.dense()
+        angle, made = angles_along(self.linkage, self.coupling, rows)
+        limits = rows.status == "dead-centre"
+        on_rows = limits | ~(made.share < NEAR_LIMIT)
+        found = list(zip(angle[on_rows], rows.input[on_rows], strict=True))
+        way = walk(rows)
+        found += self.between(way, np.sin(angle)[way.rows])
+        dead = [centre.input for centre in self.like.dead_centres if centre.kind == "input"]
+        # of a circuit of which no row is there, all that is known is that it is a dead centre
+        exact = [
+            (angle, x) for angle, x in zip(angle[limits], rows.input[limits], strict=True) if angle == 0.0
+        ]
+        if exact or (dead and not limits.any()):
+            # near them rounding leaves a little
+            ends = exact or [(0.0, x) for x in dead]
+            found = [one for one in found if one[0] > AT_DEAD_CENTRE] + ends
+        kept = [(float(angle), float(x)) for angle, x in found if math.isfinite(angle)]
+        if not kept:
+            return None
+        lowest, highest = min(kept)[0], max(kept)[0]
+        # of places alike up to rounding always the same one
+        lowest_at = min(x for angle, x in kept if angle <= lowest + ALIKE)
+        highest_at = max(x for angle, x in kept if angle >= highest - ALIKE)
+        if rows.goes_round and rows.input_turns:
+            # between the first row and the first again
+            start, whole = float(rows.input[0]), math.tau * rows.turns
+            lowest_at, highest_at = (start + (x - start) % whole for x in (lowest_at, highest_at))
+        return Extremes(lowest, lowest_at, highest, highest_at)
+
+    def between(self, way: Walk, sine: Floats) -> list[tuple[float, float]]:
+        """Angles and inputs where the sine (n,) along a walk is stationary, or passes zero."""
+        places: list[tuple[int, float]] = []
+        zeros: list[tuple[float, float]] = []
+        left = self.brackets(way, sine)
+        for _ in range(ROUNDS):
+            if not left:
+                break
+            nodes = [nodes_between(a, b) for _, _, a, b in left]
+            inputs = [one[1].input(u) for one, u in zip(left, nodes, strict=True)]
+            values = self.at(self.values, [number for number, *_ in left], inputs)
+            narrower = []
+            for (number, stretch, a, b), u, own in zip(left, nodes, values, strict=True):
+                sines, cosines, _ = own.T
+                if not np.isfinite(own).all():
+                    continue
+                # a right angle is a double zero of the sine's derivative, or a zero of the cosine
+                curves = [curve_through(v) for v in (sines, np.unwrap(np.arctan2(sines, cosines)), cosines)]
+                tail = np.abs(curves[0].coef[-2:]).max()
+                if tail > RESOLVED * np.abs(curves[0].coef).max():
+                    # the fold of a loop next to a change point is narrower than its bracket
+                    least = int(np.abs(sines).argmin())
+                    ends = u[min(least + 1, len(u) - 1)], u[max(least - 1, 0)]
+                    narrower.append((number, stretch, float(min(ends)), float(max(ends))))
+                passed = _passed(curves[0])
+                zeros += [(0.0, float(stretch.input((a + b) / 2 + (b - a) / 2 * root))) for root in passed]
+                for curve in (curves[0].deriv(), curves[1].deriv(), curves[2]):
+                    for root in real_roots(curve):
+                        places.append((number, float(stretch.input((a + b) / 2 + (b - a) / 2 * root))))
+            left = narrower
+        if not places:
+            return zeros
+        ends_at = [np.array([x]) for _, x in places]
+        known = self.at(self.values, [number for number, _ in places], ends_at)
+        return zeros + [
+            (math.atan2(abs(own[0, 0]), abs(own[0, 1])), x)
+            for (_, x), own in zip(places, known, strict=True)
+            if own[0, 2] >= NEAR_LIMIT
+        ]
+
+    def values(self, rows: Circuit) -> Floats:
+        """Sine, cosine and share on rows (n, 3)."""
+        found = Angles.of(self.coupling, axes_along(self.linkage, rows), rows.size)
+        return np.column_stack([found.sine, found.cosine, found.share])
+
+
+def _passed(curve: Chebyshev) -> Floats:
+    """Where a polynomial changes its sign in [-1, 1]."""
+    roots = np.unique(real_roots(curve))
+    if not roots.size:
+        return roots
+    between = curve(np.convolve([-1.0, *roots, 1.0], [0.5, 0.5], "valid"))
+    changes = between[:-1] * between[1:] < 0
+    return np.asarray(roots[changes & (np.abs(roots) < 1)])
+
+
+@dataclass(frozen=True, eq=False)
+class _VelocitySearch(_Search):
+    def extremes(self) -> Extremes | None:
+        """The lowest and highest velocity [rad/s, or length/s], with their inputs."""
+        rows = self.dense()
+        limits = ratios_at_rest(self.linkage, rows)
+        velocity = self.values(rows)[:, 0]
+        for row, ratio in limits.items():
+            velocity[row] = ratio * self.like.speed
+        dead = np.flatnonzero(rows.status == "dead-centre")
+        if not dead.size or not np.isfinite(velocity[dead]).all():
+            return None
+        found = list(zip(velocity, rows.input, strict=True))
+        way = walk(rows)
+        left = self.brackets(way, velocity[way.rows])
+        if left:
+            passes = [number for number, *_ in left]
+            inputs = [stretch.input(nodes_between(a, b)) for _, stretch, a, b in left]
+            places: list[tuple[int, float]] = []
+            for (number, stretch, a, b), own in zip(left, self.at(self.values, passes, inputs), strict=True):
+                if np.isfinite(own).all():
+                    roots = real_roots(curve_through(own[:, 0]).deriv())
+                    places += [(number, float(stretch.input((a + b) / 2 + (b - a) / 2 * r))) for r in roots]
+            if places:
+                known = self.at(self.values, [n for n, _ in places], [np.array([x]) for _, x in places])
+                found += [(own[0, 0], x) for (_, x), own in zip(places, known, strict=True) if own[0, 1]]
+        kept = [(float(value), float(x)) for value, x in found if math.isfinite(value)]
+        (lowest, lowest_at), (highest, highest_at) = min(kept), max(kept)
+        return Extremes(lowest, lowest_at, highest, highest_at)
+
+    def values(self, rows: Circuit) -> Floats:
+        """The output's velocity on rows, and whether a dead centre is far enough for its digits, (n, 2)."""
+        rates = rows.dq[:, self.like.output_column] / rows.dq[:, self.like.input_column]
+        ends = np.array([centre.input for centre in self.like.dead_centres])
+        far = np.abs(rows.input[:, None] - ends).min(axis=1) > NEAR_LIMIT**2 * np.ptp(ends)
+        return np.column_stack([rates * self.like.speed, far])
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """A pass by a place along it in which its curves are smooth.
+
+    That is the input itself; where the pass ends at dead centres, about which the pose changes with the root
+    of the input, an angle from 0 to pi.
+    """
+
+    middle: float
+    half: float
+    round: bool
+
+    @staticmethod
+    def of(inputs: Floats, *, turns_back: bool) -> _Stretch:
+        low, high = float(inputs.min()), float(inputs.max())
+        return _Stretch((low + high) / 2, (high - low) / 2, not turns_back)
+
+    def place(self, inputs: Floats) -> Floats:
+        """The places (n,) of inputs (n,)."""
+        if self.round:
+            return inputs
+        return np.asarray(np.arccos(np.clip((inputs - self.middle) / self.half, -1, 1)))
+
+    def input(self, places: Floats | float) -> Floats:
+        """The inputs (n,) of places (n,)."""
+        if self.round:
+            return np.asarray(places)
+        return np.asarray(self.middle + self.half * np.cos(places))

@@ -1,0 +1,34 @@
+"""Names that are code elsewhere: every file holds them as text, and pages that play run nothing of them."""
+
+from pathlib import Path
+
+import pytest
+
+from evidence.fuzz.names import NAMES, REFUSED, linkage_of, page_of, written, wrong_on
+from sevenbar.errors import DescriptionError
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_is_not_printed_is_no_name(name: str) -> None:
+    with pytest.raises(DescriptionError, match="is not a name"):
+        linkage_of(name)
+
+
+def test_each_name_is_text_in_a_page_that_plays(tmp_path: Path) -> None:
+    assert len(set(NAMES)) >= 40
+    for number, name in enumerate(NAMES):
+        (tmp_path / str(number)).mkdir()
+        page_of(name, tmp_path / str(number))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["<svg onload=alert(1)>", "]]>", "=cmd|'/C calc'!A0", "../../x", "联杆“”"])
+def test_a_name_is_text_in_every_file(name: str, tmp_path: Path) -> None:
+    kinds = [kind for kind, _ in written(name, tmp_path, slow=False)]
+    assert {"csv", "xlsx", "json", "mat", "urdf", "cmd", "toml", "svg", "html"} <= set(kinds)
+
+
+def test_pages_that_play_open_no_dialog_and_play(chromium, tmp_path: Path) -> None:
+    for number, name in enumerate(NAMES):
+        (tmp_path / str(number)).mkdir()
+        assert wrong_on(chromium, page_of(name, tmp_path / str(number))) == [], name

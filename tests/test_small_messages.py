@@ -1,0 +1,103 @@
+"""What people type first and nearly right: each is taken, or answered with what to write."""
+
+import importlib
+
+import numpy as np
+import pytest
+
+import sevenbar as sb
+from commands import mistake
+from sevenbar.errors import RequestError
+
+
+def test_public_modules_are_imported_by_their_public_names():
+    from sevenbar.plot import curves
+    from sevenbar.report import markdown
+
+    assert curves is sb.plot.curves
+    assert markdown is sb.report.markdown
+    for name in ("animate", "gallery", "plot", "report"):
+        module = importlib.import_module(f"sevenbar.{name}")
+        assert module is getattr(sb, name)
+        assert module.__spec__.name == module.__name__
+    with pytest.raises(ModuleNotFoundError):
+        importlib.import_module("sevenbar.plots")
+
+
+def test_points_of_planar_families_lie_along_their_links():
+    motion = sb.slider_crank(
+        125, 500, speed="600 rpm", points={"G": (2, (225, 0)), "P": (1, ("5 cm", 3))}
+    ).motion()
+    pose = motion[0].at("45 deg")
+    assert np.allclose(pose.points["G"].position[0, :2], [309.8448, 48.6136], atol=1e-3)
+    assert np.linalg.norm(pose.points["G"].velocity) == pytest.approx(6734.937, abs=1e-3)
+    assert np.allclose(pose.points["P"].position[0], [47 / 2**0.5, 53 / 2**0.5, 0])
+    offset = sb.slider_crank(40, 140, 10, points={"G": (2, (140, 0)), "S": (3, (0, 0))}).motion()[0]
+    for name in ("G", "S"):
+        assert np.allclose(offset.point(name).position, offset.point("pin").position)
+    bar = sb.four_bar(40, 100, 80, 90, points={"C": (2, (50, 30)), "B": (2, (100, 0))}).motion()[0]
+    assert np.allclose(bar.point("C").position, bar.point(2, at=(0, 50, 30)).position)
+    assert np.allclose(np.linalg.norm(bar.point("B").position - [90, 0, 0], axis=1), 80)
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ((2, 50), r"points.C: \(2, 50\) is no point; give \(link, \(u, v\)\)"),
+        ((4, (50, 0)), r"points.C: 4 is not a link; give 1 to 3"),
+        ((2, (50, 0, 0)), r"points.C: \(50, 0, 0\) is no place in the plane"),
+    ],
+)
+def test_a_point_that_is_none_is_refused(given, says):
+    for family in (sb.four_bar, sb.slider_crank):
+        with pytest.raises(RequestError, match=says):
+            family(*([2, 3, 4, 4] if family is sb.four_bar else [2, 5]), points={"C": given})
+
+
+def test_a_dash_in_a_sweep_is_no_range(tmp_path):
+    said = mistake("sweep", "rssr", "--over", "L1=100-400", "--measure", "swing", "-o", str(tmp_path / "s"))
+    assert said == (
+        "over: 'L1=100-400' is 100 less 400; a range is written L1=100..400, or L1=100:400:31 for 31 values of it"
+    )
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_map_needs_no_count():
+    said = mistake("map", "rssr", "--over", "L1=100:400:61", "--over", "L3=300:800", "--measure", "swing")
+    assert said == "over: L1: '100:400:61' has a count, and a map needs none; give 100:400"
+
+
+@pytest.mark.parametrize(("unit", "meant"), [("Hz", "rev/s"), ("U/min", "rpm"), ("1/min", "rpm")])
+def test_other_words_for_speeds_are_known(unit, meant):
+    with pytest.raises(RequestError, match=f"did you mean '{meant}'"):
+        sb.load("rssr").motion(speed=f"2 {unit}")
+
+
+def test_zero_needs_no_unit():
+    linkage = sb.from_dh("RRRR", length=[2, 1, 2, 1], twist=["0", "0 deg", "0", "0"], offset=[0] * 4)
+    assert linkage.is_planar
+    with pytest.raises(RequestError, match=r"'30' has no unit"):
+        sb.from_dh("RRRR", length=[2, 1, 2, 1], twist=["30", "0", "0", "0"], offset=[0] * 4)
+
+
+def test_free_motion_of_nothing_shows_what_to_write():
+    assert "[[body]]" in mistake("free", "rssr")
+    assert mistake("simulate", "rssr", "--engine", "adams").endswith("as in --to adams")
+
+
+def test_a_planar_four_bar_has_its_lengths_and_other_loops_none():
+    assert sb.four_bar(2, 1, 2, 1).lengths == (2.0, 1.0, 2.0)
+    turned = sb.load("planar_4r")
+    bar = turned.as_four_bar().links
+    assert turned.lengths == (bar["input link"], bar["coupler"], bar["output link"])
+    with pytest.raises(sb.errors.NotCoveredError):
+        sb.load("seven_r").lengths  # noqa: B018
+
+
+def test_a_column_that_is_not_read_is_named_where_a_kind_lacks(tmp_path):
+    table = tmp_path / "loop.csv"
+    rows = [f"{name};R;{x};0;0;0;0;1" for x, name in enumerate("abcd")]
+    table.write_text("\n".join(["name;Typ;x [mm];y [mm];z [mm];ax;ay;az", *rows]), encoding="utf-8")
+    assert "in a column 'kind'; not read: 'Typ'" in mistake("analyze", str(table))
+    table.write_text("a_(i-1),alpha_(i-1),d_i,theta_i\n0,0,0,0\n1,0,0,0\n", encoding="utf-8")
+    assert "modified (Craig's) Denavit-Hartenberg rows" in mistake("analyze", str(table))
