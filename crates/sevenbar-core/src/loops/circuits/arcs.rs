@@ -5,6 +5,7 @@ use super::curve::{Curve, End, Node, measure};
 use super::follow::{self, Start, Stop};
 use super::on_curve::lies_on;
 use super::turnings::begun_at;
+use super::walked_again;
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, Columns, length, singular_values};
 use std::f64::consts::TAU;
@@ -145,7 +146,7 @@ impl Arcs {
             for (&(p, r), curve) in rays.iter().zip(&mut followed) {
                 let start = self.points[p].rays[r].start;
                 let mut patience = self.patience;
-                follow::follow_on(chain, start, curve, &mut patience, &mut |curve| {
+                walked_again::follow_on(chain, start, curve, &mut patience, &mut |curve| {
                     let mut all = true;
                     for end in curve.singular_ends() {
                         all &= self.learn(chain, end, wished, true).is_some();
@@ -268,7 +269,7 @@ impl Arcs {
         let mut why = [End::Closed; 2];
         for (n, &(k, entered)) in row.iter().enumerate() {
             let arc = &self.arcs[k];
-            let turned = (entered == 1).then(|| follow::turned_round(chain, &arc.curve, stops));
+            let turned = (entered == 1).then(|| walked_again::turned_round(chain, &arc.curve, stops));
             let curve = turned.as_ref().unwrap_or(&arc.curve);
             let turns = nodes
                 .last()

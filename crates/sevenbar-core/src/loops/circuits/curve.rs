@@ -462,28 +462,6 @@ pub(super) fn farthest_turn(chain: &Chain, a: &Configuration, b: &Configuration)
     })
 }
 
-/// The same nodes in the other direction, if the argument holds for each step that way too.
-pub(crate) fn reversed(chain: &Chain, curve: &Curve) -> Option<Curve> {
-    let (first, last) = (&curve.nodes[0], curve.nodes.last()?);
-    let mut nodes: Vec<Node> = curve.nodes.iter().rev().copied().collect();
-    for node in &mut nodes {
-        for order in [0, 2] {
-            node.rates[order] = node.rates[order].map(|x| -x);
-        }
-        if curve.is_closed() {
-            for c in 0..COLUMNS {
-                node.at.values[c] -= last.at.values[c] - first.at.values[c];
-            }
-        }
-    }
-    measure(chain, &mut nodes);
-    let certain = |pair: &[Node]| passes_through(chain, &pair[0], &pair[1].at).is_some();
-    nodes
-        .windows(2)
-        .all(certain)
-        .then_some(Curve { nodes, why: [curve.why[1], curve.why[0]] })
-}
-
 /// Whether a closed configuration lies in the tube of a node's step: it is then a place of the curve.
 pub(crate) fn passes_through(chain: &Chain, node: &Node, at: &Configuration) -> Option<f64> {
     let off = chain.difference(&node.at, at);

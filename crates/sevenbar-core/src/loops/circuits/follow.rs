@@ -21,12 +21,8 @@ const MOST_PIECE_NODES: usize = 5_000;
 
 /// Steps in a row, each to a greater norm of the screws' inverse beyond the second number, after which a curve is followed no farther until
 /// the place that it runs into has been searched for. Where curves cross they are some hundred; where they touch, as many more as it is nearer.
-const MOST_NARROWING: usize = 1_000;
+pub(super) const MOST_NARROWING: usize = 1_000;
 const NARROWING: f64 = 1e4;
-
-/// Where that place was not found, a curve is followed by so many times as many steps, up to the second number.
-const MORE_NARROWING: usize = 4;
-const MOST_NARROWING_AT_ALL: usize = 16_000;
 
 /// Nearer to a change point than this [rad, or relative to the size] steps are not counted: it is what the curve runs into.
 const NEAR_STOP: f64 = 0.1;
@@ -49,7 +45,7 @@ pub(crate) struct Stop {
 
 /// How far curves are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Until {
+pub(super) enum Until {
     /// Until they come back, or end.
     End,
     /// The same, or until so many steps in a row lead to where they are shorter.
@@ -69,31 +65,7 @@ pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Cur
     follow_until(chain, starts, stops, until)
 }
 
-/// Follows a curve again that nears a place so slowly that it was left, farther each time, until `search` finds that place or it ends;
-/// `patience` is how many more may be followed so in vain.
-pub(super) fn follow_on(
-    chain: &Chain,
-    start: Start,
-    curve: &mut Curve,
-    patience: &mut usize,
-    search: &mut dyn FnMut(&Curve) -> (bool, Vec<Stop>),
-) -> bool {
-    let mut most = MOST_NARROWING;
-    loop {
-        let (found, stops) = search(curve);
-        if found || !curve.ends_by(End::Narrow) || *patience == 0 {
-            return found;
-        }
-        if most >= MOST_NARROWING_AT_ALL {
-            *patience -= 1;
-            return found;
-        }
-        most *= MORE_NARROWING;
-        *curve = follow_until(chain, &[start], &stops, Until::Narrow(most)).swap_remove(0);
-    }
-}
-
-fn follow_until(chain: &Chain, starts: &[Start], stops: &[Stop], until: Until) -> Vec<Curve> {
+pub(super) fn follow_until(chain: &Chain, starts: &[Start], stops: &[Stop], until: Until) -> Vec<Curve> {
     let mut curves = walk_until(chain, starts, stops, until).0;
     let open: Vec<usize> = (0..curves.len())
         .filter(|&k| !curves[k].is_closed() && !curves[k].ends_by(End::Open))
@@ -118,7 +90,7 @@ pub(super) fn is_endless(chain: &Chain, curve: &Curve) -> bool {
 }
 
 /// A walk from an end, with the reason of that end.
-fn begun_for(why: End, mut walked: Curve) -> Curve {
+pub(super) fn begun_for(why: End, mut walked: Curve) -> Curve {
     if !walked.is_closed() {
         walked.why[0] = why;
     }
@@ -133,21 +105,12 @@ pub(super) fn is_far(chain: &Chain, at: &Configuration) -> bool {
     chain.joints.iter().zip(&chain.first).any(far)
 }
 
-/// The curve walked the other way: its own nodes where each step is certain that way too.
-pub(crate) fn turned_round(chain: &Chain, curve: &Curve, stops: &[Stop]) -> Curve {
-    curve::reversed(chain, curve).unwrap_or_else(|| {
-        let (mut back, _) = walk_until(chain, &[back_from_end(curve)], stops, Until::End);
-        let back = back.swap_remove(0);
-        begun_for(curve.why[1], back)
-    })
-}
-
 /// Each motion until it comes to the next of the starts, its own or another, and which that is.
 pub(super) fn pieces(chain: &Chain, starts: &[Start]) -> (Vec<Curve>, Vec<Option<usize>>) {
     walk_until(chain, starts, &[], Until::Start)
 }
 
-fn walk_until(
+pub(super) fn walk_until(
     chain: &Chain,
     starts: &[Start],
     stops: &[Stop],
@@ -193,7 +156,7 @@ fn returned(chain: &Chain, first: &Node, from: &Node) -> Option<(f64, Node)> {
     Some((along, end))
 }
 
-fn back_from_end(curve: &Curve) -> Start {
+pub(super) fn back_from_end(curve: &Curve) -> Start {
     let last = &curve.nodes[curve.nodes.len() - 1];
     (last.at, last.rates[0].map(|t| -t))
 }

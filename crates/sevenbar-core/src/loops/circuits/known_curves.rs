@@ -6,6 +6,7 @@ use super::curve::{Curve, End, Node};
 use super::follow::{self, Start};
 use super::found::{Found, Search};
 use super::on_curve::{lies_on, lies_on_any, not_on_any, place_on};
+use super::walked_again;
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, dot, length, singular_values};
 use crate::loops::mobility::rank::{rank, unyielding};
@@ -90,7 +91,7 @@ impl Curves {
     fn taken_ahead(&mut self, chain: &Chain, which: usize, backwards: bool) -> Curve {
         let curve = self.ahead.swap_remove(which);
         if backwards {
-            follow::turned_round(chain, &curve, &[])
+            walked_again::turned_round(chain, &curve, &[])
         } else {
             curve
         }
@@ -271,7 +272,7 @@ impl Curves {
             }
             // one that could not be begun may lie on a curve that can be followed
             let mut patience = self.arcs.patience;
-            let branches = follow::follow_on(chain, *start, &mut curve, &mut patience, &mut |curve| {
+            let branches = walked_again::follow_on(chain, *start, &mut curve, &mut patience, &mut |curve| {
                 (self.led_to(chain, curve), self.arcs.stops())
             });
             self.arcs.patience = self.arcs.patience.min(patience);
