@@ -21,6 +21,10 @@ const MOST_FAILED: usize = 16;
 /// Of poses at which curves coincide, or on a surface, no more than so many are searched: every pose near by is like them.
 const MOST_ALIKE: usize = 64;
 
+/// Curves with too many nodes after which nothing is followed any more: on what is nearly a surface of poses each leads to another such
+/// curve, and each takes a second.
+const MOST_ENDLESS: usize = 2;
+
 /// Curves that near a place ever more slowly are followed farther until so many led to none.
 const MOST_PATIENCE: usize = 4;
 
@@ -52,6 +56,9 @@ pub(crate) struct Arcs {
     alike: usize,
     /// How many more curves may be followed to where they end however slowly they near it.
     pub patience: usize,
+    /// Curves with too many nodes so far, in the arcs or not, be they kept or not; and arcs that were dropped as there are enough.
+    pub endless: usize,
+    dropped: usize,
     /// How many of the points the arcs end at, where they come by.
     respected: usize,
     /// The most freedoms with which the loop moves out of a pose that was looked at.
@@ -68,6 +75,8 @@ impl Arcs {
             failed: Vec::new(),
             alike: 0,
             patience: MOST_PATIENCE,
+            endless: 0,
+            dropped: 0,
             respected: 0,
             finite: 0,
         }
@@ -86,6 +95,16 @@ impl Arcs {
     /// Whether there is any motion out of the points.
     pub fn is_empty(&self) -> bool {
         self.arcs.is_empty()
+    }
+
+    /// Whether so many curves have no end that nothing more is followed.
+    pub fn is_endless(&self) -> bool {
+        self.endless >= MOST_ENDLESS
+    }
+
+    /// How many ways out of the points were not followed, as curves have no end.
+    pub fn not_followed(&self) -> usize {
+        self.dropped + self.done.iter().flatten().filter(|done| !**done).count()
     }
 
     pub fn stops(&self) -> Vec<Stop> {
@@ -137,7 +156,7 @@ impl Arcs {
                 .flat_map(|p| (0..self.done[p].len()).map(move |r| (p, r)))
                 .filter(|&(p, r)| !self.done[p][r])
                 .collect();
-            if rays.is_empty() {
+            if rays.is_empty() || self.is_endless() {
                 break;
             }
             let starts: Vec<Start> = rays.iter().map(|&(p, r)| self.points[p].rays[r].start).collect();
@@ -170,6 +189,13 @@ impl Arcs {
     fn take(&mut self, chain: &Chain, (point, ray): Ray, curve: Curve, passing: &mut Vec<Curve>) {
         if std::mem::replace(&mut self.done[point][ray], true) {
             return;
+        }
+        if follow::is_endless(chain, &curve) {
+            if self.is_endless() {
+                self.dropped += 1;
+                return;
+            }
+            self.endless += 1;
         }
         if curve.is_closed() {
             passing.push(curve);

@@ -25,10 +25,6 @@ const NARROW: f64 = 1e-5;
 const SHARP: f64 = 1e4;
 const BESIDE_BEND: f64 = 30.0;
 
-/// Curves with too many nodes after which no mode is followed any more: on what is nearly a surface of poses each leads to another such
-/// curve, and each takes a second.
-const MOST_ENDLESS: usize = 2;
-
 /// All curves of a chain.
 pub(crate) struct Curves {
     pub curves: Vec<Curve>,
@@ -40,8 +36,6 @@ pub(crate) struct Curves {
     /// Modes at sharp bends, left for the last; and whether they are followed now.
     unfollowed: Vec<Configuration>,
     pub last: bool,
-    /// Curves with too many nodes so far, be they kept or not.
-    endless: usize,
     /// Columns whose limits say what is a change point.
     pub wished: Vec<usize>,
     /// Curves through some of the modes to come.
@@ -58,7 +52,6 @@ impl Curves {
             arcs: Arcs::new(),
             unfollowed: Vec::new(),
             last: false,
-            endless: 0,
             wished: wished.to_vec(),
             ahead: Vec::new(),
         }
@@ -106,7 +99,7 @@ impl Curves {
 
     /// Follows what leads out of a pose at which the motion may not be smooth; returns whether it is a change point or isolated.
     pub fn branches(&mut self, chain: &Chain, pose: &Configuration, stuck: bool) -> bool {
-        if self.arcs.learn(chain, pose, &self.wished, stuck).is_none() {
+        if self.arcs.is_endless() || self.arcs.learn(chain, pose, &self.wished, stuck).is_none() {
             return false;
         }
         let passing = self.arcs.complete(chain, &self.wished);
@@ -135,6 +128,7 @@ impl Curves {
         self.forget_parts(chain);
         self.change_points = std::mem::take(&mut self.arcs.points);
         self.search.unfollowed += self.change_points.iter().map(|p| p.lost).sum::<usize>();
+        self.search.unfollowed += self.arcs.not_followed();
         self.name_ends(chain);
         let finite = if self.curves.is_empty() {
             self.arcs.finite
@@ -233,7 +227,7 @@ impl Curves {
                 }
                 continue;
             }
-            if foreseen.is_none() && self.endless >= MOST_ENDLESS {
+            if foreseen.is_none() && self.arcs.is_endless() {
                 self.search.unfollowed += 1;
                 continue;
             }
@@ -262,7 +256,7 @@ impl Curves {
                 unreachable!()
             };
             let known_endless = follow::is_endless(chain, &curve);
-            self.endless += usize::from(known_endless);
+            self.arcs.endless += usize::from(known_endless);
             // two modes may lie on one circuit
             if lies_on_any(chain, &fresh, &start.0)
                 || lies_on_any(chain, &fresh, curve.plainest())
@@ -276,7 +270,7 @@ impl Curves {
                 (self.led_to(chain, curve), self.arcs.stops())
             });
             self.arcs.patience = self.arcs.patience.min(patience);
-            self.endless += usize::from(!known_endless && follow::is_endless(chain, &curve));
+            self.arcs.endless += usize::from(!known_endless && follow::is_endless(chain, &curve));
             let stuck = curve.is_stuck() && curve.nodes.len() > 2;
             // a way into a change point that none of its ways out leads back is kept as it is
             let held = |at: &Configuration| self.arcs.hold(chain, at);
