@@ -524,3 +524,67 @@ def test_an_output_that_rests_has_one_place_and_not_a_range() -> None:
     words = repr(sb.slider_crank(40, 40).motion(24))
     assert "slider [mm] at rest at -80" in words
     assert "slider [mm] -160 to 0" in words
+
+
+#: Axes of a 7R on whole numbers: places and directions. Three circuits cross in six poses, and two touch in a seventh.
+WHOLE = (
+    ((2, -1, 2), (0, 1, 0)), ((1, 0, 1), (1, 0, 0)), ((-1, 2, 0), (0, 1, 0)), ((0, 0, 0), (1, 0, 0)),
+    ((-2, -2, -1), (0, 1, 0)), ((-2, -1, 1), (0, 1, 0)), ((-1, 1, -2), (0, 1, 1)),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("written", ["as drawn", "mirrored", "turned"])
+def test_circuits_that_touch_do_not_break_off_in_any_frame(written: str) -> None:
+    frame = np.eye(3)
+    if written == "mirrored":
+        frame = np.diag([-1.0, 1.0, 1.0])
+    elif written == "turned":
+        frame = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
+    joints = [
+        {"kind": "R", "at": (frame @ at).tolist(), "axis": (frame @ axis).tolist()} for at, axis in WHOLE
+    ]
+    motion = sb.from_axes(joints).motion(36)
+    assert len(motion.limits) == 28
+    assert (motion.completeness, motion.search.unfollowed) == ("counted", 0)
+    assert all(circuit.closed for circuit in motion)
+    assert [point.ways for point in motion.change_points] == [4] * 7
+
+
+def test_a_circuit_runs_on_where_a_ball_crosses_the_last_axis() -> None:
+    up, along = [0, 0, 1], [1, 0, 0]
+    turns = [((1, 1, 2), up), ((-1, -1, -2), up), ((1, -2, 2), up), ((2, 0, 0), along)]
+    joints = [{"kind": "R", "at": list(at), "axis": axis} for at, axis in turns]
+    joints.insert(2, {"kind": "S", "at": [0, 0, 0]})
+    motion = sb.from_axes(joints).motion()
+    ranges = sorted(np.degrees(circuit.input_range).tolist() for circuit in motion)
+    expected = [[-32.4919, 29.1403], [60.8597, 122.4919], [85.1392, 364.8608]]
+    assert np.allclose(ranges, expected, atol=1e-3)
+    assert all(circuit.closed for circuit in motion)
+    assert len(motion.change_points) == 4
+    # the ball may also stay on the axis while the last joint spins: that is not followed, and said
+    assert motion.search.unfollowed > 0
+
+
+def test_rows_of_whole_numbers_whose_circuits_touch_are_counted() -> None:
+    motion = sb.from_dh(
+        "R" * 7,
+        length=[1, 0, 1, 1, 1, 1, 1],
+        twist=[radians(t) for t in (45, 90, 90, -90, 90, 45, 45)],
+        offset=[1, 1, 0, 0, 0, 0, 0],
+    ).motion(36)
+    assert motion.motion_type == "change-point"
+    assert motion.completeness == "counted"
+    assert all(circuit.closed for circuit in motion)
+    assert [point.ways for point in motion.change_points] == [4]
+
+
+def test_a_circuit_that_is_not_known_to_close_ends_in_a_change_point() -> None:
+    motion = sb.from_dh(
+        "R" * 7,
+        length=[1, 2, 1, 0, 1, 1, 0],
+        twist=[radians(t) for t in (90, -90, 90, 90, 0, 90, 90)],
+        offset=[1, 0, 0, 0, 1, 0, 0],
+    ).motion(36)
+    assert motion.completeness != "counted"
+    passing = {number for point in motion.change_points for number in point.circuits}
+    assert {circuit.index for circuit in motion if not circuit.closed} <= passing

@@ -27,7 +27,7 @@ loops::forces: acting stations reactions
 loops::description: spun spin_axis reduce described_loop joint_values
 loops::modes: phases continuation straight circle poles geometry starts chain_closure polish many_starts curves_at_input finder assembly
 loops::branch_points: locating other_input afar survey sectors counting
-loops::circuits: curve follow on_curve turnings join meetings change_points arcs found known_curves search
+loops::circuits: curve follow walked_again on_curve turnings join meetings sphere change_points arcs found known_curves search
 loops::motions: row row_lanes passes extremes rows circuit motion measures
 loops
 """

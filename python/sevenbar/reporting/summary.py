@@ -231,7 +231,12 @@ def _comparison(motion: Motion, reported: Sequence[Reported]) -> Sheet:
     heads = (say("circuit"), *(quantity.head for quantity, _ in reported))
     notes = []
     if any(quantity.role.endswith("range") for quantity, _ in reported):
-        notes.append(say("the ends of a range are dead centres"))
+        closed = all(circuit.closed for circuit in motion)
+        notes.append(
+            say("the ends of a range are dead centres")
+            if closed
+            else say("the ends of a range are dead centres where the circuit closes")
+        )
     if len(rows) < len(motion.circuits):
         notes.append(say("circuits that agree in all of this share a row"))
     return Sheet(heads, rows, frozenset({0}), say("; ").join(notes))

@@ -1,8 +1,8 @@
 //! The numerical work on loops with known answers.
 
 use crate::loops::circuits::curve::{self, Curve};
-use crate::loops::circuits::follow;
 use crate::loops::circuits::join;
+use crate::loops::circuits::{follow, walked_again};
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
 use crate::loops::equation::dense::{Columns, singular_values};
 use crate::loops::equation::rotations::{rotation, squared_up};
@@ -256,7 +256,7 @@ fn curves_joined_from_pieces_are_those_followed_whole_in_either_direction() {
             compared += 1;
             let gained =
                 |c: &Curve, k: usize| c.nodes[c.nodes.len() - 1].at.values[k] - c.nodes[0].at.values[k];
-            let other = curve::reversed(chain, through[0]).unwrap();
+            let other = walked_again::reversed(chain, through[0]).unwrap();
             let sign = if (0..7).all(|k| (gained(&whole, k) - gained(through[0], k)).abs() < 1e-9) {
                 1.0
             } else {

@@ -190,7 +190,7 @@ impl Account<'_> {
         }
         let between = |at: &f64| within(*at, a.angle, b.angle);
         let known = self.known.simple().filter(|at| between(at)).count() as i64;
-        let singular = 2 * self.known.singular.iter().filter(|at| between(at)).count() as i64;
+        let singular = self.known.singular.iter().filter(|at| between(at)).count() as i64;
         let complex = self.located.iter().filter(|b| !b.real);
         let complex = complex
             .filter(|p| between(&p.tau.re) && p.tau.im.abs() < a.height)

@@ -33,7 +33,7 @@ pub(crate) struct Known {
     pub dead_centres: Vec<f64>,
     /// Where a curve meets one that exists only in the closure with added joints.
     pub meetings: Vec<f64>,
-    /// Change points and isolated poses: two zeros each.
+    /// Change points and isolated poses, each as often as it has zeros.
     pub singular: Vec<f64>,
 }
 

@@ -5,8 +5,9 @@ use super::curve::{Curve, End, Node, measure};
 use super::follow::{self, Start, Stop};
 use super::on_curve::lies_on;
 use super::turnings::begun_at;
+use super::walked_again;
 use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, Columns, length};
+use crate::loops::equation::dense::{COLUMNS, Columns, length, singular_values};
 use std::f64::consts::TAU;
 
 /// Rounds of arcs that lead to further change points; the curves of a linkage pass a few.
@@ -17,8 +18,18 @@ const MOST_ROUNDS: usize = 32;
 const TRIED: f64 = 1e-3;
 const MOST_FAILED: usize = 16;
 
-/// After so many poses on motions along which a constraint is met twice over the others are taken to be on such motions, too.
-const MOST_ON_DOUBLE: usize = 4;
+/// Of poses at which curves coincide, or on a surface, no more than so many are searched: every pose near by is like them.
+const MOST_ALIKE: usize = 64;
+
+/// Curves with too many nodes after which nothing is followed any more: on what is nearly a surface of poses each leads to another such
+/// curve, and each takes a second.
+const MOST_ENDLESS: usize = 2;
+
+/// Curves that near a place ever more slowly are followed farther until so many led to none.
+const MOST_PATIENCE: usize = 4;
+
+/// Norm of the screws' inverse at a pose beyond which none is nearer to a change point.
+const BLIND: f64 = 1e6;
 
 /// Norm of the screws' inverse from which a place may lie beside a change point.
 const NARROW: f64 = 1e4;
@@ -34,7 +45,6 @@ struct Arc {
 }
 
 /// Change points and the arcs between them.
-#[derive(Default)]
 pub(crate) struct Arcs {
     pub points: Vec<ChangePoint>,
     arcs: Vec<Arc>,
@@ -42,20 +52,39 @@ pub(crate) struct Arcs {
     done: Vec<Vec<bool>>,
     /// Where walks ended and there is none.
     failed: Vec<Configuration>,
+    /// How many poses were searched about which every pose is like them.
+    alike: usize,
+    /// How many more curves may be followed to where they end however slowly they near it.
+    pub patience: usize,
+    /// Curves with too many nodes so far, in the arcs or not, be they kept or not; and arcs that were dropped as there are enough.
+    pub endless: usize,
+    dropped: usize,
     /// How many of the points the arcs end at, where they come by.
     respected: usize,
-    /// Poses on motions along which a constraint is met twice over.
-    on_double: usize,
     /// The most freedoms with which the loop moves out of a pose that was looked at.
     pub finite: usize,
 }
 
 impl Arcs {
+    /// None yet.
+    pub fn new() -> Self {
+        Self {
+            points: Vec::new(),
+            arcs: Vec::new(),
+            done: Vec::new(),
+            failed: Vec::new(),
+            alike: 0,
+            patience: MOST_PATIENCE,
+            endless: 0,
+            dropped: 0,
+            respected: 0,
+            finite: 0,
+        }
+    }
+
     /// The change point that a pose is at.
     pub fn at(&self, chain: &Chain, pose: &Configuration) -> Option<usize> {
-        self.points
-            .iter()
-            .position(|p| length(&chain.difference(&p.at, pose)) < AT_POINT * p.cut)
+        self.points.iter().position(|p| p.is_at(chain, pose))
     }
 
     /// Whether a mode is a place of an arc, or one of the points.
@@ -66,6 +95,16 @@ impl Arcs {
     /// Whether there is any motion out of the points.
     pub fn is_empty(&self) -> bool {
         self.arcs.is_empty()
+    }
+
+    /// Whether so many curves have no end that nothing more is followed.
+    pub fn is_endless(&self) -> bool {
+        self.endless >= MOST_ENDLESS
+    }
+
+    /// How many ways out of the points were not followed, as curves have no end.
+    pub fn not_followed(&self) -> usize {
+        self.dropped + self.done.iter().flatten().filter(|done| !**done).count()
     }
 
     pub fn stops(&self) -> Vec<Stop> {
@@ -84,22 +123,20 @@ impl Arcs {
             return Some(known);
         }
         let tried = |at: &Configuration| length(&chain.difference(at, pose)) < TRIED;
-        if self.failed.len() >= MOST_FAILED
-            || self.on_double >= MOST_ON_DOUBLE
-            || self.failed.iter().any(tried)
-        {
+        let degenerate = self.failed.len() >= MOST_FAILED || (self.alike >= MOST_ALIKE && !stuck);
+        if degenerate || self.failed.iter().any(tried) {
             return None;
         }
         let Some(found) = change_points::change_point(chain, pose, wished, stuck) else {
-            if stuck {
+            if stuck && is_blind(chain, pose) {
                 self.failed.push(*pose);
             }
             return None;
         };
         self.finite = self.finite.max(found.finite);
-        self.on_double += usize::from(found.is_on_double);
-        // on a surface every pose is like this one, and on a motion along which a constraint is met twice over
-        if (found.finite > 1 || found.is_on_double) && found.rays.is_empty() {
+        // on a surface every pose is like this one, and where curves coincide
+        if found.rays.is_empty() && (found.finite > 1 || found.lost > 0) {
+            self.alike += 1;
             return None;
         }
         if let Some(known) = self.at(chain, &found.at) {
@@ -119,19 +156,29 @@ impl Arcs {
                 .flat_map(|p| (0..self.done[p].len()).map(move |r| (p, r)))
                 .filter(|&(p, r)| !self.done[p][r])
                 .collect();
-            if rays.is_empty() {
+            if rays.is_empty() || self.is_endless() {
                 break;
             }
             let starts: Vec<Start> = rays.iter().map(|&(p, r)| self.points[p].rays[r].start).collect();
-            let followed = follow::follow(chain, &starts, &self.stops());
+            let mut followed = follow::follow(chain, &starts, &self.stops());
             let count = self.points.len();
-            for end in followed.iter().flat_map(Curve::singular_ends) {
-                self.learn(chain, end, wished, true);
+            for (&(p, r), curve) in rays.iter().zip(&mut followed) {
+                let start = self.points[p].rays[r].start;
+                let mut patience = self.patience;
+                walked_again::follow_on(chain, start, curve, &mut patience, &mut |curve| {
+                    let mut all = true;
+                    for end in curve.singular_ends() {
+                        all &= self.learn(chain, end, wished, true).is_some();
+                    }
+                    (all, self.stops())
+                });
+                self.patience = patience;
             }
-            // those that come by the points that they have led to are followed once more, to end there
+            // those that come by the points that they have led to, or towards them, are followed once more, to end there
             let fresh = self.stops().split_off(count);
             for (ray, curve) in rays.into_iter().zip(followed) {
-                if !curve.nodes.iter().any(|n| is_at(chain, n, &fresh)) {
+                let towards = !fresh.is_empty() && curve.ends_by(End::Narrow);
+                if !towards && !curve.nodes.iter().any(|n| is_at(chain, n, &fresh)) {
                     self.take(chain, ray, curve, &mut passing);
                 }
             }
@@ -142,6 +189,13 @@ impl Arcs {
     fn take(&mut self, chain: &Chain, (point, ray): Ray, curve: Curve, passing: &mut Vec<Curve>) {
         if std::mem::replace(&mut self.done[point][ray], true) {
             return;
+        }
+        if follow::is_endless(chain, &curve) {
+            if self.is_endless() {
+                self.dropped += 1;
+                return;
+            }
+            self.endless += 1;
         }
         if curve.is_closed() {
             passing.push(curve);
@@ -241,7 +295,7 @@ impl Arcs {
         let mut why = [End::Closed; 2];
         for (n, &(k, entered)) in row.iter().enumerate() {
             let arc = &self.arcs[k];
-            let turned = (entered == 1).then(|| follow::turned_round(chain, &arc.curve, stops));
+            let turned = (entered == 1).then(|| walked_again::turned_round(chain, &arc.curve, stops));
             let curve = turned.as_ref().unwrap_or(&arc.curve);
             let turns = nodes
                 .last()
@@ -280,6 +334,12 @@ impl Arcs {
         let tangent = point.rays[ray].tangent().map(|t| -t);
         Node::crossing(at, tangent, AT_POINT * point.cut)
     }
+}
+
+/// Whether no place can be nearer to where a curve is not smooth, as rounding has it.
+fn is_blind(chain: &Chain, pose: &Configuration) -> bool {
+    let (values, _) = singular_values(&chain.screws(pose));
+    chain.columns < 2 || values[chain.columns - 2] * BLIND < 1.0
 }
 
 /// Whether a node lies where walks end that run into one of some points.

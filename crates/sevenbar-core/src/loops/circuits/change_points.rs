@@ -10,13 +10,10 @@
 
 use super::curve::{Curve, Node};
 use super::follow::{Start, Stop};
+use super::sphere::{RADII, on_sphere, ways_out};
 use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, Columns, dot, least_squares, length, singular_values};
-use crate::loops::equation::rotations::squared_up;
-use crate::loops::mobility::singular_place::{LAST_STEP, MOST_STEPS, Place, STEADY, singular_place};
-use crate::loops::modes::polish::CLOSED;
-use crate::random::Random;
-use crate::stopping;
+use crate::loops::equation::dense::{COLUMNS, Columns, dot, length, singular_values};
+use crate::loops::mobility::singular_place::{Place, singular_place};
 
 /// Distance from the pose at which curves are cut [rad, or relative to the size]. Closer in, rounding turns their tangents by more than
 /// the curves bend.
@@ -29,21 +26,19 @@ const CUT_TIMES: f64 = 30.0;
 /// greater norm, rounding hides the curves from each other.
 const HIDDEN: f64 = 1e7;
 
-/// Radii of the sphere [rad, or relative to the size], tried in turn until all curves run straight from the sphere into the pose.
-const RADII: [f64; 4] = [1e-2, 2e-3, 4e-4, 8e-5];
+/// The same where curves touch, which is sooner: on the way in there, steps are as short as the curves are near. No farther out than the
+/// second number times the sphere's radius.
+const HIDDEN_IN_TOUCH: f64 = 1e5;
+const NEAR_TOUCH: f64 = 0.1;
+
+/// Radii of the sphere where curves may touch: their distance falls with the square of the radius, and they part where it is great.
+const RADII_OF_TOUCHING: [f64; 6] = [5e-2, 2e-2, 1e-2, 2e-3, 4e-4, 8e-5];
 
 /// A sphere's radius is at least this many times the distance at which curves are cut.
 const LEAST_RADIUS: f64 = 3.0;
 
 /// The greatest radius [rad, or relative to the size]. It is needed where the closure error of redundant constraints keeps curves apart.
 const WIDEST: f64 = 0.05;
-
-/// Directions tried on the circle of two free directions, and the factor for each further free direction.
-const DIRECTIONS: usize = 48;
-const MORE_DIRECTIONS: usize = 6;
-
-/// If none of the first directions, this many, leads to a solution, the others are not tried.
-const MOST_IN_VAIN: usize = 288;
 
 /// The direction from the pose to a curve may change by this much between one sphere and that of half the radius; a change below
 /// `STRAIGHT` is rounding.
@@ -53,44 +48,17 @@ const STRAIGHT: f64 = 1e-6;
 /// From one halving of the radius to the next that change halves, for a smooth curve; up to this part of it is allowed.
 const BEND_FALLS: f64 = 0.75;
 
-/// Ways out that are closer to each other than this part of the radius are the same.
-const SAME_WAY: f64 = 1e-5;
-
 /// Tangents at the pose that differ by less than this from opposite ones belong to one smooth curve.
 const OPPOSITE: f64 = 0.03;
 
 /// A pose belongs to a change point up to this many times the distance at which curves are cut there.
 pub(super) const AT_POINT: f64 = 3.0;
 
-/// Newton's method on a sphere is given up if a step is still longer than this part of the radius after this many steps.
-const WANDERING_AFTER: usize = 15;
-const WANDERING: f64 = 1e-2;
+/// Ends of curves nearer to each other than this [rad, or relative to the size] are at one change point: rounding ends them as far from it.
+const SAME_END: f64 = 1e-2;
 
-/// Longest step of Newton's method on a sphere [parts of the radius]: it cannot cross the sphere.
-const LONGEST_STEP: f64 = 0.3;
-
-/// Newton's method has left the sphere's neighbourhood where the free directions carry less than the first part of the radius, or the
-/// pose is farther off than the second [parts of the radius].
-const INNERMOST: f64 = 0.1;
-const OUTERMOST: f64 = 3.0;
-
-/// A closure error up to this is rounding [rad, or relative to the size].
-const ROUNDED: f64 = 1e-13;
-
-/// Test of an infinitesimal freedom: at this part of the radius the closure error falls to 1/64, being of second order. The error of
-/// redundant constraints that disagree falls at most in proportion to the radius, to 1/8. `LEAST_FALL` lies between the two.
-const NEARER: f64 = 0.125;
-const LEAST_FALL: f64 = 0.042;
-
-/// On a sphere, a singular value below this times the radius and the greatest singular value counts as zero.
-const NO_FREEDOM: f64 = 1e-4;
-
-/// Ways out whose directions have a greater cosine, either way, are along one line; on a surface directions are tried all round.
-const ONE_LINE: f64 = 0.95;
-
-/// So many on one line are no surface, on which each direction leads to a pose of its own: of the directions on a circle these are
-/// an eighth of a turn.
-const ENOUGH_ON_LINE: usize = 6;
+/// Zeros that the determinant has in an isolated pose, where two curves cross, or where one has a cusp.
+const ZEROS_OF_POSE: usize = 2;
 
 /// A way out of a pose.
 #[derive(Clone, Copy, Debug)]
@@ -101,6 +69,9 @@ pub(crate) struct Ray {
     seen: [Columns; 2],
     /// Distance from the change point up to which it can be followed inwards [rad, or relative to the size].
     hidden: f64,
+    /// The power of the distance with which the least singular value of the screws falls: 1 for each curve that crosses, 2 for each
+    /// that touches.
+    power: f64,
 }
 
 /// A pose at which the motion is not smooth.
@@ -114,9 +85,8 @@ pub(crate) struct ChangePoint {
     pub cut: f64,
     /// The greatest mobility of the motions out of it: 0 if it is isolated, 2 or more if it lies on a surface.
     pub finite: usize,
-    /// Whether it lies on a motion all of whose poses have as many free directions to first order, and more than one: a constraint is
-    /// met twice over along it.
-    pub is_on_double: bool,
+    /// Ways out of it that are not followed.
+    pub lost: usize,
 }
 
 /// The change point at or near a pose, if there is one, judged by the wished columns; `stuck` says that a walk could not go on there.
@@ -139,27 +109,36 @@ pub(super) fn change_point(
         partner: Vec::new(),
         cut,
         finite: 0,
-        is_on_double: false,
+        lost: 0,
     };
     let least = LEAST_RADIUS * cut;
-    let mut radii: Vec<f64> = RADII.into_iter().filter(|&r| r > least).collect();
+    let all = if place.may_touch() {
+        RADII_OF_TOUCHING.as_slice()
+    } else {
+        RADII.as_slice()
+    };
+    let mut radii: Vec<f64> = all.iter().copied().filter(|&r| r > least).collect();
     if radii.is_empty() {
         if least > WIDEST {
             return None;
         }
         radii.push(least);
     }
+    // the sphere on which its ways were found
+    let mut widest = RADII[0];
     for radius in radii {
-        let (ways, finite) = ways_out(chain, &place, radius);
-        found.finite = finite;
-        found.is_on_double = ways.is_empty() && finite == 1;
+        let ways = ways_out(chain, &place, radius);
+        found.finite = ways.finite;
         let rays: Vec<Ray> = ways
+            .single
             .iter()
             .filter_map(|at| ray(chain, &place, at, radius))
             .collect();
-        let straight = rays.len() == ways.len();
+        let straight = rays.len() == ways.single.len();
         if straight || rays.len() > found.rays.len() {
+            found.lost = ways.lost.len() + ways.single.len() - rays.len();
             found.rays = rays;
+            widest = radius.max(RADII[0]);
         }
         if straight {
             break;
@@ -171,120 +150,17 @@ pub(super) fn change_point(
     }
     found.partner = partners(&found.rays);
     let hidden = found.rays.iter().map(|r| r.hidden).fold(0.0, f64::max);
-    if hidden < RADII[0] / LEAST_RADIUS {
+    if hidden < widest / LEAST_RADIUS {
         found.cut = found.cut.max(hidden);
     }
-    Some(found)
-}
-
-/// Whether a pose on a sphere closes only because it is near: its closure error falls with the square of the distance. Along a real
-/// motion the closure error is rounding, or that of redundant constraints, which is constant or falls in proportion.
-fn opens_with_distance(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> bool {
-    let open = |at: &Configuration| chain.residual(&chain.place(at));
-    let inward = chain.difference(&place.at, at).map(|x| x / radius);
-    open(at) > ROUNDED
-        && on_sphere(chain, place, &inward, NEARER * radius)
-            .is_some_and(|nearer| open(&nearer) < LEAST_FALL * open(at))
-}
-
-/// The poses at which curves cut a sphere about a place, each once, and the greatest mobility found on it. A surface has no separate
-/// ways out, but curves may run into it.
-fn ways_out(chain: &Chain, place: &Place, radius: f64) -> (Vec<Configuration>, usize) {
-    let mut found: Vec<Configuration> = Vec::new();
-    let mut finite = 0;
-    let mut line: Option<Columns> = None;
-    let mut on_line = 0;
-    for (tried, direction) in directions(place).into_iter().enumerate() {
-        if tried == MOST_IN_VAIN && found.is_empty() && finite == 0 {
-            break;
-        }
-        let Some(at) = on_sphere(chain, place, &direction, radius) else {
-            continue;
-        };
-        let known = |f: &Configuration| length(&chain.difference(f, &at)) < SAME_WAY * radius;
-        if found.iter().any(known) || opens_with_distance(chain, place, &at, radius) {
-            continue;
-        }
-        let (values, _) = singular_values(&chain.screws(&at));
-        let rank = values
+    if place.may_touch() {
+        let early = found
+            .rays
             .iter()
-            .take(6)
-            .filter(|&&v| v > NO_FREEDOM * radius * values[0])
-            .count();
-        let freedoms = chain.columns - rank;
-        if freedoms > 1 && freedoms == place.free.len() {
-            let way = chain.difference(&place.at, &at);
-            let along = |first: &Columns| dot(first, &way).abs() > ONE_LINE * length(first) * length(&way);
-            // a motion along which a constraint is met twice over has as many free directions, and goes one way only
-            if line.as_ref().is_none_or(along) {
-                line = line.or(Some(way));
-                finite = finite.max(1);
-                on_line += 1;
-                if on_line == ENOUGH_ON_LINE && found.is_empty() {
-                    break;
-                }
-                continue;
-            }
-            // one surface accounts for all of them
-            finite = finite.max(freedoms);
-            break;
-        }
-        finite = finite.max(freedoms);
-        if freedoms == 1 {
-            found.push(at);
-        }
+            .map(|r| r.hidden * (HIDDEN / HIDDEN_IN_TOUCH).powf(1.0 / r.power));
+        found.cut = found.cut.max(early.fold(0.0, f64::max).min(NEAR_TOUCH * widest));
     }
-    (found, finite)
-}
-
-/// The solution of the closure at distance `radius` from a place that Newton's method finds, starting in a direction.
-fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> Option<Configuration> {
-    let mut at = chain.moved(&place.at, &direction.map(|x| x * radius));
-    let mut before = f64::INFINITY;
-    for step in 0..MOST_STEPS {
-        stopping::piece();
-        let placed = chain.place(&at);
-        let off = chain.difference(&place.at, &at);
-        let seen: Vec<f64> = place.free.iter().map(|f| dot(f, &off)).collect();
-        let distance = seen.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if !(distance > INNERMOST * radius && length(&off) < OUTERMOST * radius) {
-            return None;
-        }
-        let mut outward = [0.0; COLUMNS];
-        for (x, free) in seen.iter().zip(&place.free) {
-            for c in 0..COLUMNS {
-                outward[c] += x / distance * free[c];
-            }
-        }
-        let columns: Vec<Vec<f64>> = (0..chain.columns)
-            .map(|c| {
-                let mut column = placed.screws[c].to_vec();
-                column.push(outward[c]);
-                column
-            })
-            .collect();
-        let mut right: Vec<f64> = placed.error.iter().map(|e| -e).collect();
-        right.push(radius - distance);
-        let mut by = [0.0; COLUMNS];
-        by[..chain.columns].copy_from_slice(&least_squares(&columns, &right, chain.no_rank()));
-        let size = length(&by);
-        // where curves touch, each step is at most half the one before
-        if !size.is_finite() || (step >= WANDERING_AFTER && size > WANDERING * radius) {
-            return None;
-        }
-        let factor = (LONGEST_STEP * radius / size).min(1.0);
-        at = chain.moved(&at, &by.map(|x| x * factor));
-        for ball in &mut at.balls {
-            *ball = squared_up(ball);
-        }
-        let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
-        before = size;
-        if steady {
-            break;
-        }
-    }
-    let closed = if chain.is_redundant() { chain.agree } else { CLOSED };
-    (before < STEADY && chain.residual(&chain.place(&at)) < closed).then_some(at)
+    Some(found)
 }
 
 /// The way out through a pose on the sphere; `None` if its curve does not run straight into the change point.
@@ -316,7 +192,7 @@ fn ray(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> Option<
     let (far, near) = (norm(&values), norm(&singular_values(&chain.screws(&outer)).0));
     let power = ((near / far).log2() / 2.0).max(1.0);
     let hidden = radius * (far / HIDDEN).powf(1.0 / power);
-    Some(Ray { start: (*at, direction), seen: [seen[0], seen[1]], hidden })
+    Some(Ray { start: (*at, direction), seen: [seen[0], seen[1]], hidden, power })
 }
 
 impl Ray {
@@ -341,13 +217,37 @@ impl Ray {
 }
 
 impl ChangePoint {
+    /// Where a curve ends, and nothing is known of what begins there.
+    pub fn of_end(at: &Configuration) -> Self {
+        Self {
+            at: *at,
+            rays: Vec::new(),
+            partner: Vec::new(),
+            cut: SAME_END / AT_POINT,
+            finite: 1,
+            lost: 1,
+        }
+    }
+
+    /// Whether a pose is this one.
+    pub fn is_at(&self, chain: &Chain, pose: &Configuration) -> bool {
+        length(&chain.difference(&self.at, pose)) < AT_POINT * self.cut
+    }
+
     /// Whether a curve passes through it, or ends there.
     pub fn is_on(&self, chain: &Chain, curve: &Curve) -> bool {
-        let near = |n: &Node| length(&chain.difference(&self.at, &n.at)) < AT_POINT * self.cut;
+        let near = |n: &Node| self.is_at(chain, &n.at);
         let last = curve.nodes.len() - 1;
         curve.nodes.iter().any(|n| n.is_crossing() && near(n))
             || near(&curve.nodes[0])
             || near(&curve.nodes[last])
+    }
+
+    /// How many zeros the determinant has there, two for each pair of curves that cross.
+    pub fn zeros(&self) -> usize {
+        let smooth = self.lost == 0 && self.partner.iter().all(Option::is_some);
+        let powers: f64 = self.rays.iter().map(|r| r.power.round()).sum();
+        if smooth { (powers / 2.0) as usize } else { 0 }.max(ZEROS_OF_POSE)
     }
 
     /// Where a walk that runs into it ends.
@@ -379,36 +279,4 @@ fn partners(rays: &[Ray]) -> Vec<Option<usize>> {
         (*a, *b) = (Some(1), Some(0));
     }
     partner
-}
-
-/// Unit vectors in the free directions of a place from which Newton's method begins.
-fn directions(place: &Place) -> Vec<Columns> {
-    let count = place.free.len();
-    let combined = |weights: &[f64]| {
-        let size = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
-        let mut out = [0.0; COLUMNS];
-        for (w, free) in weights.iter().zip(&place.free) {
-            for c in 0..COLUMNS {
-                out[c] += w / size * free[c];
-            }
-        }
-        out
-    };
-    if count == 2 {
-        return (0..DIRECTIONS)
-            .map(|k| {
-                let angle = std::f64::consts::TAU * (k as f64 + 0.31) / DIRECTIONS as f64;
-                combined(&[angle.cos(), angle.sin()])
-            })
-            .collect();
-    }
-    let mut random = Random(0xd1_5ec7);
-    (0..DIRECTIONS * MORE_DIRECTIONS.pow(count.saturating_sub(2).min(2) as u32))
-        .map(|_| {
-            // a sum of uniform numbers is as good as normal here
-            let mut normal = || (0..6).map(|_| random.uniform()).sum::<f64>() - 3.0;
-            let weights: Vec<f64> = (0..count).map(|_| normal()).collect();
-            combined(&weights)
-        })
-        .collect()
 }

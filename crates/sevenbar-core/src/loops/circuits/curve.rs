@@ -98,6 +98,8 @@ pub(crate) enum End {
     Closed,
     /// It runs into a place where it is not smooth.
     Singular,
+    /// It nears such a place so slowly that it was followed no farther: curves touch there.
+    Narrow,
     /// Its redundant constraints disagree: it does not move.
     Open,
     /// A slide or screw left the range, or there were too many nodes.
@@ -131,7 +133,12 @@ impl Curve {
     /// The ends at which it runs into a place where it is not smooth.
     pub fn singular_ends(&self) -> impl Iterator<Item = &Configuration> {
         let ends = self.ends().into_iter().zip(self.why);
-        ends.filter_map(|(at, why)| (why == End::Singular).then_some(at))
+        ends.filter_map(|(at, why)| matches!(why, End::Singular | End::Narrow).then_some(at))
+    }
+
+    /// Whether it runs into a place where it is not smooth.
+    pub fn is_stuck(&self) -> bool {
+        self.singular_ends().next().is_some()
     }
 
     /// The place at which it is distinguished from others best: the farthest from any where it is not smooth.
@@ -453,28 +460,6 @@ pub(super) fn farthest_turn(chain: &Chain, a: &Configuration, b: &Configuration)
     turns.fold(0.0, |most, (_, &c)| {
         most.max(short_way(b.values[c] - a.values[c]).abs())
     })
-}
-
-/// The same nodes in the other direction, if the argument holds for each step that way too.
-pub(crate) fn reversed(chain: &Chain, curve: &Curve) -> Option<Curve> {
-    let (first, last) = (&curve.nodes[0], curve.nodes.last()?);
-    let mut nodes: Vec<Node> = curve.nodes.iter().rev().copied().collect();
-    for node in &mut nodes {
-        for order in [0, 2] {
-            node.rates[order] = node.rates[order].map(|x| -x);
-        }
-        if curve.is_closed() {
-            for c in 0..COLUMNS {
-                node.at.values[c] -= last.at.values[c] - first.at.values[c];
-            }
-        }
-    }
-    measure(chain, &mut nodes);
-    let certain = |pair: &[Node]| passes_through(chain, &pair[0], &pair[1].at).is_some();
-    nodes
-        .windows(2)
-        .all(certain)
-        .then_some(Curve { nodes, why: [curve.why[1], curve.why[0]] })
 }
 
 /// Whether a closed configuration lies in the tube of a node's step: it is then a place of the curve.

@@ -19,6 +19,14 @@ const MOST_NODES: usize = 100_000;
 /// The same of a piece between starts, which many walk at once; a longer one is left to the ordinary way.
 const MOST_PIECE_NODES: usize = 5_000;
 
+/// Steps in a row, each to a greater norm of the screws' inverse beyond the second number, after which a curve is followed no farther until
+/// the place that it runs into has been searched for. Where curves cross they are some hundred; where they touch, as many more as it is nearer.
+pub(super) const MOST_NARROWING: usize = 1_000;
+const NARROWING: f64 = 1e4;
+
+/// Nearer to a change point than this [rad, or relative to the size] steps are not counted: it is what the curve runs into.
+const NEAR_STOP: f64 = 0.1;
+
 /// Most nodes of curves that are walked side by side, 260 MB; those that are still under way by then end there.
 const MOST_TOGETHER: usize = 600_000;
 
@@ -35,9 +43,30 @@ pub(crate) struct Stop {
     pub radius: f64,
 }
 
+/// How far curves are followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Until {
+    /// Until they come back, or end.
+    End,
+    /// The same, or until so many steps in a row lead to where they are shorter.
+    Narrow(usize),
+    /// Until they reach any of the starts.
+    Start,
+}
+
 /// Follows the motions through closed configurations until they come back; those that do not, from end to end.
 pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
-    let mut curves = walk(chain, starts, stops);
+    // what redundant constraints miss each other by hides how near a curve comes
+    let until = if chain.is_redundant() {
+        Until::End
+    } else {
+        Until::Narrow(MOST_NARROWING)
+    };
+    follow_until(chain, starts, stops, until)
+}
+
+pub(super) fn follow_until(chain: &Chain, starts: &[Start], stops: &[Stop], until: Until) -> Vec<Curve> {
+    let mut curves = walk_until(chain, starts, stops, until).0;
     let open: Vec<usize> = (0..curves.len())
         .filter(|&k| !curves[k].is_closed() && !curves[k].ends_by(End::Open))
         .collect();
@@ -46,7 +75,7 @@ pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Cur
     for &k in &open {
         curves[k].nodes = Vec::new();
     }
-    for (k, back) in open.into_iter().zip(walk(chain, &ends, stops)) {
+    for (k, back) in open.into_iter().zip(walk_until(chain, &ends, stops, until).0) {
         curves[k] = begun_for(curves[k].why[1], back);
     }
     curves
@@ -61,7 +90,7 @@ pub(super) fn is_endless(chain: &Chain, curve: &Curve) -> bool {
 }
 
 /// A walk from an end, with the reason of that end.
-fn begun_for(why: End, mut walked: Curve) -> Curve {
+pub(super) fn begun_for(why: End, mut walked: Curve) -> Curve {
     if !walked.is_closed() {
         walked.why[0] = why;
     }
@@ -76,38 +105,28 @@ pub(super) fn is_far(chain: &Chain, at: &Configuration) -> bool {
     chain.joints.iter().zip(&chain.first).any(far)
 }
 
-/// The curve walked the other way: its own nodes where each step is certain that way too.
-pub(crate) fn turned_round(chain: &Chain, curve: &Curve, stops: &[Stop]) -> Curve {
-    curve::reversed(chain, curve).unwrap_or_else(|| {
-        let back = walk(chain, &[back_from_end(curve)], stops).swap_remove(0);
-        begun_for(curve.why[1], back)
-    })
-}
-
-fn walk(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
-    walk_until(chain, starts, stops, false).0
-}
-
 /// Each motion until it comes to the next of the starts, its own or another, and which that is.
 pub(super) fn pieces(chain: &Chain, starts: &[Start]) -> (Vec<Curve>, Vec<Option<usize>>) {
-    walk_until(chain, starts, &[], true)
+    walk_until(chain, starts, &[], Until::Start)
 }
 
-fn walk_until(
+pub(super) fn walk_until(
     chain: &Chain,
     starts: &[Start],
     stops: &[Stop],
-    any: bool,
+    until: Until,
 ) -> (Vec<Curve>, Vec<Option<usize>>) {
     let mut curves = vec![Curve { nodes: Vec::new(), why: [End::Far; 2] }; starts.len()];
     let mut reached = vec![None; starts.len()];
+    let mut narrowing = vec![0; starts.len()];
     let walk = Walk {
         chain,
         starts,
         stops,
-        any,
+        until,
         curves: &mut curves,
         reached: &mut reached,
+        narrowing: &mut narrowing,
         nodes: 0,
     };
     match starts.len() {
@@ -137,7 +156,7 @@ fn returned(chain: &Chain, first: &Node, from: &Node) -> Option<(f64, Node)> {
     Some((along, end))
 }
 
-fn back_from_end(curve: &Curve) -> Start {
+pub(super) fn back_from_end(curve: &Curve) -> Start {
     let last = &curve.nodes[curve.nodes.len() - 1];
     (last.at, last.rates[0].map(|t| -t))
 }
@@ -147,11 +166,12 @@ struct Walk<'a> {
     chain: &'a Chain,
     starts: &'a [Start],
     stops: &'a [Stop],
-    /// Whether any start ends a curve, or its own only.
-    any: bool,
+    until: Until,
     curves: &'a mut [Curve],
     /// The start to which each came.
     reached: &'a mut [Option<usize>],
+    /// How many of each one's last steps led to a greater norm of the screws' inverse.
+    narrowing: &'a mut [usize],
     /// How many nodes there are on all.
     nodes: usize,
 }
@@ -360,7 +380,7 @@ impl Walk<'_> {
         curve.nodes[last].step = step;
         curve.nodes[last].tube = tube;
         let mut nearest: Option<(f64, Node, usize)> = None;
-        let ends = if self.any {
+        let ends = if self.until == Until::Start {
             0..self.starts.len()
         } else {
             walker..walker + 1
@@ -385,15 +405,30 @@ impl Walk<'_> {
             self.reached[walker] = Some(end);
             return Some(End::Closed);
         }
+        let narrower = next.inverse_norm > NARROWING && next.inverse_norm > curve.nodes[last].inverse_norm;
         curve.nodes.push(next);
         self.nodes += 1;
-        let stopped = |s: &Stop| {
-            let off = chain.difference(&next.at, &s.at);
+        let mut stopped = next.inverse_norm > BLIND;
+        let mut near = false;
+        for stop in self.stops {
+            let off = chain.difference(&next.at, &stop.at);
+            let distance = length(&off);
             // one that it has just left lies behind
-            length(&off) < s.radius && dot(&off, &next.rates[0]) > 0.0
-        };
-        if next.inverse_norm > BLIND || self.stops.iter().any(stopped) {
+            stopped |= distance < stop.radius && dot(&off, &next.rates[0]) > 0.0;
+            near |= distance < NEAR_STOP;
+        }
+        if stopped {
             return Some(End::Singular);
+        }
+        self.narrowing[walker] = if narrower && !near {
+            self.narrowing[walker] + 1
+        } else {
+            0
+        };
+        if let Until::Narrow(most) = self.until
+            && self.narrowing[walker] > most
+        {
+            return Some(End::Narrow);
         }
         let curve = &self.curves[walker];
         let start = &curve.nodes[0].at;
@@ -402,7 +437,11 @@ impl Walk<'_> {
             let farthest = FARTHEST.max(start.values[c].abs());
             !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > farthest
         });
-        let most = if self.any { MOST_PIECE_NODES } else { MOST_NODES };
+        let most = if self.until == Until::Start {
+            MOST_PIECE_NODES
+        } else {
+            MOST_NODES
+        };
         (far || curve.nodes.len() > most || self.nodes > MOST_TOGETHER).then_some(End::Far)
     }
 }

@@ -6,6 +6,7 @@ use super::curve::{Curve, End, Node};
 use super::follow::{self, Start};
 use super::found::{Found, Search};
 use super::on_curve::{lies_on, lies_on_any, not_on_any, place_on};
+use super::walked_again;
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, dot, length, singular_values};
 use crate::loops::mobility::rank::{rank, unyielding};
@@ -24,10 +25,6 @@ const NARROW: f64 = 1e-5;
 const SHARP: f64 = 1e4;
 const BESIDE_BEND: f64 = 30.0;
 
-/// Curves with too many nodes after which no mode is followed any more: on what is nearly a surface of poses each leads to another such
-/// curve, and each takes a second.
-const MOST_ENDLESS: usize = 2;
-
 /// All curves of a chain.
 pub(crate) struct Curves {
     pub curves: Vec<Curve>,
@@ -39,8 +36,6 @@ pub(crate) struct Curves {
     /// Modes at sharp bends, left for the last; and whether they are followed now.
     unfollowed: Vec<Configuration>,
     pub last: bool,
-    /// Curves with too many nodes so far, be they kept or not.
-    endless: usize,
     /// Columns whose limits say what is a change point.
     pub wished: Vec<usize>,
     /// Curves through some of the modes to come.
@@ -54,10 +49,9 @@ impl Curves {
             curves: Vec::new(),
             search: Search::new(Completeness::Algebraic),
             change_points: Vec::new(),
-            arcs: Arcs::default(),
+            arcs: Arcs::new(),
             unfollowed: Vec::new(),
             last: false,
-            endless: 0,
             wished: wished.to_vec(),
             ahead: Vec::new(),
         }
@@ -90,7 +84,7 @@ impl Curves {
     fn taken_ahead(&mut self, chain: &Chain, which: usize, backwards: bool) -> Curve {
         let curve = self.ahead.swap_remove(which);
         if backwards {
-            follow::turned_round(chain, &curve, &[])
+            walked_again::turned_round(chain, &curve, &[])
         } else {
             curve
         }
@@ -105,7 +99,7 @@ impl Curves {
 
     /// Follows what leads out of a pose at which the motion may not be smooth; returns whether it is a change point or isolated.
     pub fn branches(&mut self, chain: &Chain, pose: &Configuration, stuck: bool) -> bool {
-        if self.arcs.learn(chain, pose, &self.wished, stuck).is_none() {
+        if self.arcs.is_endless() || self.arcs.learn(chain, pose, &self.wished, stuck).is_none() {
             return false;
         }
         let passing = self.arcs.complete(chain, &self.wished);
@@ -133,6 +127,9 @@ impl Curves {
         self.curves.extend(self.arcs.joined(chain, self.wished[0]));
         self.forget_parts(chain);
         self.change_points = std::mem::take(&mut self.arcs.points);
+        self.search.unfollowed += self.change_points.iter().map(|p| p.lost).sum::<usize>();
+        self.search.unfollowed += self.arcs.not_followed();
+        self.name_ends(chain);
         let finite = if self.curves.is_empty() {
             self.arcs.finite
         } else {
@@ -151,6 +148,20 @@ impl Curves {
         }
         if let Some(found) = &mut self.search.found {
             found.finite = found.finite.min(finite);
+        }
+    }
+
+    /// Calls the ends of curves change points where these were not found: more may begin there than was followed.
+    fn name_ends(&mut self, chain: &Chain) {
+        for curve in &self.curves {
+            for end in curve.singular_ends() {
+                if let Some(known) = self.change_points.iter_mut().find(|p| p.is_at(chain, end)) {
+                    known.lost += usize::from(known.rays.is_empty());
+                } else {
+                    self.change_points.push(ChangePoint::of_end(end));
+                    self.search.unfollowed += 1;
+                }
+            }
         }
     }
 
@@ -216,7 +227,7 @@ impl Curves {
                 }
                 continue;
             }
-            if foreseen.is_none() && self.endless >= MOST_ENDLESS {
+            if foreseen.is_none() && self.arcs.is_endless() {
                 self.search.unfollowed += 1;
                 continue;
             }
@@ -241,10 +252,11 @@ impl Curves {
         let mut followed = follow::follow(chain, &left, &self.arcs.stops()).into_iter();
         let mut fresh: Vec<Curve> = Vec::new();
         for (curve, start) in curves.into_iter().zip(&starts) {
-            let Some(curve) = curve.or_else(|| followed.next()) else {
+            let Some(mut curve) = curve.or_else(|| followed.next()) else {
                 unreachable!()
             };
-            self.endless += usize::from(follow::is_endless(chain, &curve));
+            let known_endless = follow::is_endless(chain, &curve);
+            self.arcs.endless += usize::from(known_endless);
             // two modes may lie on one circuit
             if lies_on_any(chain, &fresh, &start.0)
                 || lies_on_any(chain, &fresh, curve.plainest())
@@ -253,14 +265,17 @@ impl Curves {
                 continue;
             }
             // one that could not be begun may lie on a curve that can be followed
-            let stuck = curve.ends_by(End::Singular) && curve.nodes.len() > 2;
-            let mut places = narrow_places(&curve);
-            places.extend(curve.singular_ends());
-            let mut branches = false;
-            for place in places {
-                branches |= self.branches(chain, &place, stuck);
-            }
-            if branches && (stuck || contains(chain, &curve, &self.arcs)) {
+            let mut patience = self.arcs.patience;
+            let branches = walked_again::follow_on(chain, *start, &mut curve, &mut patience, &mut |curve| {
+                (self.led_to(chain, curve), self.arcs.stops())
+            });
+            self.arcs.patience = self.arcs.patience.min(patience);
+            self.arcs.endless += usize::from(!known_endless && follow::is_endless(chain, &curve));
+            let stuck = curve.is_stuck() && curve.nodes.len() > 2;
+            // a way into a change point that none of its ways out leads back is kept as it is
+            let held = |at: &Configuration| self.arcs.hold(chain, at);
+            let by_arcs = || stuck && (chain.is_redundant() || held(&start.0) || held(curve.plainest()));
+            if branches && (by_arcs() || contains(chain, &curve, &self.arcs)) {
                 continue;
             }
             let lost = curve.ends_by(End::Singular) && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
@@ -273,6 +288,18 @@ impl Curves {
         // one that was followed over a change point that another has led to is known by its arcs, too
         fresh.retain(|c| !contains(chain, c, &self.arcs));
         self.curves.extend(fresh);
+    }
+
+    /// Whether a curve leads to change points, all branches of which are followed then.
+    fn led_to(&mut self, chain: &Chain, curve: &Curve) -> bool {
+        let stuck = curve.is_stuck() && curve.nodes.len() > 2;
+        let mut places = narrow_places(curve);
+        places.extend(curve.singular_ends());
+        let mut branches = false;
+        for place in places {
+            branches |= self.branches(chain, &place, stuck);
+        }
+        branches
     }
 
     /// Whether a curve with ends is known, though its start was not seen on one that is: beside a change point no step of a curve

@@ -10,4 +10,6 @@ pub(super) mod known_curves;
 mod meetings;
 mod on_curve;
 pub(super) mod search;
+mod sphere;
 pub(super) mod turnings;
+pub(super) mod walked_again;

@@ -236,7 +236,8 @@ fn look_into(curves: &mut Curves, chain: &Chain, finder: &ModeFinder, count: &mu
 
 /// The zeros of the determinant that the curves tell of.
 fn known_zeros(curves: &Curves, chain: &Chain, survey: &Survey, column: usize) -> Known {
-    let singular = curves.arcs.points.iter().map(|p| p.at.values[column]);
+    let points = curves.arcs.points.iter();
+    let singular = points.flat_map(|p| std::iter::repeat_n(p.at.values[column], p.zeros()));
     let mut known = Known { singular: singular.collect(), ..Known::default() };
     let joined = curves.arcs.joined(chain, curves.wished[0]);
     for curve in curves.curves.iter().chain(&joined) {

@@ -31,6 +31,13 @@ const TOUCHING: f64 = 1e-6;
 /// A second-order form below this part of the closure's is none: a redundant constraint's.
 const NO_FORM: f64 = 1e-7;
 
+/// Second-order forms in two directions whose determinant is below this part of the form's square have one direction only in which curves
+/// may run: these touch.
+const ONE_DIRECTION: f64 = 1e-3;
+
+/// A second-order form below this part of the closure's is weak: curves part by what is of higher order.
+const WEAK_FORM: f64 = 1e-4;
+
 /// A closure error below this [rad, or relative to the size] is rounding, however weak the form that it is held against.
 const NO_VALUE: f64 = 1e-15;
 
@@ -58,6 +65,8 @@ pub(crate) struct Place {
     pub open: f64,
     /// The closure error up to which it is a pose.
     agree: f64,
+    /// Whether constraints are redundant, which hide how curves part.
+    redundant: bool,
 }
 
 impl Place {
@@ -83,6 +92,19 @@ impl Place {
         let (a, b) = (x[column], y[column]);
         let bent = (a * a * form[3] - 2.0 * a * b * form[1] + b * b * form[0]) / determinant;
         2.0 * (2.0 * (value * bent).abs()).sqrt()
+    }
+
+    /// Whether curves that run through it may touch: the second-order forms do not tell their directions apart.
+    pub fn may_touch(&self) -> bool {
+        match (self.free.len(), self.forms.as_slice()) {
+            _ if self.redundant => false,
+            (2, [(_, form)]) => {
+                let determinant = form[0] * form[3] - form[1] * form[2];
+                let square: f64 = form.iter().map(|x| x * x).sum();
+                square < WEAK_FORM * WEAK_FORM || determinant.abs() < ONE_DIRECTION * square
+            }
+            (free, forms) => forms.len() + 1 < free,
+        }
     }
 
     /// Whether motions lead over it within what redundant constraints may miss each other by: two forms in two free directions have
@@ -226,6 +248,7 @@ pub(super) fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place 
         forms: found,
         open: f64::sqrt(open),
         agree: chain.agree,
+        redundant: chain.is_redundant(),
     }
 }
 

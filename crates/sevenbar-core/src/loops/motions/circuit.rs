@@ -4,7 +4,7 @@ use super::extremes::output_extremes;
 use super::passes::{Pass, Passes};
 use super::row::Row;
 use super::rows::{Rows, Tally};
-use crate::loops::circuits::curve::{Curve, End, Node};
+use crate::loops::circuits::curve::{Curve, Node};
 use crate::loops::circuits::turnings::{self, Turning};
 use crate::loops::description::described_loop::{Column, Loop};
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
@@ -133,7 +133,7 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
     let seen = Seen { linkage, passes, driver, follower, shift };
     let turnings = turnings::turnings(curve, chain, follower.inner);
     let (input, output) = (seen.input_range(), seen.output_range(&turnings));
-    let singular = curve.ends_by(End::Singular) || crosses;
+    let singular = curve.is_stuck() || crosses;
     let role = |column: Column, range: Option<[f64; 2]>| linkage.role(column, range, !closed && !singular);
     let measures = CircuitMeasures {
         motion_type: if singular {

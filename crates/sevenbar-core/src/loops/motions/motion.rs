@@ -121,7 +121,7 @@ pub fn motion(
             circuits: (0..passes.len())
                 .filter(|&k| point.is_on(chain, &passes[k].curve))
                 .collect(),
-            ways: point.rays.len(),
+            ways: point.rays.len() + point.lost,
             freedoms: point.finite,
         })
         .collect();

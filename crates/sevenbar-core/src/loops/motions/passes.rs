@@ -3,8 +3,8 @@
 use super::row::{self, Row, Solved, UNIT};
 use super::row_lanes::{Near, rows_near};
 use crate::loops::circuits::curve::{self, Curve, Node};
-use crate::loops::circuits::follow;
 use crate::loops::circuits::turnings::{self, begun_at, insert, turns_at};
+use crate::loops::circuits::walked_again;
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, combined, dot, length};
 use crate::loops::rates::velocities::ORDERS;
@@ -58,7 +58,7 @@ impl<'a> Passes<'a> {
     pub fn new(chain: &'a Chain, curve: Curve, input: usize) -> Option<Self> {
         // an input that gains turns rises on the whole, though it may turn back on the way
         let curve = if curve.gained()[input] < 0.0 && curve.goes_round(chain, input) && !curve.crosses() {
-            follow::turned_round(chain, &curve, &[])
+            walked_again::turned_round(chain, &curve, &[])
         } else {
             curve
         };
@@ -67,7 +67,14 @@ impl<'a> Passes<'a> {
         if passes.passes[0].end > passes.passes[0].start || passes.curve.crosses() {
             return Some(passes);
         }
-        Some(Self::of(chain, follow::turned_round(chain, &passes.curve, &[]), input).unwrap_or(passes))
+        Some(
+            Self::of(
+                chain,
+                walked_again::turned_round(chain, &passes.curve, &[]),
+                input,
+            )
+            .unwrap_or(passes),
+        )
     }
 
     fn of(chain: &'a Chain, mut curve: Curve, input: usize) -> Option<Self> {
