@@ -87,11 +87,13 @@ class Axes:
             [np.cross(by_turn, turn), np.cross(by_turn, shift) + np.cross(by_shift, turn)], axis=1
         )
         second = np.linalg.lstsq(screws.T, -(rates @ brackets), rcond=NO_RANK)[0]
+        if not abs(second[columns[0]]) > STILL * np.abs(second).max():
+            return None
         bend_in, bend_out = (
             second[column] * (size if self.parts.letters[part] == "P" else 1.0)
             for column, part in zip(columns, (input, output), strict=True)
         )
-        return float(bend_out / bend_in) if abs(bend_in) > STILL * abs(second).max() else None
+        return float(bend_out / bend_in)
 
     @property
     def _origin(self) -> Floats:
