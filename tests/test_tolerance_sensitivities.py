@@ -246,6 +246,10 @@ def test_measures_change_as_their_derivatives_say(linkage, options, least):
             if one.name == "transmission_lowest" and options:
                 assert not one.slopes.any()
                 continue
+            if one.name == "transmission_highest" and np.isnan(one.slopes).all():
+                # a right angle is the highest whatever the dimensions
+                assert sides[0][0][one.name] == pytest.approx(math.pi / 2, abs=1e-9)
+                continue
             slope = (sides[0][0][one.name] - sides[1][0][one.name]) / (sides[0][1] - sides[1][1])
             size = np.nanmax(np.abs(one.slopes)) * one.scale
             assert one.slopes[k] * one.scale == pytest.approx(slope, abs=1e-5 * size), (
