@@ -18,7 +18,7 @@ def module_map(_pages: Path = ROOT, _argument: str = "") -> str:
 
 
 def _of_package() -> Iterator[str]:
-    yield "### The Python package, from the top"
+    yield "## The Python package, from the top"
     for name in _layers():
         folder = PACKAGE / name
         if folder.is_dir():
@@ -31,7 +31,7 @@ def _of_package() -> Iterator[str]:
 
 
 def _of_core() -> Iterator[str]:
-    yield "\n### The Rust core\n"
+    yield "\n## The Rust core\n"
     for folder in [CORE, *sorted(path.parent for path in CORE.rglob("mod.rs"))]:
         if folder != CORE:
             own = folder / "mod.rs"
