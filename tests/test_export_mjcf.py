@@ -1,5 +1,7 @@
 """The exported model as MuJoCo opens and runs it."""
 
+from typing import get_args
+
 import mujoco
 import numpy as np
 import pytest
@@ -7,7 +9,8 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.gallery import names
 from sevenbar.errors import RequestError
-from sevenbar.export import export
+from sevenbar.export import FORMATS, export
+from sevenbar.simulation.mjcf import Drive
 
 
 def opened(path):
@@ -93,6 +96,10 @@ def test_a_position_holds_and_a_motor_is_free(tmp_path):
         assert (abs(crank - 0.5) > 1e-2) == moves
         if drive == "position":
             assert crank == pytest.approx(data.ctrl[0], abs=1e-3)
+
+
+def test_the_drives_that_are_offered_are_those_that_are_written():
+    assert FORMATS["mjcf"].drives == get_args(Drive)
 
 
 def test_only_a_model_with_an_actuator_has_a_drive(tmp_path):

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar import _core
+from sevenbar.kinematics.loop.geometry import NO_SIZE
 from sevenbar.kinematics.solvers.plane_and_sphere import SAME
 from textbook_loops import (
     four_bar_joints,
@@ -286,3 +288,7 @@ def test_balls_off_the_centre_make_no_sphere():
     for i in (1, 2):
         joints[i] = {"kind": "S", "at": joints[i]["at"]}
     assert linkage(joints).sphere is None
+
+
+def test_a_loop_has_no_size_from_the_same_bound_on_as_in_the_core():
+    assert NO_SIZE == _core.NO_SIZE

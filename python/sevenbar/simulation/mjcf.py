@@ -7,7 +7,7 @@ Lengths are in metres. A joint's coordinate is Sevenbar's column of it, also whe
 joint backwards; a ball counts from the pose of the file. Bodies lie in the start pose, closed, as a viewer
 opens them, and each joint has its value there as `ref`. The key frame `start` has the velocities, too.
 
-The input is driven in one of the ways `DRIVES`:
+The input is driven in one of these ways:
 
 - velocity   an actuator that keeps the motion's speed by itself; its control is a speed on top
 - position   an actuator whose control is the input's value
@@ -38,9 +38,8 @@ from sevenbar.text.units import LENGTHS
 #: The flywheel's inertia, in those of a body: constraints change its speed by about the inverse of this.
 FLYWHEEL = 1e10
 
-#: How the input is driven, and the words for it.
+#: How the input is driven.
 Drive = Literal["velocity", "position", "motor", "flywheel"]
-DRIVES: tuple[Drive, ...] = ("velocity", "position", "motor", "flywheel")
 
 #: Gains of the actuators, in those that stop the inertia of a body within a second: of speed, of position.
 SPEED_GAIN, POSITION_GAIN = 1e3, 1e5
