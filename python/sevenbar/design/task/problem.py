@@ -113,10 +113,11 @@ class TaskModel:
             self.figure_musts.append(kinds.FigureMust("transmission_lowest", least=math.degrees(least)))
         names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
         self.figures = Figures(loop, list(dict.fromkeys(names)))
-        #: Musts of the least transmission angle in closed form, and the measures that a search works out.
+        #: Wants and musts of the least transmission angle in closed form, and the measures that are worked out.
         self.in_line = LeastAngle(loop)
-        self.angle_musts = [must for must in self.figure_musts if self._in_line(must)]
-        names = [w.name for w in self.figure_wants]
+        self.angle_wants = [want for want in self.figure_wants if self._in_line(want)]
+        self.angle_musts = [must for must in self.figure_musts if self._in_line(must) and must.most is None]
+        names = [want.name for want in self.figure_wants if want not in self.angle_wants]
         names += [must.name for must in self.figure_musts if must not in self.angle_musts]
         self.searched = Figures(loop, list(dict.fromkeys(names)))
         self.rooms = pose_rooms(loop, task.musts)
@@ -132,8 +133,13 @@ class TaskModel:
         #: Wants, by their places among the sampled, whose residuals have been asked to stay small.
         self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, kinds.Most)]
 
-    def _in_line(self, must: kinds.FigureMust) -> bool:
-        return self.in_line.known and must.name == "transmission_lowest" and must.most is None
+    def _in_line(self, asked: kinds.FigureWant | kinds.FigureMust) -> bool:
+        return self.in_line.known and asked.name == "transmission_lowest"
+
+    @property
+    def measures(self) -> bool:
+        """Whether the search reads measures of circuits."""
+        return bool(self.searched.names or self.angle_wants)
 
     @property
     def holds(self) -> bool:
@@ -488,10 +494,22 @@ class TaskProblem:
         if found is None:
             return None
         read = {name: own for name, *own in zip(model.searched.names, *found, strict=True)}
+        ends: list[tuple[float, Floats]] | None = []
+        if model.angle_wants or model.angle_musts:
+            ends = model.in_line.ends(values, self._anchor, slopes=slopes)
+            if not ends:
+                return None
+            read["transmission_lowest"] = min(ends, key=lambda end: end[0])
         lefts = [
             (want.weight * value, want.weight * by)
             for want in model.figure_wants
-            for value, by in [figure_left(want, *read[want.name])]
+            # each end a height of its own: the lower of two has a kink where they are equal
+            for own in (
+                ends
+                if self.minimax and want in model.angle_wants and want.value == "great"
+                else [read[want.name]]
+            )
+            for value, by in [figure_left(want, *own)]
         ]
         rooms = [
             (way * (value - end) / unit, way * by / unit)
@@ -503,9 +521,6 @@ class TaskProblem:
             for unit in [max(abs(end), 1e-3)]
         ]
         for must in model.angle_musts:
-            ends = model.in_line.ends(values, self._anchor, slopes=slopes)
-            if ends is None:
-                return None
             least = must.least or 0.0
             rooms += [((value - least) / max(least, 1.0), by / max(least, 1.0)) for value, by in ends]
         return self._stacked(lefts), self._stacked(rooms)

@@ -181,7 +181,7 @@ def _search(
     for i, look in enumerate(tried):
         now = len(distinct(kept, scale_free=False)), kept[0].cost if kept else math.inf
         idle, known = (idle + 1, known) if now[0] <= known[0] and not now[1] < known[1] else (0, now)
-        if idle > TAKEN * count and model.searched.names:
+        if idle > TAKEN * count and model.measures:
             break
         if len(distinct(kept, scale_free=False)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
             break

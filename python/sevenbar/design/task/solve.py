@@ -349,13 +349,15 @@ def _settled(problem: TaskProblem, z: Floats) -> tuple[Floats, float]:
             break
         step = _newton(at, curved, rows)
         step *= min(1.0, FARTHEST / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-        then = conditions(problem, x + step)
+        then_x = x + step
+        then_x[: len(z)] = problem.within(then_x[: len(z)])
+        then = conditions(problem, then_x)
         if then is None:
             break
         then_active, then_y, then_missed = multipliers(then)
         if not then_missed < missed:
             break
-        x, at, active, y, missed = x + step, then, then_active, then_y, then_missed
+        x, at, active, y, missed = then_x, then, then_active, then_y, then_missed
         problem.take(unknowns(problem, x))
     return unknowns(problem, x), missed
 

@@ -61,7 +61,7 @@ class LeastAngle:
             return None
         here = loop.here(values, q, slopes=slopes)
         found = self._made.turning(here.points[:, self._places], here.points_by[:, self._places, :, :-1])
-        if found is None or not np.isfinite(found[1]).all():
+        if found is None or not all(np.isfinite(part).all() for part in found):
             return None
         none = np.zeros(len(values))
         return [(math.degrees(x), np.degrees(by) if slopes else none) for x, by in zip(*found, strict=True)]

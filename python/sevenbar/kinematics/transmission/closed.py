@@ -75,7 +75,7 @@ def turning_cosines(coupling: Coupling, axes: Axes) -> Floats | None:
     """The cosines (2,) of the angle where the input is in line with the ground, by the axes of a pose.
 
     For a slide as the output where it is square to that. Beyond 1 the input does not turn so far. Analytic in
-    the axes, real or complex. `None` for other loops, and for a slide as the input.
+    the axes, real or complex; not finite where two axes coincide. `None` for other loops, and for a slide as the input.
     """
     letters, pin, near, output = axes.parts.letters, coupling.at, coupling.free[0], coupling.output
     if not turns_in_line(coupling, letters):
@@ -87,7 +87,8 @@ def turning_cosines(coupling: Coupling, axes: Axes) -> Floats | None:
         cosines = [(u * v).sum() for u, v in pairs]
         sines = [np.sqrt((w * w).sum()) for w in (np.cross(u, v) for u, v in pairs)]
         apart = [cosines[0] * cosines[3] + way * sines[0] * sines[3] for way in (1, -1)]
-        return np.array([(x - cosines[1] * cosines[2]) / (sines[1] * sines[2]) for x in apart])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.array([(x - cosines[1] * cosines[2]) / (sines[1] * sines[2]) for x in apart])
     normal = axes.directions[coupling.input, 0]
     places = [axes.places[i, 0] for i in around]
     flat = [place - (place * normal).sum() * normal for place in places]
