@@ -16,6 +16,10 @@ from sevenbar.design.task.programs import MinimaxValues, lowered
 PLANAR = {0: 57.155, 2: 58.07, 5: 59.50, 10: 61.83, 15: 63.21, 20: 64.00, 21.28: 64.11, 22.84: 64.158}
 
 
+#: The arcs of coupler and ground of the gallery's spherical four-bar [rad].
+ARC_2, ARC_4 = math.radians(80), math.radians(85)
+
+
 def acute(cosines):
     angle = np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
     return np.minimum(angle, 180 - angle)
@@ -32,7 +36,7 @@ def planar(crank, rocker, coupler=100.0, ground=100.0):
     return np.degrees(np.abs(dead[1] - dead[0])), np.minimum(*angles)
 
 
-def spherical(crank, rocker, coupler=math.radians(80), ground=math.radians(85)):
+def spherical(crank, rocker, coupler=ARC_2, ground=ARC_4):
     """The same of arcs [rad], by the spherical law of cosines."""
 
     def corner(a, b, far):

@@ -5,9 +5,9 @@ solves
 
     least f1    with f2 <= e                                                                          (1)
 
-or the same with f1 and f2 exchanged (the epsilon constraint). At the ends e is the best value of f2 alone. From
-there the widest gap between neighbours is halved, both values relative to their extent; the want that differs
-more there is bounded. Each search begins at the neighbouring designs found so far.
+or the same with f1 and f2 exchanged (the epsilon constraint). At the ends e is the best value of f2 alone.
+From there the widest gap between neighbours is halved, both values relative to their extent; the want that
+differs more there is bounded. Each search begins at the neighbouring designs found so far.
 
 Source: Y. Haimes, L. Lasdon and D. Wismer, "On a bicriterion formulation of the problems of integrated system
 identification and system optimization", IEEE Trans. Systems, Man, and Cybernetics 1 (1971), 296-297.
@@ -40,7 +40,7 @@ BESIDES = 1e-12
 #: Two points closer than this share of the front's extent are the same, and count as equally good.
 SAME = 1e-4
 
-#: What a want at its best may lose while the other is improved [relative, and of its unit]: more than rounding.
+#: What a want at its best may lose while the other is improved [relative, and of its unit]: beyond rounding.
 LOST = 1e-9
 
 #: A gap narrower than this share of the front's extent is not halved.

@@ -113,7 +113,7 @@ class TaskModel:
             self.figure_musts.append(kinds.FigureMust("transmission_lowest", least=math.degrees(least)))
         names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
         self.figures = Figures(loop, list(dict.fromkeys(names)))
-        #: Wants and musts of the least transmission angle in closed form, and the measures that are worked out.
+        #: Wants and musts of the least transmission angle in closed form, and the measures worked out.
         self.in_line = LeastAngle(loop)
         self.angle_wants = [want for want in self.figure_wants if self._in_line(want)]
         self.angle_musts = [must for must in self.figure_musts if self._in_line(must) and must.most is None]
@@ -493,29 +493,27 @@ class TaskProblem:
             model.effort.take(model.searched.motions - before)
         if found is None:
             return None
-        read = {name: own for name, *own in zip(model.searched.names, *found, strict=True)}
-        ends: list[tuple[float, Floats]] | None = []
+        read = {
+            name: [(float(own[0]), own[1])] for name, *own in zip(model.searched.names, *found, strict=True)
+        }
+        ends: list[tuple[float, Floats]] = []
         if model.angle_wants or model.angle_musts:
-            ends = model.in_line.ends(values, self._anchor, slopes=slopes)
-            if not ends:
+            both = model.in_line.ends(values, self._anchor, slopes=slopes)
+            if both is None:
                 return None
-            read["transmission_lowest"] = min(ends, key=lambda end: end[0])
+            ends, read["transmission_lowest"] = both, [min(both, key=lambda end: end[0])]
         lefts = [
             (want.weight * value, want.weight * by)
             for want in model.figure_wants
             # each end a height of its own: the lower of two has a kink where they are equal
-            for own in (
-                ends
-                if self.minimax and want in model.angle_wants and want.value == "great"
-                else [read[want.name]]
-            )
+            for own in (ends if self.minimax and self._by_ends(want) else read[want.name])
             for value, by in [figure_left(want, *own)]
         ]
         rooms = [
             (way * (value - end) / unit, way * by / unit)
             for must in model.figure_musts
             if must not in model.angle_musts
-            for value, by in [read[must.name]]
+            for value, by in read[must.name]
             for way, end in ((1.0, must.least), (-1.0, must.most))
             if end is not None
             for unit in [max(abs(end), 1e-3)]
@@ -524,6 +522,10 @@ class TaskProblem:
             least = must.least or 0.0
             rooms += [((value - least) / max(least, 1.0), by / max(least, 1.0)) for value, by in ends]
         return self._stacked(lefts), self._stacked(rooms)
+
+    def _by_ends(self, want: kinds.FigureWant) -> bool:
+        """Whether it is the least of two angles that shall be great."""
+        return want in self.model.angle_wants and want.value == "great"
 
     def _stacked(self, rows: Sequence[tuple[float, Floats]]) -> Rooms:
         """Single values with slopes (k,) by the free numbers, as (r,) with those by all unknowns."""

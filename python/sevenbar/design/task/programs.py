@@ -28,11 +28,11 @@ FIRST_REACH, MOST_REACH, LEAST_REACH = 0.1, 1.0, 1e-9
 #: Gain of a step, relative to the greatest height, below which it is the last.
 WORTH = 1e-5
 
-#: Weight of a missed room relative to the greatest height, at first and at most, and by how much it rises where
-#: a room would be missed for a lower height: its multiplier is greater.
+#: Weight of a missed room relative to the greatest height, at first and at most, and by how much it rises
+#: where a room would be missed for a lower height: its multiplier is greater.
 MISSED, MOST_MISSED, RISE = 100.0, 1e8, 10.0
 
-#: A room missed by more than the least that can be within the reach, relative to it, is missed for the height.
+#: A room missed by more than the least within the reach, relative to what is missed, is missed for a height.
 TRADED = 1e-6
 
 #: Least unit of heights: what rounding leaves.
@@ -53,7 +53,7 @@ class MinimaxValues:
 
     @property
     def unit(self) -> float:
-        """The greatest height, or missed room, by which a program is scaled: solvers have absolute tolerances."""
+        """The greatest height or missed room, which scales a program: solvers have absolute tolerances."""
         return max(float(self.height.max()), self.missed, LEAST_UNIT)
 
     @property

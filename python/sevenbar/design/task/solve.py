@@ -120,18 +120,20 @@ def solved(
     leads to, or the start has taken all the motions that it may.
     """
     model.effort.begin(effort.WHOLE if whole else effort.LOOK)
-    found = _least_squares(model, seed, evaluations, FIRST[0])
-    if whole and (found is None or (found.stuck and not _ended(found.problem, found.z))):
+    # where measures must hold the programs know better from the first step on
+    alone = whole and model.task.goal == "minimax" and bool(model.figure_musts) and model.searched.measured
+    found = _begun(model, seed) if alone else _least_squares(model, seed, evaluations, FIRST[0])
+    if whole and not alone and (found is None or (found.stuck and not _ended(found.problem, found.z))):
         # a first step too far may have led into a corner where the linkage hardly closes
         other = _least_squares(model, seed, evaluations, FIRST[1])
         if found is None or (other is not None and other.size < found.size):
             found = other
-    if whole and found is not None and NOTHING < found.size <= EXACT:
+    if whole and not alone and found is not None and NOTHING < found.size <= EXACT:
         found = _least_squares(model, found.problem.seed(found.z), LONG, FIRST[0])
     if found is None:
         return None
     problem, z = found.problem, found.z
-    if not whole or found.size > most or _hopeless(problem, z):
+    if not whole or (found.size > most and not alone) or _hopeless(problem, z):
         return _as_solved(problem, z, math.nan)
     if model.task.goal != "least squares":
         problem = TaskProblem(model, problem.seed(z), minimax=True)
@@ -208,6 +210,13 @@ class _Squares:
     @property
     def size(self) -> float:
         return self.problem.size(self.z)
+
+
+def _begun(model: TaskModel, seed: TaskSeed) -> _Squares | None:
+    """A problem at its seed as it is; `None` where the linkage does not close."""
+    problem = TaskProblem(model, seed)
+    z = problem.within(problem.start)
+    return None if problem.at(z) is None else _Squares(problem, z, stuck=False)
 
 
 def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: float) -> _Squares | None:
