@@ -260,8 +260,9 @@ class TaskProblem:
         self._taken = z.tobytes(), self.at(z)
         if poses is not None:
             self._poses = poses
-            if len(poses):
-                self._anchor = poses[0]
+            near = poses[:1] if len(poses) else self.loop.near(self.values(z), self._anchor)
+            if near is not None:
+                self._anchor = near[0]
 
     def seed(self, z: Floats) -> TaskSeed:
         """The start that z is."""

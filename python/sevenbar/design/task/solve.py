@@ -242,7 +242,7 @@ def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: fl
             return np.concatenate([here.left_by, weight * missed[:, None] * here.room_by])
 
         most = min(evaluations, model.effort.left)
-        if model.figure_musts and model.searched.measured:
+        if model.figure_musts:
             # penalties only lead near: a measure has kinks at which their steps become short
             most = min(most, NEAR_BY)
         nearest = nearest_least(

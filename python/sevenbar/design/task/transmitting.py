@@ -56,8 +56,8 @@ class LeastAngle:
         if self._made is None or not self.known:
             return None
         loop = self._loop
-        q = loop.closed(values, anchor[[loop.input]], loop.poses(values, anchor[None]))
-        if not np.isfinite(q).all():
+        q = loop.near(values, anchor)
+        if q is None:
             return None
         here = loop.here(values, q, slopes=slopes)
         found = self._made.turning(here.points[:, self._places], here.points_by[:, self._places, :, :-1])

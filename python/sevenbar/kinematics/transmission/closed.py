@@ -71,6 +71,7 @@ def turns_in_line(coupling: Coupling, letters: str) -> bool:
     return coupling.kind != "ball" and own == "RRR" and letters[coupling.output] in "RP"
 
 
+@np.errstate(invalid="ignore", divide="ignore")
 def turning_cosines(coupling: Coupling, axes: Axes) -> Floats | None:
     """The cosines (2,) of the angle where the input is in line with the ground, by the axes of a pose.
 
@@ -88,8 +89,7 @@ def turning_cosines(coupling: Coupling, axes: Axes) -> Floats | None:
         cosines = [(u * v).sum() for u, v in pairs]
         sines = [np.sqrt((w * w).sum()) for w in (np.cross(u, v) for u, v in pairs)]
         apart = [cosines[0] * cosines[3] + way * sines[0] * sines[3] for way in (1, -1)]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return np.array([(x - cosines[1] * cosines[2]) / (sines[1] * sines[2]) for x in apart])
+        return np.array([(x - cosines[1] * cosines[2]) / (sines[1] * sines[2]) for x in apart])
     normal = axes.directions[coupling.input, 0]
     places = [axes.places[i, 0] for i in around]
     flat = [place - (place * normal).sum() * normal for place in places]
