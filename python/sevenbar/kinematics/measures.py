@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any, Literal
 
 from sevenbar.errors import RequestError, no_joint, shown, suggestion
-from sevenbar.forces.sizing import Bearing, Sizing
+from sevenbar.forces.sizing import Bearing, CycleLoads
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.motion import Motion, Solvable, chosen_circuit
@@ -124,7 +124,7 @@ def _of_rate(rate: Literal["velocity", "acceleration", "jerk"]) -> list[Measure]
     return _ends(rate, rate, *titles)
 
 
-def _of_sizing(name: str, quantity: Quantity, pick: Callable[[Sizing], float], title: str) -> Measure:
+def _of_sizing(name: str, quantity: Quantity, pick: Callable[[CycleLoads], float], title: str) -> Measure:
     """A number of a circuit's sizing; none where its torque has no bound."""
 
     def value(circuit: Circuit) -> float | None:
@@ -223,7 +223,7 @@ def _of_bearing(pick: Callable[[Bearing], float]) -> Callable[[Circuit, str], fl
 
     def value(circuit: Circuit, joint: str) -> float | None:
         found = sized(circuit, (joint,))
-        number = math.nan if found is None else pick(found.bearings[joint])
+        number = math.nan if found is None else pick(found.bearing(joint))
         return number if math.isfinite(number) else None
 
     return value
