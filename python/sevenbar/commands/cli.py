@@ -290,8 +290,8 @@ def plot_(
     kind: Annotated[
         list[str] | None,
         typer.Option(
-            help=f"{', '.join(KINDS)}, or all (the default), without the last two; may be repeated. "
-            "coupler: a point's path alone."
+            help=f"{', '.join(KINDS)}, or all (the default), without the last three; may be repeated. "
+            "coupler: a point's path alone; skeleton: the linkage in one pose, without numbers and legend."
         ),
     ] = None,
     point: options.PointName = None,
