@@ -238,9 +238,7 @@ def four_bar(
     others = head_of(name, length_unit, speed)
     given = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
     lengths = [_length(what, value, others) for what, value in given.items()]
-    named = [
-        {"name": of, "link": link, "at": [0.0, u, v]} for of, link, u, v in _in_links(points or {}, 3, others)
-    ]
+    named = [{"name": of, "link": link, "at": [0.0, u, v]} for of, link, u, v in _in_links(points, 3, others)]
     return _rows([(length, 0.0) for length in lengths], {**others, "layout": "planar", "point": named})
 
 
@@ -314,7 +312,7 @@ def slider_crank(
     starts = ([0.0, 0.0], [arm, 0.0], pin[:2])
     along = ((1.0, 0.0), ((pin[0] - arm) / length, pin[1] / length), (1.0, 0.0))
     named = [{"name": "pin", "link": 3, "at": pin}]
-    for of, link, u, v in _in_links(points or {}, 3, others):
+    for of, link, u, v in _in_links(points, 3, others):
         (x, y), (c, s) = starts[link - 1], along[link - 1]
         named.append({"name": of, "link": link, "at": [x + u * c - v * s, y + u * s + v * c, 0.0]})
     return _drawn(joints, named, others)
@@ -491,9 +489,11 @@ def _proportional(a: float, name: str, alpha: float, beta: float) -> float:
 
 
 def _in_links(
-    points: Points, links: int, others: Mapping[str, Any]
+    points: Points | None, links: int, others: Mapping[str, Any]
 ) -> Iterator[tuple[str, int, float, float]]:
     """The points of a planar linkage by name, link and place, once checked."""
+    if points is None:
+        return
     check_kind("points", points, Mapping, "points by name; give {name: (link, (u, v))}")
     for name, given in points.items():
         if not isinstance(given, Sequence) or len(given) != 2 or not hasattr(given[1], "__len__"):

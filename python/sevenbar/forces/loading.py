@@ -96,6 +96,7 @@ def _by_link(given: Mapping[int, Body | Sequence[Body]]) -> dict[int, tuple[Body
     check_kind("bodies", given, Mapping, "a mapping of links; give one, as in {2: sevenbar.Body(..)}")
     found = {}
     for link, own in given.items():
+        whole_number("bodies", link, 1, None, "a link")
         bodies = tuple(own) if isinstance(own, (list, tuple)) else (own,)
         for body in bodies:
             if not isinstance(body, Body):

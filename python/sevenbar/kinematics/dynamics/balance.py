@@ -39,6 +39,8 @@ def balance_of(
         links = list(links)
     except TypeError:
         raise RequestError(f"links: {shown(links)} is no list of links; give one, as in [2, 4]") from None
+    for link in links:
+        refuse_no_link("links", link, linkage)
     twice = [link for i, link in enumerate(links) if link in links[:i]]
     if twice:
         raise RequestError(f"links: {twice[0]} is given twice; leave one out")

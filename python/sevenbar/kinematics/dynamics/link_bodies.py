@@ -85,7 +85,7 @@ def refuse_no_link(key: str, link: object, linkage: Loop, *, or_ground: bool = F
     last = moving + or_ground
     whole = isinstance(link, (int, np.integer)) and not isinstance(link, bool)
     if not whole or not 1 <= link <= last:  # type: ignore[operator]
-        what = "is the ground, which does not move" if link == moving + 1 else "is not a link"
+        what = "is the ground, which does not move" if whole and link == moving + 1 else "is not a link"
         more = ", the last is the ground" if or_ground else ""
         raise RequestError(f"{key}: link {shown(link)} {what}; give 1 to {last}{more}")
 

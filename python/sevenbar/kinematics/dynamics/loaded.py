@@ -54,14 +54,15 @@ def loading_with(
     Raises `RequestError` for a link or a joint that does not exist.
     """
     own = linkage.loading
+    # with the links that there are, which what acts alone does not know
+    for link in bodies if isinstance(bodies, Mapping) else ():
+        refuse_no_link("bodies", link, linkage)
     given = Loading(
         own.gravity if gravity is None else triple("gravity", gravity),
         own.bodies if bodies is None else bodies,  # type: ignore[arg-type]
         own.loads if loads is None else loads,  # type: ignore[arg-type]
         own.springs if springs is None else springs,  # type: ignore[arg-type]
     )
-    for link in given.bodies:
-        refuse_no_link("bodies", link, linkage)
     for i, load in enumerate(given.loads):
         refuse_no_link(f"loads[{i}]", load.link, linkage)
     found = []
