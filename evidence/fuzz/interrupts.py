@@ -136,7 +136,7 @@ def _one(command: str, after: float, how: signal.Signals, whole: set[str], tally
 
 
 def _begun(command: str, folder: str) -> subprocess.Popen[bytes]:
-    line = [sys.executable, "-m", "sevenbar.commands.cli", *command.split()]
+    line = [sys.executable, "-m", "sevenbar", *command.split()]
     here = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     return subprocess.Popen(
         line, cwd=folder, env=here, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE

@@ -1,15 +1,19 @@
-"""Signals that end a command: Ctrl+C, SIGTERM and SIGHUP; all leave nothing half written."""
+"""Signals that end a command: Ctrl+C, SIGTERM and SIGHUP; all leave nothing half written.
+
+The first module of the program that is imported, so it imports hardly anything.
+"""
 
 from __future__ import annotations
 
 import os
 import signal
 import sys
-import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from types import FrameType
+
+# as typing has it, which is large itself
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import FrameType
 
 #: Signals that end a command as Ctrl+C does: a closed terminal sends SIGHUP, batch systems SIGTERM.
 ENDING = [
@@ -41,12 +45,15 @@ class _Heed:
         self.number, self.at = number, now
         if self.working:
             raise KeyboardInterrupt
-        # nothing is open yet, or no longer
-        with suppress(OSError, ValueError):
+        # nothing is open yet, or no longer; an import within that of another module could find it half made
+        try:  # noqa: SIM105
             sys.stdout.flush()
-        with suppress(OSError, ValueError):
+        except (OSError, ValueError):
+            pass
+        try:
             os.write(2, f"sevenbar: {NOTHING}\n".encode())
-        os._exit(stopped())
+        finally:
+            os._exit(stopped())
 
 
 _heed = _Heed()
@@ -54,20 +61,21 @@ _heed = _Heed()
 
 def heed_signals() -> None:
     """Has the signals end this program in good order; one that is ignored, as under nohup, stays so."""
-    if threading.current_thread() is not threading.main_thread():
-        return
     for number in ENDING:
         if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _heed)
+            try:
+                signal.signal(number, _heed)
+            except ValueError:  # a thread beside the main one has no signals
+                return
 
 
-@contextmanager
-def at_work() -> Iterator[None]:
+class at_work:  # noqa: N801  used as a function is
     """While a command works a signal raises `KeyboardInterrupt`; else it ends the program at once."""
-    _heed.working = True
-    try:
-        yield
-    finally:
+
+    def __enter__(self) -> None:
+        _heed.working = True
+
+    def __exit__(self, *_: object) -> None:
         _heed.working = False
 
 

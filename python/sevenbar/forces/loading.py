@@ -18,9 +18,6 @@ if TYPE_CHECKING:
 #: Most loads, springs or turns that are counted: far beyond what a file holds.
 MOST = 1_000_000
 
-#: The module whose `drawn_bodies(linkage, circuit)` gives what exports draw; filled by the package.
-DRAWN_IN: dict[str, str] = {}
-
 
 @dataclass(frozen=True, eq=False)
 class Loading:

@@ -13,10 +13,11 @@ import numpy as np
 from sevenbar.arrays import Floats, triple
 from sevenbar.errors import RequestError, shown
 from sevenbar.forces.bodies import Body, as_one, flaw_alone
-from sevenbar.forces.loading import DRAWN_IN, Loading
+from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import inverse
+from sevenbar.text.above import DRAWN_IN
 from sevenbar.text.units import LENGTHS
 
 #: A centre within this part of a line's length, and an inertia within this part of itself, are symmetric

@@ -1,0 +1,22 @@
+"""The program `sevenbar`: it heeds Ctrl+C before anything large is imported."""
+
+from __future__ import annotations
+
+from sevenbar.commands.signals import heed_signals
+
+# as typing has it, which is large itself
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import NoReturn
+
+
+def main() -> NoReturn:
+    """Runs the command line; see `sevenbar.commands.cli`."""
+    heed_signals()
+    from sevenbar.commands import cli
+
+    cli.main()
+
+
+if __name__ == "__main__":
+    main()
