@@ -124,7 +124,6 @@ __all__ = [
 _ON_DEMAND = {
     "animate": "sevenbar.drawing.animate",
     "design": "sevenbar.design",
-    "errors": "sevenbar.errors",
     "export": "sevenbar.export",
     "gallery": "sevenbar.description.gallery",
     "plot": "sevenbar.drawing.plot",
@@ -217,6 +216,8 @@ def __getattr__(name: str) -> Any:
         module = importlib.import_module(f"sevenbar.{_NAMES_ON_DEMAND[name]}")
         found = globals()[name] = getattr(module, name)
         return found
+    if name == "errors":
+        return importlib.import_module("sevenbar.errors")
     if name in _ON_DEMAND:
         module = importlib.import_module(_ON_DEMAND[name])
         # what it offers, without what it imports

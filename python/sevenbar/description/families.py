@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -285,8 +286,8 @@ def slider_crank(
     is the place of the pin on the slider, whose guide lies `offset` above the crank's pivot. Drawn with the
     crank along x, theta = 0; the slider's value is the change of x from there. The pin is the point `pin`.
     Other `points` are named as those of `four_bar`, each (link, (u, v)): u along crank or rod from its first
-    joint, of the slider along x from the pin. `Circuit.point(link, at)` takes the coordinates of the drawing.
-    Raises `RequestError` where the rod does not reach the guide.
+    joint, of the slider along x from the pin. `Circuit.point(link, at)` takes (u, v) likewise. Raises
+    `RequestError` where the rod does not reach the guide.
 
         >>> import sevenbar as sb
         >>> sb.slider_crank(40, 140).motion().motion_type
@@ -315,7 +316,7 @@ def slider_crank(
     for of, link, u, v in _in_links(points, 3, others):
         (x, y), (c, s) = starts[link - 1], along[link - 1]
         named.append({"name": of, "link": link, "at": [x + u * c - v * s, y + u * s + v * c, 0.0]})
-    return _drawn(joints, named, others)
+    return replace(_drawn(joints, named, others), points_by_two=True)
 
 
 def universal_joint(

@@ -172,7 +172,7 @@ def circuit_arrays(motion: Motion, circuit: Circuit, units: Units) -> dict[str, 
         "residual": circuit.residual * scale,
     }
     for point in motion.linkage.points:
-        trace = circuit.point(point.link, point.at)
+        trace = circuit.point(point.name)
         for quantity in ("position", "velocity", "acceleration"):
             arrays[f"point_{point.name}_{quantity}"] = getattr(trace, quantity) * scale
     return arrays

@@ -90,7 +90,7 @@ def unit_shaking(linkage: Solvable, circuit: Circuit, link: int) -> Floats:
     Source: docs/theory_forces.md, (18).
     """
     metre = LENGTHS[linkage.length_unit]
-    frame = rates_of_frame(partial(circuit.point, link), circuit.size)
+    frame = rates_of_frame(partial(circuit.written_point, link), circuit.size)
     (place, axes), (acceleration, axes_rate) = frame("position"), frame("acceleration")
     unit = np.empty((len(place), 4, 6))
     unit[:, 3, :3], unit[:, 3, 3:] = -(metre**2) * np.cross(place, acceleration), -metre * acceleration

@@ -169,7 +169,8 @@ class Loop(Drawable):
     `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
     tables and keys of a file, from which a linkage with other numbers is made. Redundant constraints `agree`
     up to a closure error [rad, or relative to the size], the usual one where it is `None`;
-    `loading` is what acts on it, `stops` what keeps it from moving on: they change no motion.
+    `loading` is what acts on it, `stops` what keeps it from moving on: they change no motion. With
+    `points_by_two` a circuit takes a place on a link by two numbers only, as the points were given.
 
     Source: docs/theory.md, (1).
     """
@@ -189,6 +190,7 @@ class Loop(Drawable):
     loading: Loading = field(default=UNLOADED, repr=False)
     agree: float | None = None
     stops: Stops = field(default=NO_STOPS, repr=False)
+    points_by_two: bool = field(default=False, repr=False)
 
     def __post_init__(self) -> None:
         check_name("name", self.name)
