@@ -38,6 +38,7 @@ from sevenbar.errors import (
 )
 from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.kinematics.linkage import sample_count
+from sevenbar.reporting.facts import idle_note
 from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.ranges import Place
@@ -344,6 +345,9 @@ def plot_(
         kinds.remove("transmission")
     report = figures_report(kinds, points, circuit, formats, look)
     tell_written(write_files(report, motion, out, force=force), below=False)
+    drawn = [link for link, _ in points.values()] if {"point", "coupler"} & set(kinds) else []
+    if idle := idle_note(loaded, drawn):
+        typer.echo(idle)
 
 
 def _kinds(given: list[str] | None) -> list[str]:

@@ -152,6 +152,9 @@ def note(motion: Motion, units: Units, *, flat: bool = False) -> dict[str, Any]:
         "speed": None if motion.law is not None else speed,
         "motion_type": motion.motion_type,
         "samples": motion.samples,
+        # freedoms that move no other link, which a convention holds, and the links that have them
+        "idle": list(motion.idle),
+        "idle_links": sorted(linkage.idle_links) if motion.idle else [],
     }
 
 
