@@ -88,9 +88,9 @@ def test_a_place_of_the_drawing_is_refused_of_a_slider_crank_which_has_places_on
         (
             lambda: sb.load("rssr"),
             2,
-            "at: 2 numbers are a place in the plane of turning and sliding joints; give three",
+            "at: 2 numbers; give three, as two are a place on a link of turning and sliding joints in a plane",
         ),
-        (lambda: sb.load("bennett"), 2, "at: 2 numbers are a place in the plane"),
+        (lambda: sb.load("bennett"), 2, "at: 2 numbers; give three"),
         (lambda: sb.load("planar_4r"), 7, "link: 7 is not a link; give 1 to 4"),
     ],
 )

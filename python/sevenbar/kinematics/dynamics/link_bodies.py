@@ -12,7 +12,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, triple
 from sevenbar.errors import RequestError, shown
-from sevenbar.forces.bodies import Body, as_one, flaw_alone
+from sevenbar.forces.bodies import Body, as_one, flaw_alone, shaped
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.loop.geometry import Loop
@@ -95,6 +95,11 @@ def _worked_out(body: Body, link: int, linkage: Solvable, solids: Callable[[], M
     """A body by its centre and inertia, whatever it was given by."""
     if body.solid == "rod":
         return _rod(body.mass, link, linkage)
+    if body.is_shaped:
+        try:
+            return shaped(body, LENGTHS[linkage.length_unit], joint_places(linkage, link))
+        except RequestError as error:
+            raise RequestError(f"bodies[{link}]: {error}") from None
     if body.solid == "drawn":
         steel = solids()[link]
         share = body.mass / steel.mass if body.mass else 1.0

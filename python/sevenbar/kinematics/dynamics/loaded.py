@@ -10,10 +10,11 @@ import numpy.typing as npt
 
 from sevenbar.arrays import triple
 from sevenbar.forces.acting import Load, Spring
-from sevenbar.forces.bodies import Body, entries_of
+from sevenbar.forces.bodies import SHAPES, Body, entries_of
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.dynamics.link_bodies import refuse_no_link
 from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.text.listed import listed
 from sevenbar.text.units import ANGLES, LENGTHS, MASSES
 
 L = TypeVar("L", bound=Loop)
@@ -84,6 +85,10 @@ def _body(link: int, body: Body, mass_unit: str, linkage: Loop) -> dict[str, Any
         table["mass"] = body.mass / kilogram
     if body.solid is not None:
         table["solid"] = body.solid
+    for key in SHAPES.get(body.solid or "", ()):
+        value = getattr(body, key)
+        if value is not None:
+            table[key] = [list(end) for end in value] if key == "ends" else listed(value)
     if body.centre is not None:
         table["centre"] = list(body.centre)
     if body.tensor.any():

@@ -36,7 +36,9 @@ def written_place(loop: Loop, link: int, at: Floats) -> tuple[float, float, floa
         return triple("at", at)
     plane = plane_of(loop)
     if plane is None or {*loop.kind} - {*"RP"}:
-        raise RequestError("at: 2 numbers are a place in the plane of turning and sliding joints; give three")
+        raise RequestError(
+            "at: 2 numbers; give three, as two are a place on a link of turning and sliding joints in a plane"
+        )
     if loop.in_rows and set(loop.kind) == {"R"}:
         return 0.0, float(at[0]), float(at[1])  # as rows have it, of the ground, too
     # a turn about the normal, or a slide, leaves it as it is
