@@ -66,3 +66,36 @@ def test_a_signal_while_numpy_is_imported_ends_the_program_in_one_line(number):
         "",
         "sevenbar: stopped; nothing is written\n",
     )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of processes are those of POSIX")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize(
+    "within",
+    [
+        # Python remembers that Ctrl+C came within a text that was run, and would end by SIGINT whatever follows
+        "exec('import os; os.kill(os.getpid(), {number})')",
+        # an import in which a signal comes may fail as that of a library that is missing
+        "try:\n        os.kill(os.getpid(), {number})\n    except KeyboardInterrupt:\n"
+        "        raise sb.errors.MissingExtraError('step needs build123d') from None",
+    ],
+)
+def test_a_signal_at_work_ends_with_its_code_wherever_it_came(number, within):
+    code = (
+        "import os, signal, sys\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "import sevenbar as sb\n"
+        "from sevenbar.__main__ import main\n"
+        "import sevenbar.description.gallery as gallery\n"
+        "def names():\n"
+        f"    {within.format(number=int(number))}\n"
+        "gallery.names = names\n"
+        "sys.argv = ['sevenbar', 'gallery']\n"
+        "main()\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (
+        128 + number,
+        "",
+        "sevenbar: stopped; nothing is written\n",
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sevenbar.commands.signals import heed_signals
+from sevenbar.commands.signals import heed_signals, leave
 
 # as typing has it, which is large itself
 TYPE_CHECKING = False
@@ -15,7 +15,11 @@ def main() -> NoReturn:
     heed_signals()
     from sevenbar.commands import cli
 
-    cli.main()
+    try:
+        cli.main()
+    except SystemExit as end:
+        leave(end.code)
+        raise
 
 
 if __name__ == "__main__":

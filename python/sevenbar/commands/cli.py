@@ -88,7 +88,8 @@ class _Commands(typer.core.TyperGroup):
             with at_work():
                 return super().invoke(ctx)
         except (KeyboardInterrupt, Exception) as error:
-            if isinstance(error, KeyboardInterrupt) or (_is_fault(error) and has_just_come()):
+            # a signal in the import of a library may come out as that it is missing
+            if isinstance(error, KeyboardInterrupt) or (_is_error(error) and has_just_come()):
                 typer.echo(f"sevenbar: {NOTHING}", err=True)
                 raise typer.Exit(stopped()) from None
             raise
@@ -106,9 +107,9 @@ class _Commands(typer.core.TyperGroup):
         return super().resolve_command(ctx, args)
 
 
-def _is_fault(error: Exception) -> bool:
-    """Whether an error is none that ends a command in good order."""
-    return not isinstance(error, SevenbarError | typer.Exit | typer.Abort) and not hasattr(error, "exit_code")
+def _is_error(error: Exception) -> bool:
+    """Whether it is an error, and not the end of a command in good order."""
+    return not isinstance(error, typer.Exit | typer.Abort) and not hasattr(error, "exit_code")
 
 
 app = typer.Typer(

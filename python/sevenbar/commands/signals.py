@@ -30,6 +30,10 @@ CTRL_C = 128 + signal.SIGINT
 NOTHING = "stopped; nothing is written"
 
 
+def _say_nothing(_: object) -> None:
+    """In place of Python's words on an error that nobody can catch."""
+
+
 class _Heed:
     """Which signal came last, and when; and whether a command is at work."""
 
@@ -44,6 +48,8 @@ class _Heed:
             return
         self.number, self.at = number, now
         if self.working:
+            # what fails while it is taken down, as a half written sheet does, is no news
+            sys.unraisablehook = _say_nothing
             raise KeyboardInterrupt
         # nothing is open yet, or no longer; an import within that of another module could find it half made
         try:  # noqa: SIM105
@@ -82,6 +88,21 @@ class at_work:  # noqa: N801  used as a function is
 def has_just_come() -> bool:
     """Whether a signal came within the last second: what fails then may fail for it, as drawing in C does."""
     return time.monotonic() - _heed.at < ECHO
+
+
+def leave(code: object) -> None:
+    """Ends the program at once if its exit code is that of a signal: all that was open is closed by then.
+
+    Python itself would take down every library first, and where the signal came within a text that was run,
+    as the making of a class is, end as if Ctrl+C had never been caught.
+    """
+    if _heed.at > 0 and code == stopped():
+        for stream in (sys.stdout, sys.stderr):
+            try:
+                stream.flush()
+            except (OSError, ValueError):
+                break
+        os._exit(stopped())
 
 
 def stopped() -> int:
