@@ -157,18 +157,24 @@ fn look_beside_paths(curves: &mut Curves, chain: &Chain) {
     }
 }
 
-/// Searches for a pose where the loop closes at no general input, real or not: a structure closes at inputs that no seed has, and so
-/// does a loop in which the input stands still while other joints move.
+/// Searches for poses where the loop closes at no general input, real or not: a structure closes at inputs that no seed has, and so does a
+/// loop in which the input stands still while other joints move, or one whose circuits are all next to nothing wide. One pose of a structure
+/// will do; where the loop moves, each may lie on a circuit of its own.
 fn look_for_a_structure(curves: &mut Curves, chain: &Chain) {
     let column = curves.search.columns[0];
     let finder = ModeFinder::new(chain, column);
-    if finder.algebraic().is_none_or(|a| !a.own().is_empty()) {
+    // where paths were lost the solutions that are left say nothing of the others
+    let closes = finder.algebraic().is_none_or(|a| !a.own().is_empty());
+    if closes && !finder.is_degenerate() {
         return;
     }
-    if let Some(pose) = ALL_FREE.first(chain, column, None, |_| true) {
+    for pose in ALL_FREE.poses(chain, column, None) {
         curves.search.completeness = Completeness::Searched;
         curves.search.count = Err(Uncounted::Searched);
         curves.take(chain, &[pose], curves.wished[0]);
+        if curves.is_empty() {
+            return;
+        }
     }
 }
 
