@@ -109,9 +109,10 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             out.take(chain, &modes, wished[0]);
         }
         if let (Some(survey), Some(circle)) = (survey, circle) {
-            let mut count = counted(&mut out, chain, &survey, circle, (seed, wished[0]));
-            if let Ok(count) = &mut count {
-                look_into(&mut out, chain, &finder, count);
+            let mut count = counted(&mut out, &survey, circle, wished[0]);
+            if chain.joints.iter().any(|j| matches!(j, Joint::Ball(_))) && is_open(&count) {
+                let tilted = ModeFinder::with_tilted_balls(chain, seed);
+                count = counted_again(&mut out, &tilted, wished[0], count);
             }
             if seed == out.search.columns[0] || count.as_ref().is_ok_and(|c| c.open.is_empty()) {
                 out.search.count = count;
@@ -183,17 +184,34 @@ fn is_doubtful(curves: &Curves) -> bool {
     }
 }
 
-/// The account of a column's branch points; curves that it leads to are followed.
-fn counted(
+/// Whether branch points are not all accounted for.
+fn is_open(count: &Result<Count, Uncounted>) -> bool {
+    !count.as_ref().is_ok_and(|c| c.open.is_empty())
+}
+
+/// The account with a ball's turns about other axes; the one before where that is no better.
+fn counted_again(
     curves: &mut Curves,
-    chain: &Chain,
-    survey: &Survey,
-    circle: Circle,
-    (column, rising): (usize, usize),
+    tilted: &ModeFinder,
+    rising: usize,
+    before: Result<Count, Uncounted>,
 ) -> Result<Count, Uncounted> {
+    let Some(survey) = Survey::new(tilted) else {
+        return before;
+    };
+    let Some(circle) = tilted.around(SEEDS, Some(&survey.watch)).1 else {
+        return before;
+    };
+    let count = counted(curves, &survey, circle, rising);
+    if is_open(&count) { before } else { count }
+}
+
+/// The account of a column's branch points; curves that it leads to are followed.
+fn counted(curves: &mut Curves, survey: &Survey, circle: Circle, rising: usize) -> Result<Count, Uncounted> {
+    let (chain, column) = (survey.finder.chain, survey.finder.input);
     let known = known_zeros(curves, chain, survey, column);
     let mut far: Vec<f64> = Vec::new();
-    counting::count(survey, circle, known, &mut |pose| {
+    let mut count = counting::count(survey, circle, known, &mut |pose| {
         if follow::is_far(chain, pose) {
             // a curve is not followed so far, but may turn back there
             far.push(pose.values[column]);
@@ -206,7 +224,11 @@ fn counted(
         let mut known = known_zeros(curves, chain, survey, column);
         known.dead_centres.extend(&far);
         known
-    })
+    });
+    if let Ok(count) = &mut count {
+        look_into(curves, chain, survey.finder, count);
+    }
+    count
 }
 
 /// Searches ranges too narrow to be counted, where solutions meet: in an isolated pose they are real at one input only.

@@ -16,7 +16,9 @@ use super::starts::{distinct, general_count};
 use super::straight::carried;
 use crate::loops::equation::chain::{BALLS, Chain, Configuration, Joint};
 use crate::loops::equation::closure::{JOINTS, Parameters, Slides, Solution, UNKNOWNS};
-use crate::loops::equation::rotations::{Rotation, Z_TO_X, ball_rotation, rotation, short_way, squared_up};
+use crate::loops::equation::rotations::{
+    Rotation, Z_TO_X, ball_rotation, product, rotation, short_way, squared_up, transposed,
+};
 use crate::random::Random;
 use crate::rigid::Pose;
 use num_complex::Complex64;
@@ -79,6 +81,8 @@ pub(crate) struct ModeFinder<'a> {
     pub slides: Slides,
     /// The fixed transforms: after the input, and after each unknown.
     pub transforms: Vec<Pose>,
+    /// The axes of the balls' turns, in the frame of each ball.
+    ball_axes: Rotation,
     /// The closure and the class of its geometry; `None` where there is no algebraic way.
     closure: Option<Closure>,
     /// Found when it is first asked for.
@@ -96,12 +100,22 @@ const Z_TO_Y: Rotation = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]];
 
 impl<'a> ModeFinder<'a> {
     pub fn new(chain: &'a Chain, input: usize) -> Self {
+        Self::with_ball_axes(chain, input, Pose::STILL.rotation)
+    }
+
+    /// With the turns of balls about other axes: where turns about one choice of them are singular, as in a gimbal, these are not.
+    pub fn with_tilted_balls(chain: &'a Chain, input: usize) -> Self {
+        Self::with_ball_axes(chain, input, random_pose(&mut Random(0x7117)).rotation)
+    }
+
+    fn with_ball_axes(chain: &'a Chain, input: usize, ball_axes: Rotation) -> Self {
         let mut finder = Self {
             chain,
             input,
             unknowns: Vec::new(),
             slides: [false; UNKNOWNS],
             transforms: Vec::new(),
+            ball_axes,
             closure: None,
             generic: OnceCell::new(),
         };
@@ -116,11 +130,12 @@ impl<'a> ModeFinder<'a> {
             match chain.joints[joint] {
                 Joint::Ball(b) => {
                     let (y, x) = (Pose::turning(Z_TO_Y), Pose::turning(Z_TO_X));
-                    before.push(lead);
+                    let axes = Pose::turning(ball_axes);
+                    before.push(lead.then(&axes));
                     before.push(y);
                     before.push(y.inverse().then(&x));
                     finder.unknowns.extend((0..3).map(|k| Unknown::BallTurn(b, k)));
-                    lead = x.inverse().then(&chain.links[joint]);
+                    lead = x.inverse().then(&axes.inverse()).then(&chain.links[joint]);
                 }
                 kind => {
                     algebraic &= !matches!(kind, Joint::Screw(_));
@@ -416,7 +431,8 @@ impl<'a> ModeFinder<'a> {
             }
         }
         for (ball, t) in out.balls.iter_mut().zip(&turns) {
-            *ball = ball_rotation(t);
+            let turned = product(&self.ball_axes, &ball_rotation(t));
+            *ball = product(&turned, &transposed(&self.ball_axes));
         }
         Some(out)
     }
