@@ -110,9 +110,9 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         }
         if let (Some(survey), Some(circle)) = (survey, circle) {
             let mut count = counted(&mut out, &survey, circle, wished[0]);
-            if chain.joints.iter().any(|j| matches!(j, Joint::Ball(_))) && is_open(&count) {
-                let tilted = ModeFinder::with_tilted_balls(chain, seed);
-                count = counted_again(&mut out, &tilted, wished[0], count);
+            if finder.has_free_axes() && is_open(&count) {
+                let other = ModeFinder::about_other_axes(chain, seed);
+                count = counted_again(&mut out, &other, wished[0], count);
             }
             if seed == out.search.columns[0] || count.as_ref().is_ok_and(|c| c.open.is_empty()) {
                 out.search.count = count;
@@ -189,21 +189,28 @@ fn is_open(count: &Result<Count, Uncounted>) -> bool {
     !count.as_ref().is_ok_and(|c| c.open.is_empty())
 }
 
-/// The account with a ball's turns about other axes; the one before where that is no better.
+/// The account once more by a finder about other axes: a range that balances by either is settled.
 fn counted_again(
     curves: &mut Curves,
-    tilted: &ModeFinder,
+    finder: &ModeFinder,
     rising: usize,
     before: Result<Count, Uncounted>,
 ) -> Result<Count, Uncounted> {
-    let Some(survey) = Survey::new(tilted) else {
+    let Some(survey) = Survey::new(finder) else {
         return before;
     };
-    let Some(circle) = tilted.around(SEEDS, Some(&survey.watch)).1 else {
+    let Some(circle) = finder.around(SEEDS, Some(&survey.watch)).1 else {
         return before;
     };
     let count = counted(curves, &survey, circle, rising);
-    if is_open(&count) { before } else { count }
+    match (before, count) {
+        (Ok(mut before), Ok(count)) => {
+            before.settle_those_missing_in(&count.open);
+            Ok(before)
+        }
+        (Err(_), Ok(count)) => Ok(count),
+        (before, Err(_)) => before,
+    }
 }
 
 /// The account of a column's branch points; curves that it leads to are followed.

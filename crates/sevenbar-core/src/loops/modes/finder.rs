@@ -100,15 +100,16 @@ const Z_TO_Y: Rotation = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]];
 
 impl<'a> ModeFinder<'a> {
     pub fn new(chain: &'a Chain, input: usize) -> Self {
-        Self::with_ball_axes(chain, input, Pose::STILL.rotation)
+        Self::with_axes(chain, input, Pose::STILL.rotation, 0x5eed)
     }
 
-    /// With the turns of balls about other axes: where turns about one choice of them are singular, as in a gimbal, these are not.
-    pub fn with_tilted_balls(chain: &'a Chain, input: usize) -> Self {
-        Self::with_ball_axes(chain, input, random_pose(&mut Random(0x7117)).rotation)
+    /// With the turns of balls, and the added joints, about other axes: where those about one choice are singular, as in a gimbal, these
+    /// are not.
+    pub fn about_other_axes(chain: &'a Chain, input: usize) -> Self {
+        Self::with_axes(chain, input, random_pose(&mut Random(0x7117)).rotation, 0xadded)
     }
 
-    fn with_ball_axes(chain: &'a Chain, input: usize, ball_axes: Rotation) -> Self {
+    fn with_axes(chain: &'a Chain, input: usize, ball_axes: Rotation, added: u64) -> Self {
         let mut finder = Self {
             chain,
             input,
@@ -145,12 +146,12 @@ impl<'a> ModeFinder<'a> {
                 }
             }
         }
-        let mut random = Random(0x5eed);
+        let mut random = Random(added);
         while finder.unknowns.len() < UNKNOWNS {
-            let added = random_pose(&mut random);
-            before.push(lead.then(&added));
+            let pose = random_pose(&mut random);
+            before.push(lead.then(&pose));
             finder.unknowns.push(Unknown::Added);
-            lead = added.inverse();
+            lead = pose.inverse();
         }
         before.push(lead);
         for (slide, unknown) in finder.slides.iter_mut().zip(&finder.unknowns) {
@@ -165,6 +166,11 @@ impl<'a> ModeFinder<'a> {
             finder.closure = Some(Closure::of(transforms, &finder.slides, chain.joints[input_joint]));
         }
         finder
+    }
+
+    /// Whether the axes of some unknowns are of its own choice: those of a ball's turns, and of added joints.
+    pub fn has_free_axes(&self) -> bool {
+        self.unknowns.iter().any(|u| !matches!(u, Unknown::Column(_)))
     }
 
     pub fn completeness(&self) -> Completeness {
