@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 from evidence.rewritten.ways import Way
 from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.linkage import Linkage
 
 #: Samples of a turn.
 SAMPLES = 36
@@ -31,6 +33,8 @@ class Answers:
     circuits: list[Numbers]
     four_bar: Numbers
     is_change: bool
+    #: Whether some circuit is followed to a distance only, as a slide runs to infinity.
+    runs_off: bool = False
 
 
 def answers_of(way: Way) -> Answers:
@@ -46,7 +50,8 @@ def answers_of(way: Way) -> Answers:
         "circuits that close": sorted(circuit.closed for circuit in motion.circuits),
         "change points": len(motion.change_points),
         "dead centres": sorted(len(circuit.dead_centres) for circuit in motion.circuits),
-        "not followed": search.unfollowed,
+        # how many of the modes at the values that were searched lie on what is not followed is chance
+        "some not followed": search.unfollowed > 0,
         "freedoms": mobility.freedoms,
         "finite": mobility.finite,
         "idle": len(mobility.idle),
@@ -64,9 +69,13 @@ def answers_of(way: Way) -> Answers:
         four_bar = {f"link {k + 1}": length for k, length in enumerate(lengths)}
     limits = [_input(way, value, turns) for value in motion.limits]
     is_change = bool(len(motion.change_points)) or "change" in motion.motion_type
-    return Answers(
-        words, sorted(limits), [_circuit(way, one) for one in motion.circuits], four_bar, is_change
-    )
+    numbers = [_circuit(way, one) for one in motion.circuits]
+    return Answers(words, sorted(limits), numbers, four_bar, is_change, runs_off=_runs_off(linkage, motion))
+
+
+def _runs_off(linkage: Linkage, motion: Motion) -> bool:
+    open_ends = any(not circuit.closed and len(circuit.dead_centres) < 2 for circuit in motion.circuits)
+    return open_ends and any(kind in "PC" for kind in linkage.kind)
 
 
 def _input(way: Way, value: float, turns: bool) -> float:
@@ -123,6 +132,10 @@ def reason(drawn: Answers, written: Answers) -> str:
     """Why answers may differ, as docs/not-covered.md has it; empty where they may not."""
     if "searched" in (drawn.words.get("completeness"), written.words.get("completeness")):
         return "searched, screws and slides within bounds that count from how it is written"
+    if drawn.runs_off and written.runs_off:
+        return "slides run to infinity, and are followed to a distance from where they are written"
+    if not drawn.circuits and not written.circuits and drawn.words.get("motion type") == "rigid":
+        return "of a structure that shakes, rank and redundant constraints are known to the root of rounding"
     return ""
 
 

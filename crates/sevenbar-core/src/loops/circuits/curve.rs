@@ -158,10 +158,10 @@ impl Curve {
         self.nodes.iter().any(Node::is_crossing)
     }
 
-    /// Whether a column stands still, up to rounding, all along.
+    /// Whether a column stands still, up to rounding, all along. The place of a change point is known to the root of rounding only.
     pub fn rests(&self, column: usize) -> bool {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for node in &self.nodes {
+        for node in self.nodes.iter().filter(|n| !n.is_crossing()) {
             low = low.min(node.at.values[column]);
             high = high.max(node.at.values[column]);
         }
