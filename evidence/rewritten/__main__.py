@@ -45,7 +45,7 @@ def compared(one: Drawing, seed: int) -> Compared:
                 first = answers
                 found.moves = bool(answers.circuits)
                 continue
-            why = reason(first, answers)
+            why = reason(way, first, answers)
             for difference in differences(way, first, answers):
                 (found.explained if why else found.differences).append(f"{difference}{why and ': '}{why}")
     found.seconds = time.process_time() - start

@@ -128,7 +128,7 @@ def differences(way: Way, drawn: Answers, written: Answers) -> Iterator[str]:
             yield from _numbers("circuit", one, best, near, way)
 
 
-def reason(drawn: Answers, written: Answers) -> str:
+def reason(way: Way, drawn: Answers, written: Answers) -> str:
     """Why answers may differ, as docs/not-covered.md has it; empty where they may not."""
     if "searched" in (drawn.words.get("completeness"), written.words.get("completeness")):
         return "searched, screws and slides within bounds that count from how it is written"
@@ -136,6 +136,8 @@ def reason(drawn: Answers, written: Answers) -> str:
         return "slides run to infinity, and are followed to a distance from where they are written"
     if not drawn.circuits and not written.circuits and drawn.words.get("motion type") == "rigid":
         return "of a structure that shakes, rank and redundant constraints are known to the root of rounding"
+    if not way.same_ground and {drawn.words.get("idle"), written.words.get("idle")} == {0, 1}:
+        return "beside the ground the turn of a link is a motion of all others as one body"
     return ""
 
 
