@@ -26,7 +26,7 @@ const NARROWING: f64 = 1e4;
 
 /// Nearer to a change point than this [rad, or relative to the size] so many steps are followed at least: it is what the curve runs into.
 const NEAR_STOP: f64 = 0.1;
-pub(super) const MOST_NARROWING_NEAR: usize = 20_000;
+pub(super) const MOST_NARROWING_NEAR: usize = 8_000;
 
 /// Most nodes of curves that are walked side by side, 260 MB; those that are still under way by then end there.
 const MOST_TOGETHER: usize = 600_000;
