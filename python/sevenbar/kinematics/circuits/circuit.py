@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Integers, ReadOnly, Words, counted, triple, whole_number
+from sevenbar.arrays import Floats, Integers, ReadOnly, Words, counted, finite_array, triple, whole_number
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
 from sevenbar.kinematics.circuits.with_extents import ExtentAnswers, WithExtents
@@ -48,6 +48,9 @@ class Answers(ExtentAnswers, Protocol):
 
     def point(self, name: str) -> Point:
         """A named point; raises `RequestError` where there is none."""
+
+    def place(self, link: int, at: Floats) -> tuple[float, float, float]:
+        """A place on a link as the file writes it, from two or three numbers."""
 
     def transmission_angle(self, circuit: Circuit) -> Floats | None:
         """On each row (n,) [rad]."""
@@ -338,12 +341,14 @@ class Circuit(ReadOnly, Printed, WithExtents):
         return min(ends[branch : branch + 2]), max(ends[branch : branch + 2])
 
     @ends_here
-    def point(self, link: int | str, at: tuple[float, float, float] | None = None) -> Trace:
+    def point(self, link: int | str, at: Sequence[float] | None = None) -> Trace:
         """A point of link 1, 2, .. along the circuit, or a point of the linkage by its name.
 
-        `at` is written as for the points of the file: (u, v, w) in Denavit-Hartenberg rows, in the
-        link's frame for `[rssr]`, in ground coordinates of the drawn pose for drawn joints. Raises
-        `RequestError` for a link or a name that does not exist.
+        Of a planar linkage two numbers will do for `at`, (u, v): u along the link from its first joint to the
+        next, v to its left. Three are written as for the points of the file: (u, v, w) in Denavit-Hartenberg
+        rows, in the link's frame for `[rssr]`, in ground coordinates of the drawn pose for drawn joints.
+        Raises `RequestError` for a link or a name that does not exist, and for three numbers of a linkage
+        whose points are written by two, as those of `sevenbar.slider_crank`.
 
         Source: docs/theory.md, (16).
 
@@ -360,10 +365,16 @@ class Circuit(ReadOnly, Printed, WithExtents):
             if at is not None:
                 raise RequestError(f"at: point {shown(link)} has its place; leave `at` out, or give a link")
             named = self._answers.point(link)
-            return self.point(named.link, named.at)
-        frame = self._frame(link)
+            return self.written_point(named.link, named.at)
+        self._frame(link)
         if at is None:
             raise RequestError("at: a link needs a place on it; give three numbers, or a point by its name")
+        return self.written_point(link, self._answers.place(link, finite_array("at", at)))
+
+    @ends_here
+    def written_point(self, link: int, at: tuple[float, float, float]) -> Trace:
+        """A place of a link along the circuit, in the coordinates in which the file writes its points."""
+        frame = self._frame(link)
         return self._point(int(link), placed(frame, triple("at", at)))
 
     @ends_here
@@ -593,7 +604,7 @@ class Circuit(ReadOnly, Printed, WithExtents):
         """How a link moves, by the frame in which its points are written; and the status of each row."""
         from sevenbar.kinematics.loop.screw_axes import Twists
 
-        origin, turning = self.point(link, (0.0, 0.0, 0.0)), self.link_motion(link)
+        origin, turning = self.written_point(link, (0.0, 0.0, 0.0)), self.link_motion(link)
         frame = pose(turning.rotation @ self._frame(link)[:3, :3], origin.position)
         return Twists(frame, turning.velocity, origin.velocity), origin.status
 
