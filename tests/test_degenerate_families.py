@@ -335,3 +335,17 @@ def test_screws_of_vanishing_pitch_turn_as_hinges(off: float) -> None:
     # at the drawn pose the screw has not advanced: the drawn mode is among those that a search finds
     assert len(hinge) >= 1
     assert np.abs(screw.q).max(axis=1).min() < 1e-9
+
+
+@pytest.mark.slow
+def test_seven_axes_at_right_angles_whose_circuits_run_into_a_surface_are_found_within_bounds():
+    """Links of lengths 1 and 0 in turn: circuits near the folded pose as the cube of what is left to it."""
+    rows = {"length": [1, 0] * 3 + [1], "twist": ["90 deg", "-90 deg"] * 3 + [0], "offset": [0] * 7}
+    motion = sb.from_dh("R" * 7, **rows).motion(36)
+    assert motion.motion_type == "change-point"
+    assert len(motion) >= 16
+    assert sum(circuit.closed for circuit in motion) == 4
+    assert max(float(np.nanmax(circuit.residual)) for circuit in motion) < 1e-12
+    # both freedoms of the surface, and the ends of the circuits that run into it
+    assert max(point.freedoms for point in motion.change_points) == 2
+    assert 0 < motion.search.unfollowed < 100

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from evidence.fuzz import batches, checks, files, loops, messages, page, rssrs, summary, watch, ways
+from evidence.fuzz import batches, checks, files, loops, messages, page, rssrs, summary, watch, ways, wild
 from evidence.fuzz.tally import Finding, Tally
 from evidence.fuzz.toml import written
 from sevenbar.description.forms import from_description
@@ -283,3 +283,15 @@ def test_mutations_reach_every_stage_of_the_loader() -> None:
     assert 0.03 < seen["loaded"] / total < 0.6
     assert 0.1 < broken_toml / total < 0.7
     assert len(seen) > 40
+
+
+def test_a_loop_in_a_process_of_its_own_says_what_it_took(capsys: pytest.CaptureFixture[str]) -> None:
+    one = wild.taken(2, 3)
+    assert (one.family, one.index) == ("lattice again", 2)
+    assert one.time > 0
+    assert one.memory > 1e6
+    wild.main(["--loops", "9"])
+    words = capsys.readouterr().out
+    assert "9 loops, " in words
+    assert "ended with" not in words
+    assert [wild.drawn(k, 3) for k in range(8)] == [wild.drawn(k, 3) for k in range(8)]

@@ -25,6 +25,12 @@ const MOST_ALIKE: usize = 64;
 /// curve, and each takes a second.
 const MOST_ENDLESS: usize = 2;
 
+/// Nodes of all arcs after which the same holds, 130 MB: many arcs run ever more slowly into places where curves touch.
+const MOST_HELD: usize = 300_000;
+
+/// Places of a curve at which it nearly loses rank that are looked at: where it does all along, rounding makes thousands of them.
+const MOST_NARROW: usize = 64;
+
 /// Curves that near a place ever more slowly are followed farther until so many led to none.
 const MOST_PATIENCE: usize = 4;
 
@@ -97,9 +103,15 @@ impl Arcs {
         self.arcs.is_empty()
     }
 
-    /// Whether so many curves have no end that nothing more is followed.
+    /// Whether so many curves have no end, or arcs so many nodes, that nothing more is followed.
     pub fn is_endless(&self) -> bool {
-        self.endless >= MOST_ENDLESS
+        let held: usize = self.arcs.iter().map(|a| a.curve.nodes.len()).sum();
+        self.endless >= MOST_ENDLESS || held > MOST_HELD
+    }
+
+    /// Forgets the arcs, once they are joined.
+    pub fn forget(&mut self) {
+        self.arcs = Vec::new();
     }
 
     /// How many ways out of the points were not followed, as curves have no end.
@@ -380,13 +392,17 @@ fn shifted(node: &Node, turns: &Columns) -> Node {
     out
 }
 
-/// Where a curve nearly loses rank without an end: a place of it at each least distance.
+/// Where a curve nearly loses rank without an end: a place of it at each least distance, of many the nearest.
 pub(super) fn narrow_places(curve: &Curve) -> Vec<Configuration> {
     let norm = |k: usize| curve.nodes.get(k).map_or(0.0, |n| n.inverse_norm);
-    (0..curve.nodes.len())
+    let mut places: Vec<usize> = (0..curve.nodes.len())
         .filter(|&k| norm(k) > NARROW && norm(k) >= norm(k + 1) && (k == 0 || norm(k) >= norm(k - 1)))
-        .map(|k| curve.nodes[k].at)
-        .collect()
+        .collect();
+    if places.len() > MOST_NARROW {
+        places.sort_by(|&a, &b| norm(b).total_cmp(&norm(a)));
+        places.truncate(MOST_NARROW);
+    }
+    places.into_iter().map(|k| curve.nodes[k].at).collect()
 }
 
 /// Whether a curve is one that an arc is part of.

@@ -24,8 +24,9 @@ const MOST_PIECE_NODES: usize = 5_000;
 pub(super) const MOST_NARROWING: usize = 1_000;
 const NARROWING: f64 = 1e4;
 
-/// Nearer to a change point than this [rad, or relative to the size] steps are not counted: it is what the curve runs into.
+/// Nearer to a change point than this [rad, or relative to the size] so many steps are followed at least: it is what the curve runs into.
 const NEAR_STOP: f64 = 0.1;
+pub(super) const MOST_NARROWING_NEAR: usize = 8_000;
 
 /// Most nodes of curves that are walked side by side, 260 MB; those that are still under way by then end there.
 const MOST_TOGETHER: usize = 600_000;
@@ -420,15 +421,12 @@ impl Walk<'_> {
         if stopped {
             return Some(End::Singular);
         }
-        self.narrowing[walker] = if narrower && !near {
-            self.narrowing[walker] + 1
-        } else {
-            0
-        };
-        if let Until::Narrow(most) = self.until
-            && self.narrowing[walker] > most
-        {
-            return Some(End::Narrow);
+        self.narrowing[walker] = if narrower { self.narrowing[walker] + 1 } else { 0 };
+        if let Until::Narrow(most) = self.until {
+            let most = if near { most.max(MOST_NARROWING_NEAR) } else { most };
+            if self.narrowing[walker] > most {
+                return Some(End::Narrow);
+            }
         }
         let curve = &self.curves[walker];
         let start = &curve.nodes[0].at;

@@ -1,7 +1,7 @@
 //! Curves walked again: farther towards a place that they near slowly, or the other way.
 
 use super::curve::{Curve, End, Node, measure, passes_through};
-use super::follow::{self, MOST_NARROWING, Start, Stop, Until};
+use super::follow::{self, MOST_NARROWING, MOST_NARROWING_NEAR, Start, Stop, Until};
 use crate::loops::equation::chain::Chain;
 use crate::loops::equation::dense::COLUMNS;
 
@@ -24,7 +24,8 @@ pub(super) fn follow_on(
         if found || !curve.ends_by(End::Narrow) || *patience == 0 {
             return found;
         }
-        if most >= MOST_NARROWING_AT_ALL {
+        // one that ends next to a known place would end there on another walk, too
+        if most >= MOST_NARROWING_AT_ALL || curve.nodes.len() > MOST_NARROWING_NEAR {
             *patience -= 1;
             return found;
         }
