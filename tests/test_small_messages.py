@@ -1,13 +1,17 @@
 """What people type first and nearly right: each is taken, or answered with what to write."""
 
 import importlib
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
 import sevenbar as sb
 from commands import mistake
+from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError
+from sevenbar.reporting.four_bar_text import grashof_text
 
 
 def test_public_modules_are_imported_by_their_public_names():
@@ -40,6 +44,64 @@ def test_points_of_planar_families_lie_along_their_links():
     assert np.allclose(np.linalg.norm(bar.point("B").position - [90, 0, 0], axis=1), 80)
 
 
+@pytest.mark.parametrize("offset", [0, 40, -40])
+def test_two_numbers_are_a_place_along_its_link_in_every_planar_family_and_in_the_file_of_it(offset):
+    places = {"A": (1, (20, 5)), "G": (2, (225, 30)), "S": (3, (7, -8))}
+    family = sb.slider_crank(125, 500, offset, points=places)
+    written = Draft.of_linkage(family).linkage
+    turned = sb.from_axes(
+        [
+            {"kind": "R", "at": (9, 0, 0), "axis": (1, 0, 0)},
+            {"kind": "R", "at": (9, 125, 0), "axis": (1, 0, 0)},
+            {"kind": "R", "at": (9, 125 + (500**2 - offset**2) ** 0.5, offset), "axis": (1, 0, 0)},
+            {"kind": "P", "at": (9, 125 + (500**2 - offset**2) ** 0.5, offset), "axis": (0, 1, 0)},
+        ]
+    )
+    for linkage in (family, written):
+        circuit = linkage.motion(24)[0]
+        for name, (link, at) in places.items():
+            assert np.allclose(circuit.point(link, at).position, circuit.point(name).position, atol=1e-9)
+            there, named = circuit.at(0.3).point(link, at).velocity, circuit.at(0.3).points[name].velocity
+            assert np.allclose(there, named)
+    one, other = family.motion(24)[0], turned.motion(24)[0]
+    for link, at in places.values():
+        assert np.allclose(
+            one.point(link, at).position[:, :2], other.point(link, at).position[:, 1:], atol=1e-9
+        )
+    bar = sb.four_bar(40, 100, 80, 90).motion(24)[0]
+    for link in (1, 2, 3, 4):
+        assert np.array_equal(bar.point(link, (50, 30)).position, bar.point(link, (0, 50, 30)).position)
+
+
+def test_a_place_of_the_drawing_is_refused_of_a_slider_crank_which_has_places_on_its_links():
+    circuit = sb.slider_crank(125, 500).motion(24)[0]
+    for asked in (circuit, circuit.at(0.3)):
+        with pytest.raises(
+            RequestError, match=r"at: three numbers would be a place of the drawing here, .* give two"
+        ):
+            asked.point(2, at=(0, 225, 0))
+    # the file of it writes its points in the drawing, as every drawing does
+    file = Draft.of_linkage(sb.slider_crank(125, 500)).linkage.motion(24)[0]
+    assert np.allclose(file.point(2, (350, 0, 0)).position, circuit.point(2, (225, 0)).position)
+
+
+@pytest.mark.parametrize(
+    ("linkage", "link", "says"),
+    [
+        (
+            lambda: sb.load("rssr"),
+            2,
+            "at: 2 numbers; give three, as two are a place on a link of turning and sliding joints in a plane",
+        ),
+        (lambda: sb.load("bennett"), 2, "at: 2 numbers; give three"),
+        (lambda: sb.load("planar_4r"), 7, "link: 7 is not a link; give 1 to 4"),
+    ],
+)
+def test_two_numbers_are_no_place_where_there_is_no_plane(linkage, link, says):
+    with pytest.raises(RequestError, match=says):
+        linkage().motion(24)[0].point(link, (1, 2))
+
+
 @pytest.mark.parametrize(
     ("given", "says"),
     [
@@ -67,7 +129,10 @@ def test_a_map_needs_no_count():
     assert said == "over: L1: '100:400:61' has a count, and a map needs none; give 100:400"
 
 
-@pytest.mark.parametrize(("unit", "meant"), [("Hz", "rev/s"), ("U/min", "rpm"), ("1/min", "rpm")])
+@pytest.mark.parametrize(
+    ("unit", "meant"),
+    [("Hz", "rev/s"), ("U/min", "rpm"), ("1/min", "rpm"), ("min^-1", "rpm"), ("s^-1", "rev/s")],
+)
 def test_other_words_for_speeds_are_known(unit, meant):
     with pytest.raises(RequestError, match=f"did you mean '{meant}'"):
         sb.load("rssr").motion(speed=f"2 {unit}")
@@ -101,3 +166,23 @@ def test_a_column_that_is_not_read_is_named_where_a_kind_lacks(tmp_path):
     assert "in a column 'kind'; not read: 'Typ'" in mistake("analyze", str(table))
     table.write_text("a_(i-1),alpha_(i-1),d_i,theta_i\n0,0,0,0\n1,0,0,0\n", encoding="utf-8")
     assert "modified (Craig's) Denavit-Hartenberg rows" in mistake("analyze", str(table))
+
+
+def test_a_font_that_is_missing_is_said_once_for_all_figures(tmp_path):
+    """In a process of its own: what was said is remembered by the program."""
+    code = (
+        "import sys, sevenbar.drawing.fonts as fonts; fonts._installed = lambda: None;"
+        "from sevenbar.commands.cli import main;"
+        f"sys.argv = ['sevenbar', 'plot', 'planar_4r', '--lang', 'zh', '-o', {str(tmp_path / 'a')!r}, '--kind', 'curves,joints'];"
+        "main()"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert result.returncode == 0
+    assert result.stderr.count("no font with Chinese characters") == 1
+
+
+def test_a_report_spells_the_classes_of_grashof_as_its_motion_types():
+    assert grashof_text(sb.four_bar(50, 60, 70, 100).as_four_bar(), "mm").endswith(
+        "; triple-rocker: no joint turns fully"
+    )
+    assert grashof_text(sb.four_bar(50, 90, 50, 90).as_four_bar(), "mm").endswith("; change-point")

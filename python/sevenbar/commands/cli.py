@@ -38,6 +38,7 @@ from sevenbar.errors import (
 )
 from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.kinematics.linkage import sample_count
+from sevenbar.reporting.facts import idle_note
 from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.ranges import Place
@@ -87,7 +88,8 @@ class _Commands(typer.core.TyperGroup):
             with at_work():
                 return super().invoke(ctx)
         except (KeyboardInterrupt, Exception) as error:
-            if isinstance(error, KeyboardInterrupt) or (_is_fault(error) and has_just_come()):
+            # a signal in the import of a library may come out as that it is missing
+            if isinstance(error, KeyboardInterrupt) or (_is_error(error) and has_just_come()):
                 typer.echo(f"sevenbar: {NOTHING}", err=True)
                 raise typer.Exit(stopped()) from None
             raise
@@ -105,9 +107,9 @@ class _Commands(typer.core.TyperGroup):
         return super().resolve_command(ctx, args)
 
 
-def _is_fault(error: Exception) -> bool:
-    """Whether an error is none that ends a command in good order."""
-    return not isinstance(error, SevenbarError | typer.Exit | typer.Abort) and not hasattr(error, "exit_code")
+def _is_error(error: Exception) -> bool:
+    """Whether it is an error, and not the end of a command in good order."""
+    return not isinstance(error, typer.Exit | typer.Abort) and not hasattr(error, "exit_code")
 
 
 app = typer.Typer(
@@ -290,8 +292,8 @@ def plot_(
     kind: Annotated[
         list[str] | None,
         typer.Option(
-            help=f"{', '.join(KINDS)}, or all (the default), without the last two; may be repeated. "
-            "coupler: a point's path alone."
+            help=f"{', '.join(KINDS)}, or all (the default), without the last three; may be repeated. "
+            "coupler: a point's path alone; skeleton: the linkage in one pose, without numbers and legend."
         ),
     ] = None,
     point: options.PointName = None,
@@ -344,6 +346,9 @@ def plot_(
         kinds.remove("transmission")
     report = figures_report(kinds, points, circuit, formats, look)
     tell_written(write_files(report, motion, out, force=force), below=False)
+    drawn = [link for link, _ in points.values()] if {"point", "coupler"} & set(kinds) else []
+    if idle := idle_note(loaded, drawn):
+        typer.echo(idle)
 
 
 def _kinds(given: list[str] | None) -> list[str]:
@@ -392,6 +397,10 @@ def gallery(
         typer.echo(f"{name:<{width}}  {sb.load(name).name}")
 
 
+#: Warnings of fonts that this program has written.
+_warned: set[str] = set()
+
+
 def _tell_warning(
     message: Warning | str,
     category: type[Warning],
@@ -402,6 +411,11 @@ def _tell_warning(
 ) -> None:
     """Writes a warning of ours as one line on the error stream, any other as Python does."""
     text = warnings.formatwarning(message, category, filename, lineno, line)
+    if issubclass(category, MissingFontWarning):
+        # of each figure, and the registry of what was said once is emptied on the way
+        if str(message) in _warned:
+            return
+        _warned.add(str(message))
     if issubclass(category, (AngleUnitWarning, MissingFontWarning)):
         text = f"sevenbar: {message}\n"
     (file or sys.stderr).write(text)
@@ -417,8 +431,7 @@ def main() -> NoReturn:
     with warnings.catch_warnings():
         warnings.showwarning = _tell_warning
         warnings.simplefilter("always", AngleUnitWarning)
-        # every figure would say it anew
-        warnings.simplefilter("once", MissingFontWarning)
+        warnings.simplefilter("always", MissingFontWarning)
         _run()
 
 

@@ -20,8 +20,10 @@ TURNING_SPEEDS = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.tau / 60, "r
 
 #: Other words for them.
 OTHER_SPEEDS = {
-    **dict.fromkeys(("hz", "1/s", "rps", "u/s"), "rev/s"),
-    **dict.fromkeys(("u/min", "1/min", "min-1", "tr/min", "rev/min"), "rpm"),
+    **dict.fromkeys(("hz", "1/s", "rps", "u/s", "s^-1", "s-1", "s\u207b\u00b9"), "rev/s"),
+    **dict.fromkeys(
+        ("u/min", "1/min", "min-1", "min^-1", "min\u207b\u00b9", "tr/min", "rev/min", "upm"), "rpm"
+    ),
 }
 
 #: Units of time and their size in seconds.
@@ -50,7 +52,8 @@ def as_written(value: float) -> float:
 def unknown_unit(given: object, known: Iterable[str]) -> str:
     """The message for a unit that does not exist."""
     known = list(known)
-    meant = OTHER_SPEEDS.get(str(given).strip().lower())
+    # nested without end it has no text
+    meant = OTHER_SPEEDS.get(given.strip().lower()) if isinstance(given, str) else None
     near = f"did you mean '{meant}'? " if meant in known else suggestion(given, known)
     return f"{shown(given)} is not a unit known here; {near}allowed: {', '.join(known)}"
 
