@@ -33,7 +33,10 @@ def map_(
         str | None, typer.Option(help="Values of the contours, as in '20,40,60'; round ones by default.")
     ] = None,
     grid: Annotated[
-        int | None, typer.Option(help="Lines of the grid along each range; 61 for an RSSR, else 25.")
+        int | None,
+        typer.Option(
+            help="Lines of the grid along each range; 61 for an RSSR, 25 with measures of forces and else."
+        ),
     ] = None,
     input_joint: options.InputJoint = None,
     follow: options.Follow = None,
@@ -54,7 +57,13 @@ def map_(
     """Map motion types over two dimensions, with exact boundaries, and contours of any measure."""
     from sevenbar.design.maps.atlas import motion_map
     from sevenbar.design.maps.figures import sheet
-    from sevenbar.design.maps.heights import check_take, levels_of, measure_heights, with_contours
+    from sevenbar.design.maps.heights import (
+        check_take,
+        levels_of,
+        measure_heights,
+        usual_lines,
+        with_contours,
+    )
     from sevenbar.design.maps.report import MapFindings, map_report
     from sevenbar.design.maps.window import split_ranges
 
@@ -75,10 +84,12 @@ def map_(
         found = motion_map(
             loaded,
             ranges,
-            grid=grid,
+            grid=usual_lines(chosen) if grid is None else grid,
             input=input_joint,
             follow=options.words(follow, "--follow"),
             progress=progress,
         )
-        heights = measure_heights(found, chosen, take=which, levels=at) if chosen else ()
+        heights = (
+            measure_heights(found, chosen, take=which, levels=at, ahead=progress.ahead) if chosen else ()
+        )
     deliver(MapFindings(found, heights), report, out, json=json, force=force)

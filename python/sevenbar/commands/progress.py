@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
 
+#: Work that takes less [s] is not announced.
+SHORT = 5.0
+
+
 class WorkBar:
     """What was reported of one piece of work: a bar on a terminal, one plain line elsewhere."""
 
@@ -40,6 +44,17 @@ class WorkBar:
             self._begin(done, total)
         if self._bar is not None and self._task is not None:
             self._bar.update(self._task, completed=done, total=total or None, best=best)
+
+    def ahead(self, count: int, seconds: float) -> None:
+        """Says before long work how many linkages are analysed one by one, and how long that takes about."""
+        if seconds < SHORT:
+            return
+        time = f"{seconds / 60:.0f} min" if seconds > 90 else f"{seconds:.0f} s"
+        words = f"about {count:,} linkages are analysed one by one, which takes some {time}"
+        if self._bar is None:
+            typer.echo(words, err=True)
+        else:
+            self._bar.console.print(words, highlight=False)
 
     def end(self, *, erase: bool) -> None:
         """Leaves the bar as it is, or takes it away."""

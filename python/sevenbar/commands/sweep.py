@@ -93,7 +93,7 @@ def sweep(
     with progress_bar(f"sweep of {draft.linkage.name}", rate=True, kept=options.kept_in(out)) as progress:
         found = carry_out(
             plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
-            progress=progress,
+            progress=progress, ahead=progress.ahead,
         )  # fmt: skip
     deliver(found, Report(partial(_text, plan.held), _as_dict, spoken=True), json=json)
     if out is not None and not json:

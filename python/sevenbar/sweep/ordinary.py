@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,19 @@ def analysed(plan: SweepPlan, values: Floats, first: int, which: Integers) -> Bl
         np.array(status, dtype=object),
         columns,
     )
+
+
+def seconds_of_one(plan: SweepPlan) -> float:
+    """How long the design itself takes [s]; 0 where it cannot be measured."""
+    try:
+        # the first time imports count
+        for _ in range(2):
+            start = perf_counter()
+            linkage = plan.draft.with_values({}).linkage
+            rows_of(linkage.motion(plan.samples, input=plan.input, output=plan.output), plan.measured)
+    except SevenbarError:
+        return 0.0
+    return perf_counter() - start
 
 
 def _measured(motion: Motion, measures: tuple[Measure, ...], linkage: int) -> Iterator[Row]:

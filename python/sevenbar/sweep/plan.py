@@ -19,7 +19,7 @@ from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
+from sevenbar.kinematics.measures import MEASURES, Measure, is_of_forces, measures_named
 from sevenbar.kinematics.solvers.batches import simd_level
 from sevenbar.sweep.axes import Given
 from sevenbar.sweep.checked import OWN, checksum
@@ -29,7 +29,7 @@ from sevenbar.sweep.space import Space
 FORMAT = 2
 
 #: Linkages of a part: what a processor makes in some tenths of a second to seconds, and a file worth opening.
-PART_OF_TYPES, PART_OF_CIRCUITS, PART_OF_LOOPS = 65536, 16384, 256
+PART_OF_TYPES, PART_OF_CIRCUITS, PART_OF_LOOPS, PART_OF_FORCES = 65536, 16384, 256, 32
 
 #: Most linkages of a part: some dozens of parts are in memory at once.
 MOST_IN_A_PART = 2**20
@@ -96,6 +96,11 @@ class SweepPlan:
     def measured(self) -> tuple[Measure, ...]:
         """The measures themselves."""
         return tuple(MEASURES[m] if isinstance(m, str) else m for m in self.measures)
+
+    @property
+    def of_forces(self) -> bool:
+        """Whether one of the measures is of forces, which take their time at every linkage."""
+        return _of_forces(self.measured)
 
     @property
     def per_circuit(self) -> bool:
@@ -166,9 +171,15 @@ class SweepPlan:
 
 def _part_size(draft: Draft, measures: Sequence[Measure]) -> int:
     """Linkages of a part, by how long they take: never by the machine, since resumed parts must fit."""
+    if _of_forces(measures):
+        return PART_OF_FORCES
     if draft.linkage.form != "rssr" or not all(MEASURES.get(m.name) is m for m in measures):
         return PART_OF_LOOPS
     return PART_OF_TYPES if OF_TYPES.issuperset(m.name for m in measures) else PART_OF_CIRCUITS
+
+
+def _of_forces(measures: Sequence[Measure]) -> bool:
+    return any(is_of_forces(measure.name) for measure in measures)
 
 
 def _function_dict(measure: Measure) -> dict[str, Any]:

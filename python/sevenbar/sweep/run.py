@@ -30,6 +30,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import Measure
 from sevenbar.sweep.axes import Given
 from sevenbar.sweep.held_folder import other_maker, refuse_unlike
+from sevenbar.sweep.ordinary import seconds_of_one
 from sevenbar.sweep.parts import PartsFolder
 from sevenbar.sweep.plan import SweepPlan, maker
 from sevenbar.sweep.result import Sweep
@@ -114,8 +115,13 @@ def carry_out(
     threads: int | None = None,
     scheduler: str | None = None,
     progress: Progress | None = None,
+    ahead: Callable[[int, float], object] | None = None,
 ) -> Sweep:
-    """The sweep of a plan; as `run` for the rest."""
+    """The sweep of a plan; as `run` for the rest.
+
+    `ahead` is called before the work of measures of forces with how many linkages are to be analysed and
+    about how long that takes here [s].
+    """
     need_pyarrow()
     if scheduler is not None and threads is not None:
         raise RequestError("threads: workers of a scheduler have their own; leave threads or scheduler out")
@@ -131,7 +137,9 @@ def carry_out(
         at_once = min(number, plan.parts)
         make = partial(part_bytes, plan, threads=number // at_once)
         on_threads = partial(made_on_threads, make, at_once)
-        return _filled(plan, [maker()], on_threads, out, resume=resume, mixed=mixed, progress=progress)
+        return _filled(
+            plan, [maker()], on_threads, out, resume=resume, mixed=mixed, progress=progress, ahead=ahead
+        )
     from sevenbar.sweep.cluster import Cluster
 
     with Cluster(scheduler, plan, part_bytes) as cluster:
@@ -155,6 +163,7 @@ def _filled(
     resume: bool,
     mixed: bool,
     progress: Progress | None,
+    ahead: Callable[[int, float], object] | None = None,
 ) -> Sweep:
     """The sweep with all its parts, the missing ones made."""
     refuse_unlike(makers, mixed=mixed)
@@ -165,6 +174,9 @@ def _filled(
         linkages = sum(len(plan.linkages(part)) for part in done)
         report = progress or silent
         report(linkages, plan.space.count)
+        if ahead is not None and plan.of_forces:
+            left = plan.space.count - linkages
+            ahead(left, left * seconds_of_one(plan))
         known = list(makers)
         missing = (part for part in range(plan.parts) if part not in done)
         with closing(made(missing)) as finished:

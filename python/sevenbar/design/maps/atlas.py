@@ -42,9 +42,9 @@ class Fineness(NamedTuple):
     samples: int
 
 
-#: An RSSR, whose extremes do not depend on the inputs: boundaries to a bend of half the window's radius. And
-#: loops that take some 10 ms a point, whose extremes are refined from the inputs.
-RSSR, LOOP = Fineness(RssrPlane, 61, 800, 1e-6, 8), Fineness(LoopPlane, 25, 0, 1e-3, 72)
+#: An RSSR: boundaries to a bend of half the window's radius. And loops that take some 10 ms a point. Extremes
+#: are refined from the inputs, and forces through so many rows are smooth where they are at all.
+RSSR, LOOP = Fineness(RssrPlane, 61, 800, 1e-6, 72), Fineness(LoopPlane, 25, 0, 1e-3, 72)
 
 #: Regions, holes and boundaries not wider than this are not drawn [tolerances]: where a boundary is a double
 #: one, as of a symmetric linkage, rounding leaves such specks on it.

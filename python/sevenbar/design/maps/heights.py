@@ -7,17 +7,18 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.design.maps.atlas import Map
+from sevenbar.design.maps.atlas import LOOP, Map
 from sevenbar.design.maps.outline import Region, joined
 from sevenbar.design.maps.plane import Take
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
+from sevenbar.kinematics.measures import MEASURES, Measure, is_of_forces, measures_named
 from sevenbar.text.printing import Printed
 
 #: About how many contour lines are drawn where none are asked for.
@@ -38,6 +39,13 @@ ALONG, DENSER = 2, 8
 #: How far inside their region samples of a boundary are taken [share], at least 2 tolerances: nothing to be
 #: seen on a sheet, and room for the boundary to bend between two samples of this distance [share].
 INSIDE, BEND = 3e-5, 7.5e-3
+
+#: Lines of a grid below which samples are wider apart, since each takes its time, and taken so much farther
+#: inside as boundaries bend between them, by the square, up to so far [share]: hardly to be seen.
+DENSE, MOST_INSIDE = 61, 1e-3
+
+#: Places of a measure's contours, as a part of those at which it is taken before: a rough count.
+IN_CONTOURS = 0.9
 
 #: Rounds in which narrow places are given more samples.
 ROUNDS = 3
@@ -80,11 +88,13 @@ def measure_heights(
     *,
     take: Take = "highest",
     levels: Sequence[float] | None = None,
+    ahead: Callable[[int, float], object] = lambda count, seconds: None,  # noqa: ARG005
 ) -> tuple[Heights, ...]:
     """Measures over a map, each with contour lines at `levels`, round ones by default.
 
     Of measures of circuits the "highest" or the "lowest" value of all circuits is taken, or that of the
-    circuit of an index. Raises `RequestError` for measures that are words or counts, and for levels that are
+    circuit of an index. `ahead` is called before the work with about how many linkages are measured and how
+    long that takes [s]. Raises `RequestError` for measures that are words or counts, and for levels that are
     no numbers.
 
         >>> import sevenbar as sb
@@ -100,8 +110,11 @@ def measure_heights(
         refuse_missing_circuit(of, int(take))
     wanted = None if levels is None else levels_of(levels)
     net = _net(of)
+    (own,), seconds = _timed(lambda: of.plane.values_at(_place(of), chosen, take))
+    count = round((1 + IN_CONTOURS * len(chosen)) * len(net.nodes))
+    ahead(count, count * seconds)
+    of.plane.expect(count)
     table = of.plane.values_at(net.nodes, chosen, take)
-    (own,) = of.plane.values_at(of.shares_of(np.array([[of.design.x, of.design.y]])), chosen, take)
     linkage = of.linkage
     output = linkage.columns[linkage.other_column(linkage.columns.index(of.input))]
     found = []
@@ -112,6 +125,23 @@ def measure_heights(
         unit, design = measure.unit(linkage, output), None if math.isnan(here) else here
         found.append(Heights(measure, take, unit, tuple(steps), contours, net.nodes, values, design))
     return tuple(found)
+
+
+def usual_lines(measures: Iterable[Measure]) -> int | None:
+    """Lines of a map's grid, where its measures say so: forces take their time at every linkage."""
+    return LOOP.lines if any(is_of_forces(measure.name) for measure in measures) else None
+
+
+def _place(of: Map) -> Floats:
+    """The place (1, 2) of the design [shares]."""
+    return of.shares_of(np.array([[of.design.x, of.design.y]]))
+
+
+def _timed(work: Callable[[], Floats]) -> tuple[Floats, float]:
+    """What work gives, and how long it takes [s] when it is done again: the first time imports count."""
+    work()
+    start = perf_counter()
+    return work(), perf_counter() - start
 
 
 def _read(of: Map, measure: Measure, take: Take, places: Floats) -> Floats:
@@ -254,7 +284,8 @@ def _triangles(
 
 def _margin(of: Map) -> float:
     """How far inside their region samples of a boundary are taken [share]."""
-    return max(INSIDE, 2 * of.tolerance)
+    wider = max(1.0, (DENSE - 1) / (len(of.grid) - 1))
+    return max(min(INSIDE * wider**2, MOST_INSIDE), 2 * of.tolerance)
 
 
 def _beside(loop: Floats, step: float, inside: float) -> Floats:

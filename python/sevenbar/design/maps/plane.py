@@ -71,6 +71,11 @@ class Plane(ABC):
         self._done = self._planned = 0
         self.count(0)
 
+    def expect(self, count: int) -> None:
+        """New work begins: about so many linkages are in sight."""
+        self._done, self._planned = 0, count
+        self.count(0)
+
     def count(self, done: int) -> None:
         """Reports that so many more linkages are done, of those in sight."""
         self._done += done
