@@ -12,6 +12,8 @@ import sevenbar as sb
 from sevenbar.commands.cli import app
 from sevenbar.description.draft import Draft
 from sevenbar.description.forms import from_description
+from sevenbar.design.task.file.reader import task_file
+from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.tolerance.sensitivities import sensitivities
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.loop.rigid import rotation_of
@@ -206,3 +208,58 @@ def test_arcs_of_a_spherical_drawing_are_named_as_what_they_are() -> None:
     assert draft.lengths == ()
     with pytest.raises(RequestError, match="'input_link' is an arc, which follows from the axes as drawn"):
         draft.dimension("input_link")
+
+
+# --- design tasks of drawings: their lengths, and the stops of the linkage
+
+TASK = """
+linkage = "four.toml"
+[free]
+input_link = "30:60"
+"P.x" = "0:150"
+[[want]]
+kind = "straight"
+point = "P"
+range = "{range}"
+"""
+
+
+def written(tmp_path, text, stop=""):
+    draft = Draft.of_linkage(planar())
+    (tmp_path / "four.toml").write_text(draft.toml() + stop)
+    (tmp_path / "task.toml").write_text(text)
+    return tmp_path / "task.toml"
+
+
+def test_a_design_task_frees_a_length_of_a_drawing(tmp_path) -> None:
+    task = task_file(written(tmp_path, TASK.format(range="0:90deg"))).task
+    assert [one.name for one in task.free] == ["input_link", "P.x"]
+    loop = TaskLoop(task.draft, task.names)
+    changed = loop.drawn(loop.start + np.array([5.0, 0.0])).linkage
+    assert changed.lengths == pytest.approx((INPUT + 5, COUPLER, OUTPUT))
+
+
+STOP = '\n[[stop]]\njoint = "{joint}"\nrange = ["-40deg", "60deg"]\n'
+
+
+@pytest.mark.parametrize("turns", [0, 360])
+def test_a_want_between_the_stops_of_the_input_is_taken(tmp_path, turns) -> None:
+    text = TASK.format(range=f"{turns - 40}:{turns + 60}deg")
+    assert task_file(written(tmp_path, text, STOP.format(joint="a"))).task.wants
+
+
+def test_a_want_beyond_a_stop_of_the_input_is_refused(tmp_path) -> None:
+    with pytest.raises(
+        DescriptionError, match=r"want\[1\]: its inputs, .* go beyond a stop of a, .*; give inputs between"
+    ):
+        task_file(written(tmp_path, TASK.format(range="-30:61deg"), STOP.format(joint="a")))
+
+
+def test_a_stop_that_nothing_holds_is_refused_until_a_must_holds_it(tmp_path) -> None:
+    text = TASK.format(range="0:30deg")
+    with pytest.raises(
+        DescriptionError, match=r"must: none holds the stop of d, .* kind = 'range', joint = 'd'"
+    ):
+        task_file(written(tmp_path, text, STOP.format(joint="d")))
+    held = text + '[[must]]\nkind = "range"\njoint = "d"\nrange = "-40:60deg"\n'
+    assert task_file(written(tmp_path, held, STOP.format(joint="d"))).task.musts
