@@ -24,7 +24,7 @@ def random_planar(count, seed):
 
 def coupler_poses(circuit, rows, link=2):
     """The poses (n, 4, 4) of a link on rows of a circuit: its frame, at the link's own origin."""
-    places = circuit.point(link, (0.0, 0.0, 0.0)).position[rows]
+    places = circuit.written_point(link, (0.0, 0.0, 0.0)).position[rows]
     return pose(circuit.link_motion(link).rotation[rows], places)
 
 

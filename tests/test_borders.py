@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import copy
+import inspect
 import pickle
 from collections.abc import Callable
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -67,6 +69,26 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "plane": (lambda: sb.MotionPlane("a", (0, 0, 1), (1, 0, 0), (0, 1, 0)), "origin: 'a' is not a number; give"),
     "plane of two numbers": (lambda: sb.MotionPlane((0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0)), "origin: 2 numbers; give"),
     "sphere": (lambda: sb.MotionSphere((0, 0, 0), -1), "radius: -1 is not a length; give a number > 0"),
+    "array for a branch": (lambda: sb.load("rssr").motion(36)[0].at(0.3, branch=np.zeros(3)), "branch: array([0., 0., 0.]) is"),
+    "array for a link": (
+        lambda: loaded().motion(36)[0].counterweights(np.zeros((3, 3))), "links: link array([0., 0., 0.]) is not a link"),
+    "array for points": (lambda: sb.slider_crank(1, 2, points=np.zeros(3)), "points: array([0., 0., 0.]) is not points by"),
+    "deep list for a unit": (lambda: sb.bennett(1, 1, 1, length_unit=nested()), "length_unit: a value too large to print"),
+    "body of no link": (lambda: sb.Loading(bodies={"a": sb.Body(1, (0, 0, 0))}), "bodies: 'a' is not a link; give 1"),
+    "point without a name": (lambda: sb.Point(1, "b", [1]), "name: 1 is not a name; give some text in quotes"),
+    "point of no link": (lambda: sb.Point("P", 0, (1, 2, 3)), "link: 0 is not a link; give 1 or more"),
+    "point of one number": (lambda: sb.Point("P", 1, [1]), "at: 1 numbers; give three"),
+    "joint of no kind": (lambda: sb.Joint("Q", "a"), "kind: 'Q' is not a joint kind; give R, P, H, C, U, S or E"),
+    "joint of a text": (lambda: sb.Joint("U", "a", angle="90 mm"), "angle: '90 mm' is not a number with a unit"),
+    "drive of an array": (lambda: sb.Drive(np.zeros(2), "b"), "joint: array([0., 0.]) is not a name; give"),
+    "drive at no speed": (lambda: sb.Drive("a", "b", float("nan")), "speed: nan is not a finite number"),
+    "load on no link": (lambda: sb.Load(1.5, torque=(0, 0, 1)), "link: 1.5 is not a link; give 1 or more"),
+    "spring of a number": (lambda: sb.Spring(1, links=3), "links: 3 are not two different links"),
+    "spring of no joint": (lambda: sb.Spring(1, joint=3), "joint: 3 is not a name; give some text in quotes"),
+    "linkage of shapes": (
+        lambda: replace(sb.load("rssr"), links=np.eye(4)), "links: an array of shape (4, 4), not (3, 4, 4); make"),
+    "linkage without a drive": (lambda: replace(sb.load("rssr"), drive=None), "drive: None is not a drive; make"),
+    "linkage of joints": (lambda: replace(sb.load("rssr"), joints=(1, 2)), "joints[0]: 1 is not a joint; make"),
     "linkage": (lambda: sb.Linkage("a", (), None, None, None, None, None), "base: None is not an array; make linkages"),
 }  # fmt: skip
 
@@ -78,6 +100,70 @@ def test_what_a_function_cannot_take_is_refused_at_its_border_in_a_short_message
         call()
     assert message in str(caught.value)
     assert len(str(caught.value)) < 300
+
+
+#: How the classes are made that a caller makes; every other public class is a result.
+MADE: dict[str, Callable[[], Any]] = {
+    "Body": lambda: sb.Body(1.0, (0, 0, 0)),
+    "Cone": lambda: sb.Cone("45 deg"),
+    "Drive": lambda: sb.Drive("crank", "rocker"),
+    "Joint": lambda: sb.Joint("R", "crank"),
+    "Law": lambda: sb.Law.of([0, 1], [0, 1], 1, 0),
+    "Linkage": lambda: sb.load("rssr"),
+    "Load": lambda: sb.Load(2, torque=(0, 0, 1)),
+    "Loading": sb.Loading,
+    "MotionPlane": lambda: sb.MotionPlane((0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0)),
+    "MotionSphere": lambda: sb.MotionSphere((0, 0, 0), 1),
+    "Point": lambda: sb.Point("P", 1, (0, 0, 0)),
+    "Spring": lambda: sb.Spring(1.0, joint="crank"),
+}
+
+#: Classes that results are of; the program alone makes them.
+RESULTS = {
+    "ChangePoint",
+    "Circuit",
+    "Count",
+    "DeadCentre",
+    "Equilibrium",
+    "Extremes",
+    "FourBar",
+    "FreeMotion",
+    "InstantCentre",
+    "InstantCentres",
+    "Modes",
+    "Motion",
+    "OnePose",
+    "OpenRange",
+    "Output",
+    "PartAxis",
+    "ScrewAxes",
+    "Search",
+    "Trace",
+}
+
+
+def test_every_public_class_is_one_that_callers_make_or_that_of_a_result() -> None:
+    classes = {name for name in sb.__all__ if inspect.isclass(getattr(sb, name))}
+    assert classes == RESULTS | set(MADE)
+
+
+@pytest.mark.parametrize("name", MADE)
+@pytest.mark.parametrize(
+    "garbage",
+    [object, lambda: "\ud800", lambda: np.zeros((2, 2)), lambda: b"a", lambda: iter([1])],
+    ids=["object", "surrogate", "array", "bytes", "iterator"],
+)
+def test_a_class_that_callers_make_takes_garbage_for_none_of_its_arguments(
+    name: str, garbage: Callable[[], Any]
+) -> None:
+    made = MADE[name]()
+    for one in fields(made):
+        # a switch is on for whatever Python calls true; an error that agrees is checked by agreeing()
+        if one.name in ("backwards", "agree", "points_by_two"):
+            continue
+        with pytest.raises(SevenbarError) as caught:
+            replace(made, **{one.name: garbage()})
+        assert len(str(caught.value)) < 300, one.name
 
 
 def arrays_of(found: Any) -> list[tuple[str, np.ndarray]]:

@@ -95,7 +95,7 @@ def test_the_slider_crank_is_the_textbook_s(offset):
     for circuit in motion.circuits:
         theta = circuit.input
         side = np.sqrt(rod**2 - (offset - crank * np.sin(theta)) ** 2)
-        x = circuit.point(3, linkage.points[0].at).position[:, 0]
+        x = circuit.point("pin").position[:, 0]
         signs = [sign for sign in (1, -1) if np.abs(crank * np.cos(theta) + sign * side - x).max() < 1e-10]
         found += signs
         assert signs, "a circuit off the closed form"

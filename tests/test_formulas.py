@@ -145,6 +145,7 @@ def test_every_number_of_a_file_may_be_a_formula_and_the_kinds_are_the_schema_s(
         "angle_unit": "angle",
         "mass_unit": "mass",
         "mass_unit length_unit^2": "inertia",
+        "kg/m^3": "density",
         "m/s^2": "acceleration",
         "N": "force",
         "N m": "torque",

@@ -354,7 +354,7 @@ def test_what_python_gives_is_kept_in_the_description(name):
     [
         ({"bodies": {7: sb.Body(1, solid="rod")}}, "bodies: link 7 is not a link; give 1 to 3"),
         ({"bodies": {4: sb.Body(1, solid="rod")}}, "bodies: link 4 is the ground, which does not move; give 1 to 3"),
-        ({"loads": [sb.Load(0, torque=(1, 0, 0))]}, "loads[0]: link 0 is not a link; give 1 to 3"),
+        ({"loads": [sb.Load(5, torque=(1, 0, 0))]}, "loads[0]: link 5 is not a link; give 1 to 3"),
         (
             {"springs": [sb.Spring(1, joint="ball_a")]},
             "springs[0].joint: joint 'ball_a' is a ball; give a joint with one freedom: crank, rocker",

@@ -64,7 +64,7 @@ KNOWN = (
         ),
         (
             BODY + "mass = 2\nsolid = 'bar'\n",
-            ["body[1].solid: 'bar' is not a solid; allowed: rod, point, drawn"],
+            ["body[1].solid: 'bar' is not a solid; allowed: rod, cylinder, box, point, drawn"],
         ),
         (
             BODY + "mass = 2\ncentre = [1, 2, 3]\ninertia = [1, 2, 4, 0, 0, 0]\n",
@@ -88,7 +88,7 @@ KNOWN = (
             BODY + "mass = 2\nsolid = 'rod'\ncenter = 3\n",
             [
                 "body[1].center: is not known here; did you mean 'centre'? "
-                "allowed: link, mass, centre, inertia, solid, name"
+                "allowed: link, mass, centre, inertia, solid, density, diameter, bore, ends, size, along, side, name"
             ],
         ),
         ("[body]\nlink = 2\nmass = 2\nsolid = 'rod'\n",

@@ -9,6 +9,7 @@ import pytest
 
 import sevenbar as sb
 from commands import mistake
+from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError
 from sevenbar.reporting.four_bar_text import grashof_text
 
@@ -41,6 +42,64 @@ def test_points_of_planar_families_lie_along_their_links():
     bar = sb.four_bar(40, 100, 80, 90, points={"C": (2, (50, 30)), "B": (2, (100, 0))}).motion()[0]
     assert np.allclose(bar.point("C").position, bar.point(2, at=(0, 50, 30)).position)
     assert np.allclose(np.linalg.norm(bar.point("B").position - [90, 0, 0], axis=1), 80)
+
+
+@pytest.mark.parametrize("offset", [0, 40, -40])
+def test_two_numbers_are_a_place_along_its_link_in_every_planar_family_and_in_the_file_of_it(offset):
+    places = {"A": (1, (20, 5)), "G": (2, (225, 30)), "S": (3, (7, -8))}
+    family = sb.slider_crank(125, 500, offset, points=places)
+    written = Draft.of_linkage(family).linkage
+    turned = sb.from_axes(
+        [
+            {"kind": "R", "at": (9, 0, 0), "axis": (1, 0, 0)},
+            {"kind": "R", "at": (9, 125, 0), "axis": (1, 0, 0)},
+            {"kind": "R", "at": (9, 125 + (500**2 - offset**2) ** 0.5, offset), "axis": (1, 0, 0)},
+            {"kind": "P", "at": (9, 125 + (500**2 - offset**2) ** 0.5, offset), "axis": (0, 1, 0)},
+        ]
+    )
+    for linkage in (family, written):
+        circuit = linkage.motion(24)[0]
+        for name, (link, at) in places.items():
+            assert np.allclose(circuit.point(link, at).position, circuit.point(name).position, atol=1e-9)
+            there, named = circuit.at(0.3).point(link, at).velocity, circuit.at(0.3).points[name].velocity
+            assert np.allclose(there, named)
+    one, other = family.motion(24)[0], turned.motion(24)[0]
+    for link, at in places.values():
+        assert np.allclose(
+            one.point(link, at).position[:, :2], other.point(link, at).position[:, 1:], atol=1e-9
+        )
+    bar = sb.four_bar(40, 100, 80, 90).motion(24)[0]
+    for link in (1, 2, 3, 4):
+        assert np.array_equal(bar.point(link, (50, 30)).position, bar.point(link, (0, 50, 30)).position)
+
+
+def test_a_place_of_the_drawing_is_refused_of_a_slider_crank_which_has_places_on_its_links():
+    circuit = sb.slider_crank(125, 500).motion(24)[0]
+    for asked in (circuit, circuit.at(0.3)):
+        with pytest.raises(
+            RequestError, match=r"at: three numbers would be a place of the drawing here, .* give two"
+        ):
+            asked.point(2, at=(0, 225, 0))
+    # the file of it writes its points in the drawing, as every drawing does
+    file = Draft.of_linkage(sb.slider_crank(125, 500)).linkage.motion(24)[0]
+    assert np.allclose(file.point(2, (350, 0, 0)).position, circuit.point(2, (225, 0)).position)
+
+
+@pytest.mark.parametrize(
+    ("linkage", "link", "says"),
+    [
+        (
+            lambda: sb.load("rssr"),
+            2,
+            "at: 2 numbers; give three, as two are a place on a link of turning and sliding joints in a plane",
+        ),
+        (lambda: sb.load("bennett"), 2, "at: 2 numbers; give three"),
+        (lambda: sb.load("planar_4r"), 7, "link: 7 is not a link; give 1 to 4"),
+    ],
+)
+def test_two_numbers_are_no_place_where_there_is_no_plane(linkage, link, says):
+    with pytest.raises(RequestError, match=says):
+        linkage().motion(24)[0].point(link, (1, 2))
 
 
 @pytest.mark.parametrize(

@@ -5,12 +5,16 @@ of a turn (the law of cosines), or a quadratic of a slide. Nothing here knows ho
 """
 
 import itertools
+import json
 import math
 
 import numpy as np
 import pytest
 
 import sevenbar as sb
+from commands import sevenbar as run
+from sevenbar.export import export
+from sevenbar.reporting.facts import idle_note
 
 CLOSED = 1e-11  # of a loop some hundreds long
 SAME_ANGLE = 1e-7
@@ -252,3 +256,55 @@ def test_all_links_between_balls_in_the_ground_spin_together():
         ends = [circuit.point(link, ball).position for link, ball in zip((1, 3), balls, strict=True)]
         length = np.linalg.norm(ends[1] - ends[0], axis=1)
         assert length == pytest.approx(np.linalg.norm(balls[1] - balls[0]), rel=1e-12)
+
+
+TIE_ROD = """
+format = 1
+[[joint]]
+name = "crank"
+kind = "R"
+at = [0, 0, 0]
+axis = [0, 0, 1]
+[[joint]]
+kind = "S"
+at = [30, 0, 0]
+[[joint]]
+kind = "S"
+at = [100, 90, 50]
+[[joint]]
+name = "slider"
+kind = "P"
+at = [100, 90, 50]
+axis = [1, 0, 0]
+[[point]]
+name = "wheel_centre"
+link = {link}
+at = [60, 50, 20]
+"""
+HELD = "idle freedom: spin of link 2 about the line of theta_2 and theta_3, held by convention; points of link 2 go with it"
+
+
+@pytest.mark.parametrize(("link", "says"), [(2, True), (1, False)])
+def test_figures_and_tables_with_a_point_of_an_idle_link_say_that_a_convention_holds_it(tmp_path, link, says):
+    file = tmp_path / "tie.toml"
+    file.write_text(TIE_ROD.format(link=link), encoding="utf-8")
+    for words in (
+        ["plot", str(file), "--kind", "coupler", "-o", str(tmp_path / "figures")],
+        ["export", str(file), "-o", str(tmp_path / "tie.csv")],
+    ):
+        lines = run(*words, "--samples", "24").stdout.splitlines()
+        assert (HELD in lines) is says, words
+        assert lines[0].startswith("written: ")
+    note = json.loads((export(sb.load(file).motion(12), None, tmp_path / "tie.json")[0]).read_text())
+    assert (note["idle_links"], note["idle"]) == (
+        [2],
+        ["spin of link 2 about the line of theta_2 and theta_3"],
+    )
+
+
+def test_without_an_idle_link_or_its_points_nothing_is_said_of_one():
+    assert idle_note(sb.load("rssr"), [1, 3]) == ""
+    assert idle_note(sb.load("planar_4r"), [1, 2, 3, 4]) == ""
+    assert idle_note(sb.load("rssr"), [1, 2]).endswith("held by convention; points of link 2 go with it")
+    with sb.language("zh"):
+        assert idle_note(sb.load("rssr"), [2]).endswith("按约定固定；构件 2 上的点随之而定")

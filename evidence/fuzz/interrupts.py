@@ -2,8 +2,9 @@
 
 Each command runs in a folder of its own and gets Ctrl+C, SIGTERM or SIGHUP after a random time. It must end
 with 130, 143 or 129, without a traceback, and leave no file half written: what is in the folder afterwards a
-whole run leaves, too. Printed are the times from the signal to the end. A moment at which Python itself still
-starts, before the program can heed anything, is counted apart.
+whole run leaves, too. Printed are the times from the signal to the end, and the processor's time in them,
+which a loaded machine leaves as it is. A moment at which Python itself still starts, before the program can
+heed anything, is counted apart.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import argparse
 import os
 import random
+import resource
 import signal
 import subprocess
 import sys
@@ -55,6 +57,7 @@ class Tally:
 
     seconds: float
     times: list[float] = field(default_factory=list)
+    works: list[float] = field(default_factory=list)
     ends: Counter[str] = field(default_factory=Counter)
     wrong: list[str] = field(default_factory=list)
 
@@ -71,9 +74,12 @@ def main() -> int:
     for number, command in enumerate(COMMANDS):
         tally = interrupted(command, given.moments, random.Random(f"{given.seed} {number}"))
         found.append(tally)
-        slow = max(tally.times, default=0.0)
+        slow, work = max(tally.times, default=0.0), max(tally.works, default=0.0)
         ends = ", ".join(f"{count} {end}" for end, count in sorted(tally.ends.items()))
-        print(f"{command:64} {tally.seconds:5.1f} s  slowest end {slow:5.2f} s  {ends}", flush=True)
+        print(
+            f"{command:64} {tally.seconds:5.1f} s  slowest end {slow:5.2f} s, work {work:5.2f} s  {ends}",
+            flush=True,
+        )
         for line in tally.wrong:
             print(f"    wrong: {line}", flush=True)
     times = sorted(time for tally in found for time in tally.times)
@@ -82,6 +88,13 @@ def main() -> int:
         middle = times[len(times) // 2]
         print(f"{len(times)} ended by a signal: median {middle:.3f} s, longest {times[-1]:.2f} s, ", end="")
         print(f"{late} over {SOON} s")
+        works = sorted(work for tally in found for work in tally.works)
+        busy = sum(work > SOON for work in works)
+        print(
+            f"processor time after it: median {works[len(works) // 2]:.3f} s, longest {works[-1]:.2f} s, ",
+            end="",
+        )
+        print(f"{busy} over {SOON} s")
     wrong = sum(len(tally.wrong) for tally in found)
     print(f"{wrong} wrong")
     return int(wrong > 0)
@@ -107,7 +120,8 @@ def interrupted(command: str, moments: int, draw: random.Random) -> Tally:
 def _one(command: str, after: float, how: signal.Signals, whole: set[str], tally: Tally) -> None:
     with tempfile.TemporaryDirectory() as folder, _begun(command, folder) as run:
         time.sleep(after)
-        at, was_over = time.monotonic(), run.poll() is not None
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        at, was_over, spent = time.monotonic(), run.poll() is not None, _spent(run.pid)
         run.send_signal(how)
         try:
             _, errors = run.communicate(timeout=LONGEST)
@@ -117,6 +131,8 @@ def _one(command: str, after: float, how: signal.Signals, whole: set[str], tally
             tally.wrong.append(f"{how.name} after {after:.3f} s: not ended {LONGEST:g} s later")
             return
         took, text = time.monotonic() - at, errors.decode(errors="replace")
+        after_all = resource.getrusage(resource.RUSAGE_CHILDREN)
+        work = after_all.ru_utime + after_all.ru_stime - before.ru_utime - before.ru_stime - spent
         left = _files(Path(folder))
         place = f"{how.name} after {after:.3f} s: exit {run.returncode}"
         strange = {name for name in left - whole if not Path(name).name.startswith(KEPT)}
@@ -127,6 +143,7 @@ def _one(command: str, after: float, how: signal.Signals, whole: set[str], tally
         elif run.returncode == 128 + how:
             tally.ends[how.name] += 1
             tally.times.append(took)
+            tally.works.append(max(work, 0.0))
             if "Traceback" in text:
                 tally.wrong.append(f"{place}: a traceback: {text.strip().splitlines()[-1]}")
         elif run.returncode == -how or (run.returncode == 1 and text.endswith("KeyboardInterrupt\n")):
@@ -136,11 +153,20 @@ def _one(command: str, after: float, how: signal.Signals, whole: set[str], tally
 
 
 def _begun(command: str, folder: str) -> subprocess.Popen[bytes]:
-    line = [sys.executable, "-m", "sevenbar.commands.cli", *command.split()]
+    line = [sys.executable, "-m", "sevenbar", *command.split()]
     here = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     return subprocess.Popen(
         line, cwd=folder, env=here, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
+
+
+def _spent(number: int) -> float:
+    """Processor time [s] of a process so far; 0 where the system does not say."""
+    try:
+        words = Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _files(folder: Path) -> set[str]:

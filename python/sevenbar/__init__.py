@@ -11,28 +11,18 @@ from __future__ import annotations
 
 import importlib
 import sys
-from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
-from importlib.util import spec_from_loader
-from types import ModuleType
-from typing import TYPE_CHECKING, Any
 
-from sevenbar import errors
-from sevenbar._core import __version__
-from sevenbar.description.files import load, loads
-from sevenbar.description.forms import from_axes, from_dh, rssr
-from sevenbar.forces.loading import DRAWN_IN
-from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Trace
-from sevenbar.kinematics.circuits.modes import Modes, Output
-from sevenbar.kinematics.circuits.motion import ChangePoint, Motion
-from sevenbar.kinematics.circuits.search import Count, OpenRange, Search
-from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.loop.geometry import Drive, Joint, Point
-from sevenbar.text.printing import SAID_IN
-from sevenbar.text.words import language
+from sevenbar.text.above import DRAWN_IN, SAID_IN
 
+# as typing has it, whose import takes as long as all else here
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from types import ModuleType
+    from typing import Any
+
+    from sevenbar import errors
+    from sevenbar._core import __version__
     from sevenbar.description.families import (
         bennett,
         bricard_line,
@@ -47,6 +37,8 @@ if TYPE_CHECKING:
         spherical_four_bar,
         universal_joint,
     )
+    from sevenbar.description.files import load, loads
+    from sevenbar.description.forms import from_axes, from_dh, rssr
     from sevenbar.description.law_file import load_law
     from sevenbar.description.step_axes import PartAxis, axes_of_step
     from sevenbar.description.tables import from_table
@@ -55,13 +47,21 @@ if TYPE_CHECKING:
     from sevenbar.forces.free_motion.equilibria import Equilibrium
     from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Loading
+    from sevenbar.kinematics.circuits.circuit import Circuit
+    from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Trace
     from sevenbar.kinematics.circuits.instant_centres import InstantCentre, InstantCentres
+    from sevenbar.kinematics.circuits.modes import Modes, Output
+    from sevenbar.kinematics.circuits.motion import ChangePoint, Motion
     from sevenbar.kinematics.circuits.one_pose import OnePose
+    from sevenbar.kinematics.circuits.search import Count, OpenRange, Search
+    from sevenbar.kinematics.linkage import Linkage
+    from sevenbar.kinematics.loop.geometry import Drive, Joint, Point
     from sevenbar.kinematics.loop.grashof import FourBar
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.screw_axes import ScrewAxes
     from sevenbar.kinematics.loop.stops import Cone
     from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere
+    from sevenbar.text.words import language
 
 __all__ = [
     "Body",
@@ -132,10 +132,14 @@ _ON_DEMAND = {
     "sweep": "sevenbar.sweep",
 }
 
-#: Names that many programs do without, by the modules that have them.
+#: All names, by the modules that have them. None is imported before its first use, so that a program heeds
+#: Ctrl+C from its first moment on, while numpy is still to come.
 _NAMES_OF_MODULES = {
+    "_core": "__version__",
     "description.families": "bennett bricard_line bricard_plane bricard_trihedral clemens four_bar goldberg "
     "myard sarrus slider_crank spherical_four_bar universal_joint",
+    "description.files": "load loads",
+    "description.forms": "from_axes from_dh rssr",
     "description.law_file": "load_law",
     "description.step_axes": "PartAxis axes_of_step",
     "description.tables": "from_table",
@@ -144,13 +148,21 @@ _NAMES_OF_MODULES = {
     "forces.free_motion.equilibria": "Equilibrium",
     "forces.free_motion.result": "FreeMotion",
     "forces.loading": "Loading",
+    "kinematics.circuits.circuit": "Circuit",
+    "kinematics.circuits.circuit_values": "DeadCentre Extremes Trace",
     "kinematics.circuits.instant_centres": "InstantCentre InstantCentres",
+    "kinematics.circuits.modes": "Modes Output",
+    "kinematics.circuits.motion": "ChangePoint Motion",
     "kinematics.circuits.one_pose": "OnePose",
+    "kinematics.circuits.search": "Count OpenRange Search",
+    "kinematics.linkage": "Linkage",
+    "kinematics.loop.geometry": "Drive Joint Point",
     "kinematics.loop.grashof": "FourBar",
     "kinematics.loop.law": "Law",
     "kinematics.loop.screw_axes": "ScrewAxes",
     "kinematics.loop.stops": "Cone",
     "kinematics.solvers.plane_and_sphere": "MotionPlane MotionSphere",
+    "text.words": "language",
 }
 _NAMES_ON_DEMAND = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names.split()}
 
@@ -177,13 +189,13 @@ def _offered(module: ModuleType) -> list[str]:
     return list(getattr(module, "__all__", own))
 
 
-class _OnDemand(MetaPathFinder, Loader):
+class _OnDemand:
     """`from sevenbar.plot import curves`: a module on demand by its public name is the module that has it."""
 
     def find_spec(self, fullname: str, path: object = None, target: object = None) -> ModuleSpec | None:  # noqa: ARG002
         parent, _, name = fullname.rpartition(".")
         own = parent == __name__ and _ON_DEMAND.get(name, fullname) != fullname
-        return spec_from_loader(fullname, self) if own else None
+        return ModuleSpec(fullname, self) if own else None  # type: ignore[arg-type]
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         module = importlib.import_module(_ON_DEMAND[spec.name.rpartition(".")[2]])
@@ -204,6 +216,8 @@ def __getattr__(name: str) -> Any:
         module = importlib.import_module(f"sevenbar.{_NAMES_ON_DEMAND[name]}")
         found = globals()[name] = getattr(module, name)
         return found
+    if name == "errors":
+        return importlib.import_module("sevenbar.errors")
     if name in _ON_DEMAND:
         module = importlib.import_module(_ON_DEMAND[name])
         # what it offers, without what it imports

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from datetime import date, time
 from functools import wraps
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import ParamSpec, TypeGuard, TypeVar
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -81,6 +81,12 @@ class Problem:
 
 #: Letters of the longest path that a system has.
 LONGEST_PATH = 4_096
+
+#: Letters of the longest name.
+LONGEST_NAME = 200
+
+#: What to give for a name.
+NAME_TO_GIVE = f"some text in quotes, at most {LONGEST_NAME} characters"
 
 #: Mistakes that one message lists; more of them come from a program, and all from one cause.
 MOST_LISTED = 50
@@ -189,6 +195,22 @@ def check_kind(key: str, value: object, kind: type | tuple[type, ...], what: str
     """
     if not isinstance(value, kind):
         raise RequestError(f"{key}: {shown(value)} is not {what}")
+
+
+def is_name(value: object) -> TypeGuard[str]:
+    """Whether a value is a name: a text of `LONGEST_NAME` letters at most, all of them printable."""
+    return (
+        isinstance(value, str) and bool(value.strip()) and len(value) <= LONGEST_NAME and value.isprintable()
+    )
+
+
+def check_name(key: str, value: object, *, may_be_empty: bool = False) -> None:
+    """Raises `RequestError` for what is no name.
+
+    >>> check_name("name", "crank")
+    """
+    if not is_name(value) and not (may_be_empty and isinstance(value, str) and not value):
+        raise RequestError(f"{key}: {shown(value)} is not a name; give {NAME_TO_GIVE}")
 
 
 def given_path(key: str, value: str | os.PathLike[str]) -> Path:

@@ -38,6 +38,7 @@ from sevenbar.errors import (
 )
 from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.kinematics.linkage import sample_count
+from sevenbar.reporting.facts import idle_note
 from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.ranges import Place
@@ -87,7 +88,8 @@ class _Commands(typer.core.TyperGroup):
             with at_work():
                 return super().invoke(ctx)
         except (KeyboardInterrupt, Exception) as error:
-            if isinstance(error, KeyboardInterrupt) or (_is_fault(error) and has_just_come()):
+            # a signal in the import of a library may come out as that it is missing
+            if isinstance(error, KeyboardInterrupt) or (_is_error(error) and has_just_come()):
                 typer.echo(f"sevenbar: {NOTHING}", err=True)
                 raise typer.Exit(stopped()) from None
             raise
@@ -105,9 +107,9 @@ class _Commands(typer.core.TyperGroup):
         return super().resolve_command(ctx, args)
 
 
-def _is_fault(error: Exception) -> bool:
-    """Whether an error is none that ends a command in good order."""
-    return not isinstance(error, SevenbarError | typer.Exit | typer.Abort) and not hasattr(error, "exit_code")
+def _is_error(error: Exception) -> bool:
+    """Whether it is an error, and not the end of a command in good order."""
+    return not isinstance(error, typer.Exit | typer.Abort) and not hasattr(error, "exit_code")
 
 
 app = typer.Typer(
@@ -344,6 +346,9 @@ def plot_(
         kinds.remove("transmission")
     report = figures_report(kinds, points, circuit, formats, look)
     tell_written(write_files(report, motion, out, force=force), below=False)
+    drawn = [link for link, _ in points.values()] if {"point", "coupler"} & set(kinds) else []
+    if idle := idle_note(loaded, drawn):
+        typer.echo(idle)
 
 
 def _kinds(given: list[str] | None) -> list[str]:

@@ -115,12 +115,15 @@ def export(
 
 def _notes(out: Path, form: Table | Bodies, loaded: Linkage) -> list[str]:
     """What to know of a file besides its name."""
-    from sevenbar.export import Bodies
+    from sevenbar.export import Bodies, Table
     from sevenbar.export.mass import has_masses
+    from sevenbar.reporting.facts import idle_note
 
     notes = []
     if out.suffix.lower() == ".urdf":
         notes.append("URDF holds trees only: the joint that closes the loop is in the .loop.json file")
+    if isinstance(form, Table) and (idle := idle_note(loaded, [point.link for point in loaded.points])):
+        notes.append(idle)
     if isinstance(form, Bodies) and form.masses and has_masses(loaded):
         notes.append("masses are the linkage's own; bodies that have none weigh next to nothing")
     elif isinstance(form, Bodies) and form.masses:

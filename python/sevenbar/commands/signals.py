@@ -1,15 +1,19 @@
-"""Signals that end a command: Ctrl+C, SIGTERM and SIGHUP; all leave nothing half written."""
+"""Signals that end a command: Ctrl+C, SIGTERM and SIGHUP; all leave nothing half written.
+
+The first module of the program that is imported, so it imports hardly anything.
+"""
 
 from __future__ import annotations
 
 import os
 import signal
 import sys
-import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from types import FrameType
+
+# as typing has it, which is large itself
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import FrameType
 
 #: Signals that end a command as Ctrl+C does: a closed terminal sends SIGHUP, batch systems SIGTERM.
 ENDING = [
@@ -26,6 +30,10 @@ CTRL_C = 128 + signal.SIGINT
 NOTHING = "stopped; nothing is written"
 
 
+def _say_nothing(_: object) -> None:
+    """In place of Python's words on an error that nobody can catch."""
+
+
 class _Heed:
     """Which signal came last, and when; and whether a command is at work."""
 
@@ -40,13 +48,18 @@ class _Heed:
             return
         self.number, self.at = number, now
         if self.working:
+            # what fails while it is taken down, as a half written sheet does, is no news
+            sys.unraisablehook = _say_nothing
             raise KeyboardInterrupt
-        # nothing is open yet, or no longer
-        with suppress(OSError, ValueError):
+        # nothing is open yet, or no longer; an import within that of another module could find it half made
+        try:  # noqa: SIM105
             sys.stdout.flush()
-        with suppress(OSError, ValueError):
+        except (OSError, ValueError):
+            pass
+        try:
             os.write(2, f"sevenbar: {NOTHING}\n".encode())
-        os._exit(stopped())
+        finally:
+            os._exit(stopped())
 
 
 _heed = _Heed()
@@ -54,26 +67,42 @@ _heed = _Heed()
 
 def heed_signals() -> None:
     """Has the signals end this program in good order; one that is ignored, as under nohup, stays so."""
-    if threading.current_thread() is not threading.main_thread():
-        return
     for number in ENDING:
         if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _heed)
+            try:
+                signal.signal(number, _heed)
+            except ValueError:  # a thread beside the main one has no signals
+                return
 
 
-@contextmanager
-def at_work() -> Iterator[None]:
+class at_work:  # noqa: N801  used as a function is
     """While a command works a signal raises `KeyboardInterrupt`; else it ends the program at once."""
-    _heed.working = True
-    try:
-        yield
-    finally:
+
+    def __enter__(self) -> None:
+        _heed.working = True
+
+    def __exit__(self, *_: object) -> None:
         _heed.working = False
 
 
 def has_just_come() -> bool:
     """Whether a signal came within the last second: what fails then may fail for it, as drawing in C does."""
     return time.monotonic() - _heed.at < ECHO
+
+
+def leave(code: object) -> None:
+    """Ends the program at once if its exit code is that of a signal: all that was open is closed by then.
+
+    Python itself would take down every library first, and where the signal came within a text that was run,
+    as the making of a class is, end as if Ctrl+C had never been caught.
+    """
+    if _heed.at > 0 and code == stopped():
+        for stream in (sys.stdout, sys.stderr):
+            try:
+                stream.flush()
+            except (OSError, ValueError):
+                break
+        os._exit(stopped())
 
 
 def stopped() -> int:

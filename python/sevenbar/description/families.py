@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -238,9 +239,7 @@ def four_bar(
     others = head_of(name, length_unit, speed)
     given = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
     lengths = [_length(what, value, others) for what, value in given.items()]
-    named = [
-        {"name": of, "link": link, "at": [0.0, u, v]} for of, link, u, v in _in_links(points or {}, 3, others)
-    ]
+    named = [{"name": of, "link": link, "at": [0.0, u, v]} for of, link, u, v in _in_links(points, 3, others)]
     return _rows([(length, 0.0) for length in lengths], {**others, "layout": "planar", "point": named})
 
 
@@ -287,8 +286,8 @@ def slider_crank(
     is the place of the pin on the slider, whose guide lies `offset` above the crank's pivot. Drawn with the
     crank along x, theta = 0; the slider's value is the change of x from there. The pin is the point `pin`.
     Other `points` are named as those of `four_bar`, each (link, (u, v)): u along crank or rod from its first
-    joint, of the slider along x from the pin. `Circuit.point(link, at)` takes the coordinates of the drawing.
-    Raises `RequestError` where the rod does not reach the guide.
+    joint, of the slider along x from the pin. `Circuit.point(link, at)` takes (u, v) likewise. Raises
+    `RequestError` where the rod does not reach the guide.
 
         >>> import sevenbar as sb
         >>> sb.slider_crank(40, 140).motion().motion_type
@@ -314,10 +313,10 @@ def slider_crank(
     starts = ([0.0, 0.0], [arm, 0.0], pin[:2])
     along = ((1.0, 0.0), ((pin[0] - arm) / length, pin[1] / length), (1.0, 0.0))
     named = [{"name": "pin", "link": 3, "at": pin}]
-    for of, link, u, v in _in_links(points or {}, 3, others):
+    for of, link, u, v in _in_links(points, 3, others):
         (x, y), (c, s) = starts[link - 1], along[link - 1]
         named.append({"name": of, "link": link, "at": [x + u * c - v * s, y + u * s + v * c, 0.0]})
-    return _drawn(joints, named, others)
+    return replace(_drawn(joints, named, others), points_by_two=True)
 
 
 def universal_joint(
@@ -491,9 +490,11 @@ def _proportional(a: float, name: str, alpha: float, beta: float) -> float:
 
 
 def _in_links(
-    points: Points, links: int, others: Mapping[str, Any]
+    points: Points | None, links: int, others: Mapping[str, Any]
 ) -> Iterator[tuple[str, int, float, float]]:
     """The points of a planar linkage by name, link and place, once checked."""
+    if points is None:
+        return
     check_kind("points", points, Mapping, "points by name; give {name: (link, (u, v))}")
     for name, given in points.items():
         if not isinstance(given, Sequence) or len(given) != 2 or not hasattr(given[1], "__len__"):

@@ -12,6 +12,8 @@ from sevenbar.description.values import (
     FORMULA,
     POSITIVE,
     Component,
+    Direction,
+    Length,
     Number,
     TableForm,
     Text,
@@ -25,7 +27,8 @@ from sevenbar.description.values import (
     three,
 )
 from sevenbar.errors import RequestError, shown
-from sevenbar.forces.bodies import ENTRIES, SOLIDS, flaw_of_inertia, tensor_of
+from sevenbar.forces.bodies import ENTRIES, SOLIDS, density_of, flaw_of_inertia, tensor_of
+from sevenbar.forces.solids import DENSITIES
 from sevenbar.text.units import MASSES
 
 #: Along which axes a load may be given.
@@ -102,10 +105,33 @@ def _two(value: object) -> object:
     return parts_of(value, 2, "are not two; give one for each of the two links")
 
 
+def _two_ends(value: object) -> object:
+    return value if value is None else parts_of(value, 2, "are not two ends; give two places")
+
+
+def _three_edges(value: object) -> object:
+    return value if value is None else parts_of(value, 3, "is no size of a box; give its three edges")
+
+
+def _density(value: object, info: ValidationInfo) -> float:
+    if isinstance(value, str) and value in DENSITIES:
+        return DENSITIES[value]
+    if isinstance(value, str):
+        try:
+            value = density_of(value)
+        except RequestError as error:
+            raise refuse(str(error).removeprefix("density: ")) from None
+    number = number_for(value, info, "density")
+    if number <= 0:
+        raise refuse(f"{shown(value)} is not a density; give kg/m^3 > 0")
+    return number
+
+
 _JSON = WithJsonSchema(FORMULA)
 _Vector = tuple[Component, Component, Component]
 
 Mass = Annotated[float, BeforeValidator(_mass), POSITIVE]
+Density = Annotated[float, BeforeValidator(_density), WithJsonSchema({"type": ["number", "string"]})]
 Inertia = Annotated[
     Component | tuple[Component, Component, Component, Component, Component, Component],
     BeforeValidator(_inertia),
@@ -141,7 +167,7 @@ class BodyForm(TableForm):
     """A body on a link; several of a link add up."""
 
     link: Annotated[Link, key("the link that carries it, counted from 1; not the ground")]
-    mass: Annotated[Mass | None, key("left out with solid = drawn: of steel", "mass_unit")] = None
+    mass: Annotated[Mass | None, key("left out with density, and with solid = drawn", "mass_unit")] = None
     centre: Annotated[Vector | None, key("of mass, written as a point of the link is", "length")] = None
     inertia: Annotated[
         Inertia | None,
@@ -154,7 +180,33 @@ class BodyForm(TableForm):
     solid: Annotated[
         str | None,
         *one_of("solid", SOLIDS),
-        key("rod: uniform, between the link's two joints; point: in its centre; drawn: as exports draw it"),
+        key(
+            "rod: uniform and thin, between the link's two joints; cylinder, box: uniform, by their sizes; "
+            "point: in its centre; drawn: as exports draw it"
+        ),
+    ] = None
+    density: Annotated[
+        Density | None,
+        key(f"of a cylinder or a box in place of mass, or a material: {', '.join(DENSITIES)}", "kg/m^3"),
+    ] = None
+    diameter: Annotated[Length | None, key("of a cylinder", "length")] = None
+    bore: Annotated[Length | None, key("of a cylinder that is a tube", "length")] = None
+    ends: Annotated[
+        tuple[Vector, Vector] | None,
+        BeforeValidator(_two_ends),
+        key("of a cylinder: the middles of its ends; left out, the link's two joints", "length"),
+    ] = None
+    size: Annotated[
+        tuple[Length, Length, Length] | None,
+        BeforeValidator(_three_edges),
+        key("of a box: its three edges; its middle is centre", "length"),
+    ] = None
+    along: Annotated[
+        Direction | None, key("of a box: direction of the first edge; left out, x of the points")
+    ] = None
+    side: Annotated[
+        Direction | None,
+        key("of a box: direction of the second edge, made square to the first; left out, y of the points"),
     ] = None
     name: Annotated[Text | None, key("for people; optional")] = None
 

@@ -10,7 +10,7 @@ from sevenbar.description.values import flaws_of_value, valid_tables
 from sevenbar.description.written import Written, named_column, unknown_link
 from sevenbar.errors import Problem
 from sevenbar.forces.acting import Load, Spring
-from sevenbar.forces.bodies import Body, Solid, tensor_of
+from sevenbar.forces.bodies import SHAPES, Body, Solid, tensor_of
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.dynamics.link_bodies import flaw_in_plane
 from sevenbar.text.units import LENGTHS, MASSES
@@ -23,7 +23,11 @@ def body_of(body: BodyForm, mass_unit: str, length_unit: str) -> Body:
     entries = tensor_of(own) if isinstance(own, tuple) else own
     inertia = None if entries is None else entries * (kilogram * metre**2)
     mass = 0.0 if body.mass is None else body.mass * kilogram
-    return Body(mass, body.centre, inertia, cast("Solid | None", body.solid))
+    return Body(
+        mass, body.centre, inertia, cast("Solid | None", body.solid), density=body.density,
+        diameter=body.diameter, bore=body.bore, ends=body.ends,
+        size=body.size, along=body.along, side=body.side,
+    )  # fmt: skip
 
 
 def planar_flaws(bodies: Sequence[BodyForm], linkage: Solvable, mass_unit: str) -> list[Problem]:
@@ -70,10 +74,13 @@ def load_contradictions(
     units = str(context["mass_unit"]), str(context["length_unit"])
     for place, body in valid_tables(raw, "body", BodyForm, context):
         problems += _on_ground(place, body.link, joints, "a body there moves nothing, leave it out")
-        if body.mass is None and body.solid != "drawn":
+        if body.mass is None and body.solid != "drawn" and body.density is None:
             problems.append(
                 Problem(
-                    f"{place}.mass", "is missing; give one, or solid = 'drawn' for the drawn solids in steel"
+                    f"{place}.mass",
+                    "is missing; give one, or a density, as in density = 'steel'"
+                    if body.solid in SHAPES
+                    else "is missing; give one, or solid = 'drawn' for the drawn solids in steel",
                 )
             )
         else:

@@ -20,7 +20,7 @@ from pydantic_core import PydanticCustomError
 
 from sevenbar.description.not_covered import not_covered
 from sevenbar.description.written import entries, meant_kind
-from sevenbar.errors import Problem, RequestError, shown, suggestion
+from sevenbar.errors import NAME_TO_GIVE, Problem, RequestError, is_name, shown, suggestion
 from sevenbar.kinematics.loop.joint_text import drive_speed
 from sevenbar.text.units import ANGLES, unknown_unit
 
@@ -178,8 +178,8 @@ def one_of(what: str, known: Mapping[str, object] | tuple[str, ...]) -> tuple[An
 
 
 def _text(value: object) -> str:
-    if not isinstance(value, str) or not value.strip() or len(value) > 200 or not value.isprintable():
-        raise refuse(f"{shown(value)} is not a name; give some text in quotes, at most 200 characters")
+    if not is_name(value):
+        raise refuse(f"{shown(value)} is not a name; give {NAME_TO_GIVE}")
     return value.strip()
 
 

@@ -194,7 +194,7 @@ def axodes(
 def _frame_of(circuit: Circuit, link: int, row: int) -> tuple[Floats, Floats]:
     """Turn (3, 3) and place (3,) that lead from a link's coordinates to the report frame on a row."""
     places = ((0.0, 0.0, 0.0), (1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0))
-    ends = [circuit.point(link, at).position[row] for at in places]
+    ends = [circuit.written_point(link, at).position[row] for at in places]
     return np.stack([end - ends[0] for end in ends[1:]], axis=1), ends[0]
 
 

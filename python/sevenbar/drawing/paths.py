@@ -85,12 +85,13 @@ def point_path(
             known = ", ".join(named) or "none; give (link, (u, v, w))"
             raise RequestError(f"point: no point {shown(point)}; this linkage has {known}")
         name, (link, at) = name or point, named[point]
+        trace = chosen.point(point)
     else:
         link, at = point
+        trace = chosen.point(link, at)
     for part in parts:
         if part not in PATH_PARTS:
             raise RequestError(f"parts: {shown(part)} is not drawn; give some of {', '.join(PATH_PARTS)}")
-    trace = chosen.point(link, at)
     if not np.isfinite(trace.position).all(axis=1).any():
         raise RequestError(f"point: it has no place along circuit {chosen.index}; nothing to draw")
     rows = walk(chosen).rows

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,6 +12,7 @@ from sevenbar.export.layout import arrange
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid
 from sevenbar.export.pose import take
 from sevenbar.forces.bodies import inertia_at
+from sevenbar.forces.solids import DENSITIES, ball, cylinder, square_bar
 from sevenbar.kinematics.dynamics.link_bodies import resolved
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Loop
@@ -23,9 +23,6 @@ from sevenbar.text.units import LENGTHS
 #: The mass of a body that has none where others do, as a part of the heaviest one's: programs take none
 #: without.
 MASSLESS = 1e-6
-
-#: Of steel [kg/m^3].
-DENSITY = 7850.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +60,7 @@ def has_masses(linkage: Loop) -> bool:
 def drawn_masses(assembly: Assembly) -> list[BodyMass]:
     """The mass of each body, as if its solids of steel did not overlap and had no holes."""
     scale = LENGTHS[assembly.pose.linkage.length_unit]
-    density = DENSITY * scale**3
+    density = DENSITIES["steel"] * scale**3
     return [
         _sum([s for part in assembly.parts if part.body == body for s in part.add], density)
         for body in range(len(assembly.frames))
@@ -92,16 +89,10 @@ def _sum(solids: Sequence[Solid], density: float) -> BodyMass:
 
 def _of(solid: Solid, density: float) -> BodyMass:
     if isinstance(solid, Ball):
-        mass = density * 4 / 3 * math.pi * solid.radius**3
-        return BodyMass(mass, solid.centre, 0.4 * mass * solid.radius**2 * np.eye(3))
-    along = solid.end - solid.start
-    length = float(np.linalg.norm(along))
-    axis = along / length
-    if isinstance(solid, Rod):
-        mass = density * math.pi * solid.radius**2 * length
-        about, across = solid.radius**2 / 2, solid.radius**2 / 4 + length**2 / 12
+        own = ball(solid.centre, solid.radius)
+    elif isinstance(solid, Rod):
+        own = cylinder(solid.start, solid.end, 2 * solid.radius)
     else:
-        mass = density * solid.width**2 * length
-        about, across = solid.width**2 / 6, (solid.width**2 + length**2) / 12
-    inertia = mass * (across * np.eye(3) + (about - across) * np.outer(axis, axis))
-    return BodyMass(mass, (solid.start + solid.end) / 2, inertia)
+        own = square_bar(solid.start, solid.end, solid.width)
+    mass = density * own.volume
+    return BodyMass(mass, own.centre, mass * own.inertia)

@@ -152,6 +152,9 @@ def note(motion: Motion, units: Units, *, flat: bool = False) -> dict[str, Any]:
         "speed": None if motion.law is not None else speed,
         "motion_type": motion.motion_type,
         "samples": motion.samples,
+        # freedoms that move no other link, which a convention holds, and the links that have them
+        "idle": list(motion.idle),
+        "idle_links": sorted(linkage.idle_links) if motion.idle else [],
     }
 
 
@@ -172,7 +175,7 @@ def circuit_arrays(motion: Motion, circuit: Circuit, units: Units) -> dict[str, 
         "residual": circuit.residual * scale,
     }
     for point in motion.linkage.points:
-        trace = circuit.point(point.link, point.at)
+        trace = circuit.point(point.name)
         for quantity in ("position", "velocity", "acceleration"):
             arrays[f"point_{point.name}_{quantity}"] = getattr(trace, quantity) * scale
     return arrays

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeGuard
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, finite_number, triple
+from sevenbar.arrays import Floats, finite_array, finite_number, triple, whole_number
 from sevenbar.curves.turn import is_a_turn, is_beyond_a_turn
-from sevenbar.errors import RequestError, check_word, shown
+from sevenbar.errors import RequestError, check_name, check_word, shown
 from sevenbar.text.given import given_number
 from sevenbar.text.units import LENGTHS, split_quantity
 
@@ -43,6 +44,8 @@ class Load:
     name: str = ""
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "link", whole_number("link", self.link, 1, None, "a link"))
+        check_name("name", self.name, may_be_empty=True)
         for key, kind in _KINDS.items():
             object.__setattr__(self, key, triple(key, _in_newtons(key, getattr(self, key), kind)))
         check_word("axes", self.axes, ("ground", "link"))
@@ -59,7 +62,7 @@ class Load:
                 raise RequestError("between: give two different values of the input")
             object.__setattr__(self, "between", (float(ends[0]), float(ends[1])))
         if self.table is not None:
-            if len(self.table) != 2:
+            if not _is_pair(self.table):
                 raise RequestError("table: give two lists, the inputs and the factors there")
             inputs = finite_array("table", _inputs("table", self.table[0]))
             factors = finite_array("table", self.table[1])
@@ -158,6 +161,10 @@ def _is_length(text: str) -> bool:
     return parts is not None and parts[1] in LENGTHS
 
 
+def _is_pair(values: object) -> TypeGuard[Sequence[Any]]:
+    return isinstance(values, (tuple, list, np.ndarray)) and len(values) == 2
+
+
 def _degrees(angle: float) -> str:
     return f"{math.degrees(angle):.6g} deg"
 
@@ -190,12 +197,22 @@ class Spring:
             raise RequestError("stiffness: is missing; give stiffness or damping")
         if (self.joint is None) == (self.links is None):
             raise RequestError("links: a spring is between two links, or in one joint; give one of these")
+        check_name("name", self.name, may_be_empty=True)
         if self.links is None:
+            check_name("joint", self.joint)
+            if self.at is not None:
+                raise RequestError("at: a spring in a joint has no points; leave it out")
             return
         if self.length < 0:
             raise RequestError(f"length: {shown(self.length)} is not a length; give one >= 0")
-        if len(self.links) != 2 or self.links[0] == self.links[1]:
+        if not _is_pair(self.links):
             raise RequestError(f"links: {shown(self.links)} are not two different links")
-        if self.at is None or len(self.at) != 2:
+        first, second = (
+            whole_number(f"links[{i}]", link, 1, None, "a link") for i, link in enumerate(self.links)
+        )
+        if first == second:
+            raise RequestError(f"links: {shown(self.links)} are not two different links")
+        object.__setattr__(self, "links", (first, second))
+        if not _is_pair(self.at):
             raise RequestError("at: give two points, one on each link")
         object.__setattr__(self, "at", (triple("at[0]", self.at[0]), triple("at[1]", self.at[1])))

@@ -3,20 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_number, triple
-from sevenbar.errors import RequestError, check_word, shown
+from sevenbar.arrays import Floats, finite_number, positive_length, triple
+from sevenbar.errors import RequestError, check_word, shown, suggestion
+from sevenbar.forces.solids import DENSITIES, box, cylinder
+
+Three = tuple[float, float, float]
 
 #: Where centre and inertia come from if they are not given.
-Solid = Literal["rod", "point", "drawn"]
+Solid = Literal["rod", "cylinder", "box", "point", "drawn"]
 
 SOLIDS: tuple[str, ...] = get_args(Solid)
+
+#: The solids of a shape that is given with them, and the keys that belong to each.
+SHAPES: Mapping[str, tuple[str, ...]] = {
+    "cylinder": ("density", "diameter", "bore", "ends"),
+    "box": ("density", "size", "along", "side"),
+}
+
+#: A direction with a greater part of it along y lies along y, so that z is across it.
+ALONG_Y = 0.999
+
+#: Two directions with a smaller sine are one, by the rounding of their numbers.
+ONE_LINE = 1e-12
 
 #: The order of the entries of an inertia where six numbers give it.
 ENTRIES = "xx yy zz yz xz xy"
@@ -32,26 +47,46 @@ class Body:
     `mass` [kg]; `centre` (3,) [length] of mass, written as a point of the link is; `inertia` (3, 3) [kg m^2],
     the tensor about the centre along the axes in which points are written, so off the diagonal
     `Ixy = -sum m x y`; of a planar linkage one number will do, about the axis across its plane. Or a `solid`:
-    "point", all mass in the centre; "rod", uniform and thin between the link's two joints; "drawn", the
-    solids that exports draw, of steel where `mass` is 0. Raises `RequestError` for an inertia that no body
-    has.
+
+    - "point", all mass in the centre;
+    - "rod", uniform and thin between the link's two joints;
+    - "cylinder", a round bar of a `diameter`, a tube with a `bore` [length], between `ends`, two places (3,)
+      written as points of the link, or the link's two joints;
+    - "box", with edges `size` (3,) [length] about its `centre`, the first edge along the direction `along`
+      (3,), the second along `side` (3,) as far as that is square to it; x and y of the points if left out;
+    - "drawn", the solids that exports draw, of steel where `mass` is 0.
+
+    A cylinder or a box has a `mass` or a `density` [kg/m^3], a number, a text as in "7.85 g/cm^3", or the
+    name of a material as in "steel". Raises `RequestError` for an inertia that no body has.
     """
 
     mass: float = 0.0
     centre: tuple[float, float, float] | None = None
     inertia: npt.ArrayLike | None = None
     solid: Solid | None = None
+    density: float | str | None = None
+    diameter: float | None = None
+    bore: float | None = None
+    ends: tuple[Three, Three] | None = None
+    size: Three | None = None
+    along: Three | None = None
+    side: Three | None = None
 
     def __post_init__(self) -> None:
         mass = finite_number("mass", self.mass)
         if self.solid is not None:
             check_word("solid", self.solid, SOLIDS)
-        if mass < 0 or (mass == 0 and self.solid != "drawn"):
-            raise RequestError(f"mass: {shown(self.mass)} is not a mass; give kilograms > 0")
+        if self.density is not None:
+            object.__setattr__(self, "density", density_of(self.density))
+        if mass < 0 or (mass == 0 and self.solid != "drawn" and self.density is None):
+            more = ", or a density" if self.solid in SHAPES else ""
+            raise RequestError(f"mass: {shown(self.mass)} is not a mass; give kilograms > 0{more}")
         object.__setattr__(self, "mass", mass)
-        made = self.solid in ("rod", "drawn")
-        if made and (self.centre is not None or self.inertia is not None):
-            raise RequestError(f"solid: {self.solid} has its own centre and inertia; leave both out")
+        self._check_shape()
+        made = self.solid in ("rod", "drawn", "cylinder")
+        if (made and self.centre is not None) or ((self.is_shaped or made) and self.inertia is not None):
+            what = "inertia; leave it" if self.solid == "box" else "centre and inertia; leave both"
+            raise RequestError(f"solid: {self.solid} has its own {what} out")
         if self.solid == "point" and self.inertia is not None:
             raise RequestError("solid: a point has no inertia about itself; leave inertia out")
         if not made:
@@ -61,6 +96,49 @@ class Body:
         object.__setattr__(
             self, "inertia", np.zeros((3, 3)) if self.inertia is None else _inertia(self.inertia)
         )
+
+    @property
+    def is_shaped(self) -> bool:
+        """Whether mass, centre and inertia follow from a shape that is given here."""
+        return self.solid in SHAPES
+
+    def _check_shape(self) -> None:
+        """Refuses what does not belong to the solid, and shapes that are none."""
+        own = SHAPES.get(self.solid or "", ())
+        for key in ("density", "diameter", "bore", "ends", "size", "along", "side"):
+            if getattr(self, key) is not None and key not in own:
+                where = " or ".join(f"'{solid}'" for solid, keys in SHAPES.items() if key in keys)
+                raise RequestError(f"{key}: belongs to solid = {where}; leave it out, or give that solid")
+        if not own:
+            return
+        if self.density is not None and self.mass:
+            raise RequestError("density: mass is given; leave one of them out")
+        if self.solid == "cylinder":
+            if self.diameter is None:
+                raise RequestError("diameter: is missing; give that of the cylinder")
+            for key in ("diameter", "bore"):
+                if getattr(self, key) is not None:
+                    object.__setattr__(self, key, positive_length(key, getattr(self, key)))
+            if self.bore is not None and self.bore >= self.diameter:
+                raise RequestError(f"bore: {shown(self.bore)} is not below the diameter {self.diameter:g}")
+            if self.ends is not None:
+                if not isinstance(self.ends, (tuple, list, np.ndarray)) or len(self.ends) != 2:
+                    raise RequestError("ends: give two places, the middles of the cylinder's ends")
+                ends = triple("ends[0]", self.ends[0]), triple("ends[1]", self.ends[1])
+                if ends[0] == ends[1]:
+                    raise RequestError("ends: both are one place; give two")
+                object.__setattr__(self, "ends", ends)
+            return
+        if self.size is None:
+            raise RequestError("size: is missing; give the three edges of the box")
+        size = triple("size", self.size)
+        for i, edge in enumerate(size):
+            positive_length(f"size[{i}]", edge)
+        object.__setattr__(self, "size", size)
+        for key in ("along", "side"):
+            if getattr(self, key) is not None:
+                object.__setattr__(self, key, triple(key, getattr(self, key)))
+        _axes_of_box(self)
 
     @property
     def tensor(self) -> Floats:
@@ -86,6 +164,64 @@ class Body:
             return self
         across = np.outer(normal, normal)
         return Body(self.mass, self.centre, self.alone[0] / 2 * (np.eye(3) + across))
+
+
+def shaped(body: Body, metre: float, joints: tuple[Floats, Floats]) -> Body:
+    """A cylinder or a box by its mass, centre and inertia; without ends between the link's `joints`.
+
+    `metre` is the length unit in metres. Raises `RequestError` where the joints are at one place.
+    """
+    if body.solid == "box":
+        assert body.size is not None
+        own = box(np.array(body.centre), np.array(body.size), _axes_of_box(body))
+    else:
+        start, end = joints if body.ends is None else (np.array(place) for place in body.ends)
+        if not np.any(end - start):
+            raise RequestError("ends: is missing; both joints of the link are at one place, so give two")
+        assert body.diameter is not None
+        own = cylinder(start, end, body.diameter, body.bore or 0.0)
+    # of very small and very large units, too
+    mass = body.mass or float(body.density or 0.0) * metre**3 * own.volume
+    return Body(mass, triple("centre", own.centre), mass * metre**2 * own.inertia)
+
+
+def density_of(value: object) -> float:
+    """A density [kg/m^3] that is given as a number, as a text with a unit, or as a material's name."""
+    if isinstance(value, str):
+        if value in DENSITIES:
+            return DENSITIES[value]
+        # `import sevenbar` needs no reader of units
+        from sevenbar.text.quantities import quantity_of
+
+        try:
+            value = quantity_of(value, "density")
+        except RequestError:
+            near = suggestion(value, DENSITIES)
+            raise RequestError(
+                f"density: {shown(value)} is no density; {near}give kg/m^3, one as in '7.85 g/cm^3', or one "
+                f"of {', '.join(DENSITIES)}"
+            ) from None
+    number = finite_number("density", value)  # type: ignore[arg-type]
+    if number <= 0:
+        raise RequestError(f"density: {shown(value)} is not a density; give kg/m^3 > 0")
+    return number
+
+
+def _axes_of_box(body: Body) -> Floats:
+    """The directions (3, 3) of a box's edges, rows; `RequestError` for two that span no plane."""
+    first = np.array(body.along if body.along is not None else (1.0, 0.0, 0.0))
+    if not first.any():
+        raise RequestError("along: (0, 0, 0) has no direction; give three numbers, not all 0")
+    first = first / np.linalg.norm(first)
+    # y of the points, or where the first edge lies along it, z
+    otherwise = np.eye(3)[1 if abs(first[1]) < ALONG_Y else 2]
+    second = otherwise if body.side is None else np.array(body.side)
+    size = float(np.linalg.norm(second))
+    second = second - (second @ first) * first
+    if float(np.linalg.norm(second)) <= ONE_LINE * size:
+        raise RequestError("side: lies along the first edge; give a direction across it")
+    second = second / np.linalg.norm(second)
+    return np.stack([first, second, np.cross(first, second)])
 
 
 def is_alone(tensor: Floats) -> bool:

@@ -18,9 +18,6 @@ if TYPE_CHECKING:
 #: Most loads, springs or turns that are counted: far beyond what a file holds.
 MOST = 1_000_000
 
-#: The module whose `drawn_bodies(linkage, circuit)` gives what exports draw; filled by the package.
-DRAWN_IN: dict[str, str] = {}
-
 
 @dataclass(frozen=True, eq=False)
 class Loading:
@@ -96,6 +93,7 @@ def _by_link(given: Mapping[int, Body | Sequence[Body]]) -> dict[int, tuple[Body
     check_kind("bodies", given, Mapping, "a mapping of links; give one, as in {2: sevenbar.Body(..)}")
     found = {}
     for link, own in given.items():
+        whole_number("bodies", link, 1, None, "a link")
         bodies = tuple(own) if isinstance(own, (list, tuple)) else (own,)
         for body in bodies:
             if not isinstance(body, Body):

@@ -17,6 +17,7 @@ from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.circuits.table import circuit_columns, frame_of
 from sevenbar.kinematics.loop.geometry import Point
+from sevenbar.kinematics.solvers.link_places import written_place
 
 # the engines are for those who ask
 if TYPE_CHECKING:
@@ -76,6 +77,10 @@ class LinkageAnswers:
             f"point: no point {shown(name)}; {suggestion(name, list(points))}{known}; "
             "or give a link and a place, as in point(2, at=(10, 0, 0))"
         )
+
+    def place(self, link: int, at: Floats) -> tuple[float, float, float]:
+        """A place on a link as the file writes it, from two numbers in the plane, or from three."""
+        return written_place(self.linkage, link, at)
 
     def transmission_angle(self, circuit: Circuit) -> Floats | None:
         """On each row (n,) [rad]; `None` where it is not defined."""

@@ -130,6 +130,17 @@ def idle_text(idle: Sequence[str]) -> str:
     return say("{freedoms}, held by convention", freedoms=say("; ").join(map(retold, idle)))
 
 
+def idle_note(linkage: Solvable, links: Iterable[int]) -> str:
+    """That points of some links go where an idle freedom is held; empty where none of the links has one."""
+    idle = sorted(linkage.idle_links & set(links))
+    if not idle:
+        return ""
+    return say(
+        "idle freedom: {held}; points of link{s} {links} go with it",
+        held=idle_text(linkage.idle), s="s" * (len(idle) > 1), links=say(", ").join(map(str, idle)),
+    )  # fmt: skip
+
+
 def completeness_text(word: str, *, curve: bool = False, unfollowed: bool = False) -> str:
     """The word for how it is known that nothing is missing, and its meaning.
 

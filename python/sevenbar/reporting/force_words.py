@@ -62,8 +62,15 @@ class Places:
 def body_text(body: Body, mass: float | None) -> str:
     """A body by its mass, and where centre and inertia come from; `mass` [kg] of one that is drawn."""
     shown = f"{body.mass or mass or math.nan:.6g} kg"
+    if body.density is not None and not mass:
+        # one of several, whose masses are known together
+        shown = f"{body.density:.6g} kg/m^3"
     if body.solid == "rod":
         return say("{mass}, a uniform rod between its joints", mass=shown)
+    if body.solid == "cylinder":
+        return say("{mass}, a uniform cylinder", mass=shown)
+    if body.solid == "box":
+        return say("{mass}, a uniform box", mass=shown)
     if body.solid == "drawn":
         drawn = say("{mass}, the solids that exports draw", mass=shown)
         return drawn if body.mass else say("{drawn}, of steel", drawn=drawn)

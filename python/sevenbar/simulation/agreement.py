@@ -174,7 +174,7 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
     points = {}
     for point in linkage.points:
         place = placed(linkage.point_frames[point.link - 1], point.at)
-        trace = circuit.point(point.link, point.at)
+        trace = circuit.point(point.name)
         own = (part[course.rows] for part in (trace.position, trace.velocity, trace.acceleration))
         points[point.name] = PointValues(*bodies.point(point.link - 1, place)), PointValues(*own)
     returned = None

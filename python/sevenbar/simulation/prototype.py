@@ -168,7 +168,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
     def link_body(i: int) -> MovingBody:
         own = frames[i]
         place = inverse(linkage.point_frames[i]) @ np.array([0.0, 0.0, 0.0, 1.0])
-        velocity = circuit.point(i + 1, (place[0], place[1], place[2])).velocity[row]
+        velocity = circuit.written_point(i + 1, (place[0], place[1], place[2])).velocity[row]
         spin = circuit.link_motion(i + 1).velocity[row]
         return MovingBody(f"link_{i + 1}", i + 1, own, share * velocity, share * spin)
 

@@ -19,6 +19,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from sevenbar.studio.guard import HEADERS, Guard
+from sevenbar.studio.messages import HeedfulConnection
 
 #: What a request is refused with.
 REFUSED = b"403: this address is answered only with the key that 'sevenbar studio' printed; open that one\n"
@@ -83,7 +84,13 @@ def _guarded(guard: Guard) -> Iterator[None]:
 
         guarded.append(guard)
         # a scan of the port is no news for the terminal
-        return serve(*arguments, process_request=first, logger=_silent(), **settings)
+        return serve(
+            *arguments,
+            process_request=first,
+            create_connection=HeedfulConnection,
+            logger=_silent(),
+            **settings,
+        )
 
     with _STARTING:
         websockets.asyncio.server.serve = judged  # type: ignore[assignment,misc]

@@ -13,6 +13,7 @@ from sevenbar.description.files import decoded
 from sevenbar.errors import SevenbarError
 from sevenbar.studio.guard import is_loopback
 from sevenbar.studio.local_server import LocalServer
+from sevenbar.studio.messages import heed_values_that_fit
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.shelf import Shelf
 from sevenbar.studio.tab import Tab
@@ -63,6 +64,7 @@ class StudioServer:
             return tuple(self._tabs.values())
 
     def _connected(self, client: viser.ClientHandle) -> None:
+        heed_values_that_fit(client)
         tab = Tab(client, *self._begun())
         with self._lock:
             self._tabs[client.client_id] = tab

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.errors import SevenbarError, ends_here
+from sevenbar.text.above import SAID_IN
 from sevenbar.text.words import language
 
 #: Characters of a line.
@@ -24,9 +25,6 @@ WIDTH = 100
 
 #: Dots an inch of a picture in a notebook.
 DPI = 64
-
-#: Folders of results, and the module that says what is printed of them; filled by the package.
-SAID_IN: dict[str, str] = {}
 
 
 class Printed:

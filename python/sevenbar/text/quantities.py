@@ -16,6 +16,7 @@ from sevenbar.text.units import ANGLES, FORCES, LENGTHS, MASSES, TIMES, split_qu
 QuantityKind = Literal[
     "mass",
     "inertia",
+    "density",
     "acceleration",
     "force",
     "torque",
@@ -39,6 +40,7 @@ class _Kind(NamedTuple):
 _KINDS: Mapping[QuantityKind, _Kind] = {
     "mass": _Kind("a mass", "{mass}", "250 g"),
     "inertia": _Kind("a moment of inertia", "{mass} {length}^2", "2e-3 kg m^2"),
+    "density": _Kind("a density", "kg/m^3", "7.85 g/cm^3"),
     "acceleration": _Kind("an acceleration", "m/s^2", "9810 mm/s^2"),
     "force": _Kind("a force", "N", "0.1 kN"),
     "torque": _Kind("a torque", "N m", "300 N mm"),

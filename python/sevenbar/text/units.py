@@ -52,7 +52,8 @@ def as_written(value: float) -> float:
 def unknown_unit(given: object, known: Iterable[str]) -> str:
     """The message for a unit that does not exist."""
     known = list(known)
-    meant = OTHER_SPEEDS.get(str(given).strip().lower())
+    # nested without end it has no text
+    meant = OTHER_SPEEDS.get(given.strip().lower()) if isinstance(given, str) else None
     near = f"did you mean '{meant}'? " if meant in known else suggestion(given, known)
     return f"{shown(given)} is not a unit known here; {near}allowed: {', '.join(known)}"
 

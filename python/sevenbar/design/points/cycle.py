@@ -177,7 +177,7 @@ def input_text(motion: Motion, value: float) -> str:
 
 def link_rates(circuit: Circuit, rows: Booleans, link: int) -> LinkRates:
     """The rates of a link at rows of a circuit, from four points that are the circuit's size apart."""
-    frame = rates_of_frame(partial(circuit.point, link), circuit.size)
+    frame = rates_of_frame(partial(circuit.written_point, link), circuit.size)
     origins, axes = zip(*(frame(order) for order in ORDERS), strict=True)
     constant, gradient = (np.stack([part[rows] for part in parts]) for parts in (origins, axes))
     return LinkRates(circuit.input[rows], circuit.time[rows], constant, gradient)

@@ -41,7 +41,9 @@ class InputPass:
 
     def point(self, link: int | str, at: tuple[float, float, float] | None = None) -> Floats:
         """Where a place of a link, or a named point, is along the rows (m, 3)."""
-        return self.circuit.point(link, at).position[self.rows]
+        one = self.circuit
+        found = one.point(link) if isinstance(link, str) or at is None else one.written_point(link, at)
+        return found.position[self.rows]
 
     def begins(self, timing: Floats, *, free: bool) -> tuple[Floats, Integers]:
         """What may be added to inputs (n,) so that they lie within the pass (p,), and their rows (p, n).

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Integers, ReadOnly, Words, counted, triple, whole_number
+from sevenbar.arrays import Floats, Integers, ReadOnly, Words, counted, finite_array, triple, whole_number
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.circuits.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
 from sevenbar.kinematics.circuits.with_extents import ExtentAnswers, WithExtents
@@ -39,9 +39,6 @@ if TYPE_CHECKING:
 #: Dead centres of input and output whose angles [rad, or relative to the size] differ by less are one pose.
 TOGETHER = 1e-7
 
-#: Extremes of the output [rad, or relative to the size] that differ by less differ by rounding.
-ALIKE = 1e-9
-
 #: An output that moves less than this compared with the input [rad, or relative to the size] rests.
 AT_REST = 1e-12
 
@@ -51,6 +48,9 @@ class Answers(ExtentAnswers, Protocol):
 
     def point(self, name: str) -> Point:
         """A named point; raises `RequestError` where there is none."""
+
+    def place(self, link: int, at: Floats) -> tuple[float, float, float]:
+        """A place on a link as the file writes it, from two or three numbers."""
 
     def transmission_angle(self, circuit: Circuit) -> Floats | None:
         """On each row (n,) [rad]."""
@@ -150,8 +150,12 @@ class Circuit(ReadOnly, Printed, WithExtents):
     angle: Extremes | None
     #: How far the output rocks [rad, or length]; `None` for one that turns fully.
     swing: float | None
-    #: Time of the slower stroke over that of the quicker, as the core has it.
-    _time_ratio: float | None = field(repr=False)
+    #: Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output. `None`
+    #: also for a crank that turns back on the way, at a change point where both ends of the output are at
+    #: one input, a stroke without time, and where `many_strokes` leave it open which count.
+    time_ratio: float | None
+    #: Whether the output is at its highest, or lowest, at several inputs: more than two strokes.
+    many_strokes: bool
     input_column: int
     output_column: int
     #: Whether input and output are angles, not slides.
@@ -190,28 +194,6 @@ class Circuit(ReadOnly, Printed, WithExtents):
 
         ends, turns = ([d for d in self.dead_centres if d.kind == kind] for kind in ("input", "output"))
         return [one for one in ends if any(same(one, other) for other in turns)]
-
-    @property
-    def time_ratio(self) -> float | None:
-        """Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output.
-
-        `None` also for a crank that turns back on the way, at a change point where both ends of the output
-        are at one input, a stroke without time, and where `many_strokes` leave it open which count.
-        """
-        return None if self.many_strokes else self._time_ratio
-
-    @property
-    def many_strokes(self) -> bool:
-        """Whether the output is at its highest, or lowest, at several inputs: more than two strokes."""
-        unit = 1.0 if self.output_turns else self.size
-        ends = () if self.angle is None else (self.angle.lowest, self.angle.highest)
-        turns = [d for d in self.dead_centres if d.kind == "output"]
-        for end in ends:
-            inputs = [d.input for d in turns if abs(d.output - end) < ALIKE * unit]
-            apart = np.abs(np.sin((np.array(inputs) - inputs[0]) / 2)) if inputs else np.zeros(1)
-            if self.goes_round and float(apart.max()) > TOGETHER:
-                return True
-        return False
 
     @property
     def output_rests(self) -> bool:
@@ -359,12 +341,14 @@ class Circuit(ReadOnly, Printed, WithExtents):
         return min(ends[branch : branch + 2]), max(ends[branch : branch + 2])
 
     @ends_here
-    def point(self, link: int | str, at: tuple[float, float, float] | None = None) -> Trace:
+    def point(self, link: int | str, at: Sequence[float] | None = None) -> Trace:
         """A point of link 1, 2, .. along the circuit, or a point of the linkage by its name.
 
-        `at` is written as for the points of the file: (u, v, w) in Denavit-Hartenberg rows, in the
-        link's frame for `[rssr]`, in ground coordinates of the drawn pose for drawn joints. Raises
-        `RequestError` for a link or a name that does not exist.
+        Of a planar linkage two numbers will do for `at`, (u, v): u along the link from its first joint to the
+        next, v to its left. Three are written as for the points of the file: (u, v, w) in Denavit-Hartenberg
+        rows, in the link's frame for `[rssr]`, in ground coordinates of the drawn pose for drawn joints.
+        Raises `RequestError` for a link or a name that does not exist, and for three numbers of a linkage
+        whose points are written by two, as those of `sevenbar.slider_crank`.
 
         Source: docs/theory.md, (16).
 
@@ -381,10 +365,16 @@ class Circuit(ReadOnly, Printed, WithExtents):
             if at is not None:
                 raise RequestError(f"at: point {shown(link)} has its place; leave `at` out, or give a link")
             named = self._answers.point(link)
-            return self.point(named.link, named.at)
-        frame = self._frame(link)
+            return self.written_point(named.link, named.at)
+        self._frame(link)
         if at is None:
             raise RequestError("at: a link needs a place on it; give three numbers, or a point by its name")
+        return self.written_point(link, self._answers.place(link, finite_array("at", at)))
+
+    @ends_here
+    def written_point(self, link: int, at: tuple[float, float, float]) -> Trace:
+        """A place of a link along the circuit, in the coordinates in which the file writes its points."""
+        frame = self._frame(link)
         return self._point(int(link), placed(frame, triple("at", at)))
 
     @ends_here
@@ -614,7 +604,7 @@ class Circuit(ReadOnly, Printed, WithExtents):
         """How a link moves, by the frame in which its points are written; and the status of each row."""
         from sevenbar.kinematics.loop.screw_axes import Twists
 
-        origin, turning = self.point(link, (0.0, 0.0, 0.0)), self.link_motion(link)
+        origin, turning = self.written_point(link, (0.0, 0.0, 0.0)), self.link_motion(link)
         frame = pose(turning.rotation @ self._frame(link)[:3, :3], origin.position)
         return Twists(frame, turning.velocity, origin.velocity), origin.status
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Protocol
@@ -27,7 +27,7 @@ class AnsweringRows(Protocol):
     def mechanical_advantage(self) -> Floats:
         """On each row (n,)."""
 
-    def point(self, link: int | str, at: tuple[float, float, float] | None = None) -> Trace:
+    def point(self, link: int | str, at: Sequence[float] | None = None) -> Trace:
         """A point along the rows."""
 
     def link_motion(self, link: int) -> LinkMotion:
@@ -69,7 +69,7 @@ class OnePose(Printed):
         """The value of a joint [rad in (-pi, pi], or length] by its column."""
         return float(self.q[column_named(self.columns, name)])
 
-    def point(self, link: int | str, at: tuple[float, float, float] | None = None) -> Trace:
+    def point(self, link: int | str, at: Sequence[float] | None = None) -> Trace:
         """A point by its name, or of a link; see `Circuit.point`: a trace of one row."""
         found = self._rows.point(link, at)
         rows = slice(self._row, self._row + 1)
@@ -81,7 +81,7 @@ class OnePose(Printed):
     @cached_property
     def points(self) -> Mapping[str, Trace]:
         """The named points, traces of one row each."""
-        return {point.name: self.point(point.link, point.at) for point in self._linkage.points}
+        return {point.name: self.point(point.name) for point in self._linkage.points}
 
     @cached_property
     def links(self) -> Mapping[int, LinkMotion]:

@@ -131,6 +131,6 @@ def frames_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:
         x, y, z = (float(value) for value in inverse(linkage.point_frames[i])[:3, 3])
         frames[lost, i] = pose(
             circuit.link_motion(i + 1).rotation[rows[lost]],
-            circuit.point(i + 1, (x, y, z)).position[rows[lost]],
+            circuit.written_point(i + 1, (x, y, z)).position[rows[lost]],
         )
     return frames

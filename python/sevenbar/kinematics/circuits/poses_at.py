@@ -177,7 +177,8 @@ def pose_of(
     passes = [pose.branch for pose in poses]
     if branch is None and len(poses) == 1:
         return poses[0]
-    if branch not in passes:
+    # an array is equal to no pass, and to each in every place
+    if not isinstance(branch, (int, np.integer)) or branch not in passes:
         which = "is missing" if branch is None else f"{shown(branch)} is no pass with this pose"
         raise RequestError(
             f"branch: {which}; circuit {circuit.index} is there on {len(poses)} of its passes between dead "

@@ -38,7 +38,7 @@ def circuit_columns(circuit: Circuit, linkage: Loop, *, si: bool) -> dict[str, n
     rates = (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)
     columns |= joint_columns(linkage, rates, length=length, angle=angle, scale=scale)
     for point in linkage.points:
-        trace = circuit.point(point.link, point.at)
+        trace = circuit.point(point.name)
         for order, values in enumerate((trace.position, trace.velocity, trace.acceleration)):
             for axis, letter in enumerate("xyz"):
                 head = point_column(point.name, letter, order=order, length=length)

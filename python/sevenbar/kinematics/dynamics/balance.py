@@ -39,6 +39,8 @@ def balance_of(
         links = list(links)
     except TypeError:
         raise RequestError(f"links: {shown(links)} is no list of links; give one, as in [2, 4]") from None
+    for link in links:
+        refuse_no_link("links", link, linkage)
     twice = [link for i, link in enumerate(links) if link in links[:i]]
     if twice:
         raise RequestError(f"links: {twice[0]} is given twice; leave one out")
@@ -88,7 +90,7 @@ def unit_shaking(linkage: Solvable, circuit: Circuit, link: int) -> Floats:
     Source: docs/theory_forces.md, (18).
     """
     metre = LENGTHS[linkage.length_unit]
-    frame = rates_of_frame(partial(circuit.point, link), circuit.size)
+    frame = rates_of_frame(partial(circuit.written_point, link), circuit.size)
     (place, axes), (acceleration, axes_rate) = frame("position"), frame("acceleration")
     unit = np.empty((len(place), 4, 6))
     unit[:, 3, :3], unit[:, 3, 3:] = -(metre**2) * np.cross(place, acceleration), -metre * acceleration

@@ -12,11 +12,12 @@ import numpy as np
 
 from sevenbar.arrays import Floats, triple
 from sevenbar.errors import RequestError, shown
-from sevenbar.forces.bodies import Body, as_one, flaw_alone
-from sevenbar.forces.loading import DRAWN_IN, Loading
+from sevenbar.forces.bodies import Body, as_one, flaw_alone, shaped
+from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import inverse
+from sevenbar.text.above import DRAWN_IN
 from sevenbar.text.units import LENGTHS
 
 #: A centre within this part of a line's length, and an inertia within this part of itself, are symmetric
@@ -85,7 +86,7 @@ def refuse_no_link(key: str, link: object, linkage: Loop, *, or_ground: bool = F
     last = moving + or_ground
     whole = isinstance(link, (int, np.integer)) and not isinstance(link, bool)
     if not whole or not 1 <= link <= last:  # type: ignore[operator]
-        what = "is the ground, which does not move" if link == moving + 1 else "is not a link"
+        what = "is the ground, which does not move" if whole and link == moving + 1 else "is not a link"
         more = ", the last is the ground" if or_ground else ""
         raise RequestError(f"{key}: link {shown(link)} {what}; give 1 to {last}{more}")
 
@@ -94,6 +95,11 @@ def _worked_out(body: Body, link: int, linkage: Solvable, solids: Callable[[], M
     """A body by its centre and inertia, whatever it was given by."""
     if body.solid == "rod":
         return _rod(body.mass, link, linkage)
+    if body.is_shaped:
+        try:
+            return shaped(body, LENGTHS[linkage.length_unit], joint_places(linkage, link))
+        except RequestError as error:
+            raise RequestError(f"bodies[{link}]: {error}") from None
     if body.solid == "drawn":
         steel = solids()[link]
         share = body.mass / steel.mass if body.mass else 1.0

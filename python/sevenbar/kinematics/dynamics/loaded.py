@@ -10,10 +10,11 @@ import numpy.typing as npt
 
 from sevenbar.arrays import triple
 from sevenbar.forces.acting import Load, Spring
-from sevenbar.forces.bodies import Body, entries_of
+from sevenbar.forces.bodies import SHAPES, Body, entries_of
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.dynamics.link_bodies import refuse_no_link
 from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.text.listed import listed
 from sevenbar.text.units import ANGLES, LENGTHS, MASSES
 
 L = TypeVar("L", bound=Loop)
@@ -54,14 +55,15 @@ def loading_with(
     Raises `RequestError` for a link or a joint that does not exist.
     """
     own = linkage.loading
+    # with the links that there are, which what acts alone does not know
+    for link in bodies if isinstance(bodies, Mapping) else ():
+        refuse_no_link("bodies", link, linkage)
     given = Loading(
         own.gravity if gravity is None else triple("gravity", gravity),
         own.bodies if bodies is None else bodies,  # type: ignore[arg-type]
         own.loads if loads is None else loads,  # type: ignore[arg-type]
         own.springs if springs is None else springs,  # type: ignore[arg-type]
     )
-    for link in given.bodies:
-        refuse_no_link("bodies", link, linkage)
     for i, load in enumerate(given.loads):
         refuse_no_link(f"loads[{i}]", load.link, linkage)
     found = []
@@ -83,6 +85,10 @@ def _body(link: int, body: Body, mass_unit: str, linkage: Loop) -> dict[str, Any
         table["mass"] = body.mass / kilogram
     if body.solid is not None:
         table["solid"] = body.solid
+    for key in SHAPES.get(body.solid or "", ()):
+        value = getattr(body, key)
+        if value is not None:
+            table[key] = [list(end) for end in value] if key == "ends" else listed(value)
     if body.centre is not None:
         table["centre"] = list(body.centre)
     if body.tensor.any():

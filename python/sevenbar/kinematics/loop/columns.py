@@ -24,7 +24,8 @@ def column_named(columns: Sequence[str], name: str) -> int:
     >>> column_named(("crank", "rocker"), "rocker")
     1
     """
-    if name not in columns:
+    # an array is equal to no name, and to each in every place
+    if not isinstance(name, str) or name not in columns:
         raise KeyError(f"no column {shown(name)}; there are {', '.join(columns)}")
     return columns.index(name)
 

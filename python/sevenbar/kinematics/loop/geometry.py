@@ -7,18 +7,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property, reduce
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Booleans, Floats, whole_number
-from sevenbar.errors import RequestError, check_kind, no_joint
+from sevenbar.arrays import Booleans, Floats, finite_number, triple, truth, whole_number
+from sevenbar.errors import RequestError, check_kind, check_name, check_word, no_joint
 from sevenbar.forces.loading import UNLOADED, Loading
-from sevenbar.kinematics.loop.joints import Freedom, JointKind, Step, X, Z, kind_row
+from sevenbar.kinematics.loop.joints import JOINT_KINDS, Freedom, JointKind, Step, X, Z, kind_row
 from sevenbar.kinematics.loop.rigid import about, inverse, pose, product
 from sevenbar.kinematics.loop.stops import NO_STOPS, Stops
+from sevenbar.text.given import given_number
 from sevenbar.text.printing import Drawable
+from sevenbar.text.units import LENGTHS
 
 #: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, the same in the
 #: layout of planar textbooks, joints as drawn.
@@ -47,6 +49,14 @@ class Joint:
     pitch: float = 0.0
     angle: float = 0.0
     backwards: bool = False
+
+    def __post_init__(self) -> None:
+        check_word("kind", self.kind, JOINT_KINDS, "a joint kind")
+        check_name("name", self.name)
+        angle = given_number("angle", self.angle, "rad")
+        object.__setattr__(self, "pitch", finite_number("pitch", self.pitch))
+        object.__setattr__(self, "angle", finite_number("angle", angle))  # type: ignore[arg-type]
+        object.__setattr__(self, "backwards", truth("backwards", self.backwards))
 
     @cached_property
     def row(self) -> JointKind:
@@ -113,6 +123,11 @@ class Point:
     link: int
     at: tuple[float, float, float]
 
+    def __post_init__(self) -> None:
+        check_name("name", self.name)
+        object.__setattr__(self, "link", whole_number("link", self.link, 1, None, "a link"))
+        object.__setattr__(self, "at", triple("at", self.at))
+
 
 @dataclass(frozen=True)
 class Drive:
@@ -121,6 +136,27 @@ class Drive:
     joint: str
     output: str
     speed: float = 1.0
+
+    def __post_init__(self) -> None:
+        check_name("joint", self.joint)
+        check_name("output", self.output)
+        object.__setattr__(self, "speed", finite_number("speed", self.speed))
+
+
+#: What to do in place of making a linkage by hand.
+_MADE_WITH = "make linkages with load, from_axes, from_dh, rssr"
+
+#: The parts of a loop, and what each must be.
+_PARTS: Mapping[str, tuple[type, str]] = {
+    "joints": (tuple, "a tuple of joints"),
+    **dict.fromkeys(("base", "ground", "links", "point_frames"), (np.ndarray, "an array")),
+    "drive": (Drive, "a drive"),
+    "points": (tuple, "a tuple of points"),
+    "dimensions": (Mapping, "a mapping of numbers"),
+    "description": (Mapping, "a description"),
+    "loading": (Loading, "a loading"),
+    "stops": (Stops, "the stops"),
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -133,7 +169,8 @@ class Loop(Drawable):
     `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
     tables and keys of a file, from which a linkage with other numbers is made. Redundant constraints `agree`
     up to a closure error [rad, or relative to the size], the usual one where it is `None`;
-    `loading` is what acts on it, `stops` what keeps it from moving on: they change no motion.
+    `loading` is what acts on it, `stops` what keeps it from moving on: they change no motion. With
+    `points_by_two` a circuit takes a place on a link by two numbers only, as the points were given.
 
     Source: docs/theory.md, (1).
     """
@@ -153,11 +190,22 @@ class Loop(Drawable):
     loading: Loading = field(default=UNLOADED, repr=False)
     agree: float | None = None
     stops: Stops = field(default=NO_STOPS, repr=False)
+    points_by_two: bool = field(default=False, repr=False)
 
     def __post_init__(self) -> None:
-        for name in ("base", "ground", "links", "point_frames"):
+        check_name("name", self.name)
+        check_word("form", self.form, get_args(Form))
+        check_word("length_unit", self.length_unit, LENGTHS, "a length unit")
+        for name, (kind, what) in _PARTS.items():
+            check_kind(name, getattr(self, name), kind, f"{what}; {_MADE_WITH}")
+        for name, one in (("joints", Joint), ("points", Point)):
+            for i, part in enumerate(getattr(self, name)):
+                check_kind(f"{name}[{i}]", part, one, f"a {one.__name__.lower()}; {_MADE_WITH}")
+        for name, many in (("base", ()), ("ground", ()), ("links", (-1,)), ("point_frames", (0,))):
             array = getattr(self, name)
-            check_kind(name, array, np.ndarray, "an array; make linkages with load, from_axes, from_dh, rssr")
+            shape = (*(len(self.joints) + more for more in many), 4, 4)
+            if array.shape != shape:
+                raise RequestError(f"{name}: an array of shape {array.shape}, not {shape}; {_MADE_WITH}")
             array.setflags(write=False)
 
     def __reduce__(self) -> tuple[type[Loop], tuple[Any, ...]]:

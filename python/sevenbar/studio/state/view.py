@@ -75,7 +75,7 @@ class View(TimedWalk):
     @cached_property
     def traces(self) -> tuple[Trace, ...]:
         """The named points along the circuit's own rows."""
-        return tuple(self.circuit.point(point.link, point.at) for point in self.linkage.points)
+        return tuple(self.circuit.point(point.name) for point in self.linkage.points)
 
     @cached_property
     def speeds(self) -> tuple[Floats, ...]:
