@@ -175,7 +175,7 @@ def test_a_map_and_a_sweep_vary_the_lengths_that_the_report_prints(tmp_path) -> 
     assert "coupler, a.x" in shown
 
 
-def test_a_length_beside_a_place_that_changes_it_is_refused(tmp_path) -> None:
+def test_a_length_and_a_place_that_changes_it_are_refused(tmp_path) -> None:
     path = tmp_path / "four.toml"
     path.write_text(Draft.of_linkage(planar()).toml())
     draft, over = Draft.of(path.read_text(), "four"), {"input_link": [20, 30], "b.x": [-1, 1]}
