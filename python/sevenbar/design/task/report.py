@@ -165,7 +165,7 @@ def text(found: TaskDesigns) -> RenderableType:
 
 #: Why the conditions of an optimum are missed, by how the search ended.
 REASONS = {
-    "edge": "ends at an edge: a small step further the linkage does not close, or a measure jumps because the "
+    "edge": "ends at an edge: a small step further the linkage does not close, or a measure jumps as the "
     "motion type changes. There may be better designs along the edge. Bound a measure or a range so that "
     "designs stay away from it, or take another design",
     "valley": "ends in a narrow valley, where the error falls too slowly to reach its bottom. Begin again "
