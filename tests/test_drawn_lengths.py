@@ -105,6 +105,15 @@ def test_a_drawn_rssr_of_other_lengths_is_that_redrawn_with_crank_and_rocker_as_
     assert ours.motion_type == theirs.motion_type
     for one, other in zip(ours, theirs, strict=True):
         assert one.output == pytest.approx(other.output, abs=1e-9, nan_ok=True)
+        for ball in ("A", "B"):
+            assert one.point(ball).position == pytest.approx(
+                other.point(ball).position, abs=1e-8, nan_ok=True
+            )
+    found = sensitivities(changed, lengths=["rocker"])
+    (x,) = [k for k, one in enumerate(found.outputs) if one.name == "A.x"]
+    rows = found.status == "ok"
+    trace = found.circuit.point("A").position[:, 0]
+    assert found.values[rows, x] == pytest.approx(trace[rows], abs=1e-7)
 
 
 def test_a_slider_crank_takes_both_links_and_says_that_its_offset_is_drawn() -> None:
