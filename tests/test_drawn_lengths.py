@@ -17,6 +17,8 @@ from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.tolerance.sensitivities import sensitivities
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.loop.rigid import rotation_of
+from sevenbar.measuring.calibrate import calibrate
+from sevenbar.measuring.measured import Measured
 from sevenbar.sweep.space import Space
 
 #: A planar four-bar of 40, 100, 80 on a ground of 90, the input link along y; joints at two heights, as CAD has them.
@@ -217,6 +219,18 @@ def test_arcs_of_a_spherical_drawing_are_named_as_what_they_are() -> None:
     assert draft.lengths == ()
     with pytest.raises(RequestError, match="'input_link' is an arc, which follows from the axes as drawn"):
         draft.dimension("input_link")
+
+
+def test_a_calibration_finds_the_lengths_of_a_drawing() -> None:
+    real = with_lengths(rssr(), crank=48.0, rocker=84.0)
+    circuit = real.motion(90)[0]
+    rows = np.flatnonzero(circuit.status == "ok")[:25]
+    rows = rows[circuit.dq[rows, real.columns.index("crank")] > 0]
+    values = {"input": circuit.input[rows], "angle": circuit.output[rows]}
+    found = calibrate(rssr(), Measured("by hand", np.arange(len(rows)), values), free=["crank", "rocker"])
+    assert {p.name: p.value for p in found.calibrated} == pytest.approx(
+        {"crank": 48.0, "rocker": 84.0}, abs=1e-6
+    )
 
 
 # --- design tasks of drawings: their lengths, and the stops of the linkage
