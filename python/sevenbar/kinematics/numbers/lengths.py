@@ -11,7 +11,7 @@ line, whose turn by their coordinates is left out of the derivatives of c u. So 
 stay, as do the other lengths, the zeros of joints, and what links carry, from the joint before each; at zero
 the loop closes no longer.
 
-Source: docs/file-format.md, "Longer links".
+The page is "Longer links" of the linkage files.
 """
 
 from __future__ import annotations
