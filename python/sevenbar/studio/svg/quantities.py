@@ -50,7 +50,7 @@ class Quantity:
 
     @property
     def heading(self) -> str:
-        """What stands above its curve, where there is little room."""
+        """Its name above a curve, where there is little room."""
         return self.name.removesuffix(OF_OUTPUT)
 
     @property
