@@ -12,9 +12,13 @@ import sevenbar as sb
 from sevenbar.commands.cli import app
 from sevenbar.description.draft import Draft
 from sevenbar.description.forms import from_description
+from sevenbar.design.task.file.reader import task_file
+from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.tolerance.sensitivities import sensitivities
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.loop.rigid import rotation_of
+from sevenbar.measuring.calibrate import calibrate
+from sevenbar.measuring.measured import Measured
 from sevenbar.sweep.space import Space
 
 #: A planar four-bar of 40, 100, 80 on a ground of 90, the input link along y; joints at two heights, as CAD has them.
@@ -103,6 +107,15 @@ def test_a_drawn_rssr_of_other_lengths_is_that_redrawn_with_crank_and_rocker_as_
     assert ours.motion_type == theirs.motion_type
     for one, other in zip(ours, theirs, strict=True):
         assert one.output == pytest.approx(other.output, abs=1e-9, nan_ok=True)
+        for ball in ("A", "B"):
+            assert one.point(ball).position == pytest.approx(
+                other.point(ball).position, abs=1e-8, nan_ok=True
+            )
+    found = sensitivities(changed, lengths=["rocker"])
+    (x,) = [k for k, one in enumerate(found.outputs) if one.name == "A.x"]
+    rows = found.status == "ok"
+    trace = found.circuit.point("A").position[:, 0]
+    assert found.values[rows, x] == pytest.approx(trace[rows], abs=1e-7)
 
 
 def test_a_slider_crank_takes_both_links_and_says_that_its_offset_is_drawn() -> None:
@@ -173,7 +186,7 @@ def test_a_map_and_a_sweep_vary_the_lengths_that_the_report_prints(tmp_path) -> 
     assert "coupler, a.x" in shown
 
 
-def test_a_length_beside_a_place_that_changes_it_is_refused(tmp_path) -> None:
+def test_a_length_and_a_place_that_changes_it_are_refused(tmp_path) -> None:
     path = tmp_path / "four.toml"
     path.write_text(Draft.of_linkage(planar()).toml())
     draft, over = Draft.of(path.read_text(), "four"), {"input_link": [20, 30], "b.x": [-1, 1]}
@@ -206,3 +219,70 @@ def test_arcs_of_a_spherical_drawing_are_named_as_what_they_are() -> None:
     assert draft.lengths == ()
     with pytest.raises(RequestError, match="'input_link' is an arc, which follows from the axes as drawn"):
         draft.dimension("input_link")
+
+
+def test_a_calibration_finds_the_lengths_of_a_drawing() -> None:
+    real = with_lengths(rssr(), crank=48.0, rocker=84.0)
+    circuit = real.motion(90)[0]
+    rows = np.flatnonzero(circuit.status == "ok")[:25]
+    rows = rows[circuit.dq[rows, real.columns.index("crank")] > 0]
+    values = {"input": circuit.input[rows], "angle": circuit.output[rows]}
+    found = calibrate(rssr(), Measured("by hand", np.arange(len(rows)), values), free=["crank", "rocker"])
+    assert {p.name: p.value for p in found.calibrated} == pytest.approx(
+        {"crank": 48.0, "rocker": 84.0}, abs=1e-6
+    )
+
+
+# --- design tasks of drawings: their lengths, and the stops of the linkage
+
+TASK = """
+linkage = "four.toml"
+[free]
+input_link = "30:60"
+"P.x" = "0:150"
+[[want]]
+kind = "straight"
+point = "P"
+range = "{range}"
+"""
+
+
+def written(tmp_path, text, stop=""):
+    draft = Draft.of_linkage(planar())
+    (tmp_path / "four.toml").write_text(draft.toml() + stop)
+    (tmp_path / "task.toml").write_text(text)
+    return tmp_path / "task.toml"
+
+
+def test_a_design_task_frees_a_length_of_a_drawing(tmp_path) -> None:
+    task = task_file(written(tmp_path, TASK.format(range="0:90deg"))).task
+    assert [one.name for one in task.free] == ["input_link", "P.x"]
+    loop = TaskLoop(task.draft, task.names)
+    changed = loop.drawn(loop.start + np.array([5.0, 0.0])).linkage
+    assert changed.lengths == pytest.approx((INPUT + 5, COUPLER, OUTPUT))
+
+
+STOP = '\n[[stop]]\njoint = "{joint}"\nrange = ["-40deg", "60deg"]\n'
+
+
+@pytest.mark.parametrize("turns", [0, 360])
+def test_a_want_between_the_stops_of_the_input_is_taken(tmp_path, turns) -> None:
+    text = TASK.format(range=f"{turns - 40}:{turns + 60}deg")
+    assert task_file(written(tmp_path, text, STOP.format(joint="a"))).task.wants
+
+
+def test_a_want_beyond_a_stop_of_the_input_is_refused(tmp_path) -> None:
+    with pytest.raises(
+        DescriptionError, match=r"want\[1\]: its inputs, .* go beyond a stop of a, .*; give inputs between"
+    ):
+        task_file(written(tmp_path, TASK.format(range="-30:61deg"), STOP.format(joint="a")))
+
+
+def test_a_stop_that_nothing_holds_is_refused_until_a_must_holds_it(tmp_path) -> None:
+    text = TASK.format(range="0:30deg")
+    with pytest.raises(
+        DescriptionError, match=r"must: none holds the stop of d, .* kind = 'range', joint = 'd'"
+    ):
+        task_file(written(tmp_path, text, STOP.format(joint="d")))
+    held = text + '[[must]]\nkind = "range"\njoint = "d"\nrange = "-40:60deg"\n'
+    assert task_file(written(tmp_path, held, STOP.format(joint="d"))).task.musts

@@ -1,6 +1,7 @@
 """What people type first and nearly right: each is taken, or answered with what to write."""
 
 import importlib
+import json
 import subprocess
 import sys
 
@@ -8,10 +9,11 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from commands import mistake
+from commands import mistake, sevenbar
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError
 from sevenbar.reporting.four_bar_text import grashof_text
+from sevenbar.reporting.pose_text import stops_text
 
 
 def test_public_modules_are_imported_by_their_public_names():
@@ -186,3 +188,35 @@ def test_a_report_spells_the_classes_of_grashof_as_its_motion_types():
         "; triple-rocker: no joint turns fully"
     )
     assert grashof_text(sb.four_bar(50, 90, 50, 90).as_four_bar(), "mm").endswith("; change-point")
+
+
+@pytest.mark.parametrize("name", ["rssr", "planar_4r", "seven_r"])
+def test_one_pose_says_whether_it_lies_beyond_a_stop(name):
+    plain = sb.load(name)
+    first = plain.drive.joint
+    linkage = plain.stopped(ranges={first: ("-10 deg", "60 deg")})
+    for circuit in linkage.motion(samples=36):
+        for value, beyond in (
+            ("0 deg", ""),
+            ("60 deg", ""),
+            ("61 deg", f"range of {first}"),
+            ("-10 deg", ""),
+        ):
+            pose = circuit.at(value)
+            assert pose.stopped_by == beyond
+            assert stops_text(pose) == (f"beyond {beyond}" if beyond else "within")
+    assert stops_text(plain.motion(samples=36)[0].at("61 deg")) == ""
+
+
+def test_the_tables_of_poses_have_the_stops(tmp_path):
+    (tmp_path / "stops.toml").write_text(
+        sb.gallery.text("planar_4r") + '\n[[stop]]\njoint = "theta_1"\nrange = [-10, 60]\n', encoding="utf-8"
+    )
+    shown = sevenbar("modes", "stops.toml", "--at", "90", cwd=tmp_path).stdout
+    assert shown.count("beyond range of theta_1") == 2
+    found = json.loads(sevenbar("modes", "stops.toml", "--at", "90", "--json", cwd=tmp_path).stdout)
+    assert [mode["stopped_by"] for mode in found["modes"]] == [["range of theta_1"]] * 2
+    assert (
+        "超出 theta_1 的范围限位"
+        in sevenbar("modes", "stops.toml", "--at", "90", "--lang", "zh", cwd=tmp_path).stdout
+    )

@@ -93,7 +93,7 @@ def test_a_power_of_ten_stands_at_the_axis_whose_numbers_it_takes() -> None:
     _, beside = ticks(velocity)
     assert "time [10⁻⁶ s]" in [text.text for text in texts(angle.svg)]
     assert value_at(below, angle.x)[-1] == pytest.approx(math.tau, rel=1e-3)
-    assert "rocker velocity (output) [10³ rad/s]" in [text.text for text in texts(velocity.svg)]
+    assert "rocker velocity [10³ rad/s]" in [text.text for text in texts(velocity.svg)]
     assert value_at(beside, velocity.y).max() == pytest.approx(velocity.values.max() / 1e3, rel=1e-3)
 
 

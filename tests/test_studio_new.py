@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.description.draft import Draft
 from sevenbar.description.files import toml_text
 from sevenbar.studio.server import StudioServer
 from sevenbar.studio.state.sketch import beginning, drawn, kinds_of
 from tab_client import TabClient
 from test_studio_dragging import done, visited
+from test_why_rigid import DOUBLE, linkage
 
 #: Each waits for seconds as a person does.
 pytestmark = pytest.mark.slow
@@ -86,6 +88,20 @@ def test_a_planar_linkage_is_seen_square_to_its_plane_and_pulled_by_two_arrows(t
     client.until(lambda: len(handles(client)) == 4)
     assert {handle.active_axes for handle in tab._handles._handles.values()} == {(True, True, True)}
     assert np.allclose(done(tab, lambda: np.array(tab._client.camera.up_direction)), [0, 0, 1])
+    assert [said for said in client.told if "fault" in str(said).lower()] == []
+    client.close()
+    server.stop()
+
+
+def test_a_linkage_none_of_whose_motions_can_be_followed_is_shown_as_drawn_with_the_reason(tmp_path):
+    server, _ = served(tmp_path, Draft.of_linkage(linkage(DOUBLE)).toml())
+    client, tab = visited(server)
+    client.until(lambda: any(name.startswith("/linkage/") for name in client.scene))
+    assert tab.session.view is None
+    assert "not-followed" in client.html()
+    assert "none of its motions could be followed" in client.html()
+    client.put("drag points", True)
+    client.until(lambda: len(handles(client)) == 4)
     assert [said for said in client.told if "fault" in str(said).lower()] == []
     client.close()
     server.stop()

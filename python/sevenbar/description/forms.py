@@ -30,7 +30,7 @@ from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.loop.rigid import unit
 from sevenbar.kinematics.loop.stops import Cone, Stops
-from sevenbar.kinematics.numbers.lengths import LONGER, across, drawn_length
+from sevenbar.kinematics.numbers.lengths import LONGER, across, drawn_length, reached
 from sevenbar.text.listed import listed
 from sevenbar.text.units import LENGTHS, as_written, measured_unit
 
@@ -454,7 +454,7 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
         )
         for i, (joint, name) in enumerate(zip(drawn, names, strict=True))
     )
-    points = (Point("A", 1, drawn[1].at), Point("B", 3, drawn[2].at)) if rssr else ()
+    points = (Point("A", 1, reached(_tables(drawn), 0)), Point("B", 3, drawn[2].at)) if rssr else ()
     return _linkage(form, "drawn", joints, points=points)
 
 

@@ -15,7 +15,7 @@ from sevenbar.kinematics.circuits.one_pose import OnePose
 from sevenbar.reporting import force_words
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table, page
-from sevenbar.reporting.pose_text import driven_text, in_report, reaction_rows
+from sevenbar.reporting.pose_text import driven_text, in_report, reaction_rows, stops_dict, stops_text
 from sevenbar.reporting.shown import Shown, number
 from sevenbar.text.words import say
 
@@ -71,6 +71,8 @@ def _parts(found: PoseForces) -> Iterator[RenderableType]:
         facts.add(where, joints)
         if pose.status != "ok":
             facts.add(say("rates"), say(pose.status))
+        if stops := stops_text(pose):
+            facts.add(say("stops"), stops)
         label = say("input force") if forces.slides else say("input torque")
         torque = float(forces.torque[0])
         known = torque == torque
@@ -115,6 +117,7 @@ def _pose_dict(pose: OnePose, forces: Forces) -> dict[str, Any]:
         "branch": pose.branch,
         "q": pose.q.tolist(),
         "rates": pose.status,
+        **stops_dict(pose),
         "torque": float(forces.torque[0]),
         "power": None if forces.at_rest else float(forces.power[0]),
         "joints": {

@@ -12,12 +12,13 @@ from sevenbar.arrays import Floats
 from sevenbar.forces.result import OPEN, Reaction
 from sevenbar.kinematics.circuits.one_pose import OnePose
 from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 from sevenbar.reporting.force_words import OPEN as OPEN_WORD
 from sevenbar.reporting.force_words import ROUNDING
 from sevenbar.reporting.shown import REST, Shown, degrees, drive_text, number, six_digits
 from sevenbar.reporting.summary import Column, Sheet, wide_sheets
 from sevenbar.text.printing import lines, text_of
-from sevenbar.text.words import say
+from sevenbar.text.words import retold, say
 
 #: Rates of a pose by their order.
 RATES = ("position", "velocity", "acceleration")
@@ -35,6 +36,18 @@ def driven_text(linkage: Loop, pose: OnePose) -> str:
     if pose.acceleration:
         return say("{driven} and {value}", driven=text, value=f"{pose.acceleration:.6g} {unit}/s^2")
     return text
+
+
+def stops_text(pose: OnePose) -> str:
+    """Whether a pose lies beyond a stop, in words; empty of a linkage without stops."""
+    if not pose._linkage.stops.stops:
+        return ""
+    try:
+        names = pose.stopped_by
+    except NotFollowedError:
+        return say("not known")
+    beyond = say(", ").join(retold(name) for name in names.split(", "))
+    return say("beyond {stops}", stops=beyond) if names else say("within")
 
 
 def settled(linkage: Loop, pose: OnePose, values: Floats, order: int, *, length: bool) -> Floats:
@@ -66,6 +79,7 @@ def pose_dict(pose: OnePose) -> dict[str, Any]:
         "acceleration": pose.ddq.tolist(),
         "transmission": pose.transmission_angle,
         "mechanical_advantage": pose.mechanical_advantage,
+        **stops_dict(pose),
         "points": {
             name: {word: getattr(trace, word)[0].tolist() for word in RATES}
             for name, trace in pose.points.items()
@@ -78,6 +92,17 @@ def pose_dict(pose: OnePose) -> dict[str, Any]:
             for link, own in pose.links.items()
         },
     }
+
+
+def stops_dict(pose: OnePose) -> dict[str, Any]:
+    """The stops that a pose lies beyond, of a linkage with stops: a list of names; null if not known."""
+    if not pose._linkage.stops.stops:
+        return {}
+    try:
+        names = pose.stopped_by
+    except NotFollowedError:
+        return {"stopped_by": None}
+    return {"stopped_by": names.split(", ") if names else []}
 
 
 def rates_sheets(linkage: Loop, poses: Sequence[tuple[str, OnePose | None]], room: int) -> list[Sheet]:
@@ -101,6 +126,8 @@ def rates_sheets(linkage: Loop, poses: Sequence[tuple[str, OnePose | None]], roo
         columns.append((say("transmission\n[deg]"), [_angle(angle) for angle in angles]))
     columns.append((say("mechanical\nadvantage"), [_cell(pose.mechanical_advantage) for _, pose in known]))
     columns.append((say("rates"), [say(pose.status) for _, pose in known]))
+    if linkage.stops.stops:
+        columns.append((say("stops"), [stops_text(pose) for _, pose in known]))
     return sheets + wide_sheets(head, columns, room)
 
 
@@ -201,6 +228,7 @@ def _(pose: OnePose) -> str:
     facts = [
         ("driven", driven_text(linkage, pose)),
         ("rates", "" if pose.status == "ok" else pose.status),
+        ("stops", stops_text(pose)),
         (
             "joints",
             ", ".join(

@@ -25,7 +25,7 @@ from sevenbar.studio.worker import Worker
 #: Widths of the panels [px]: at most, at least, and as a share of the window's; more is the linkage's.
 LEFT, RIGHT = (440, 300, 0.3), (380, 290, 0.265)
 
-#: The boxes that viser puts beside sliders hold only what a slider can; the studio has boxes of its own.
+#: The boxes that viser puts next to sliders hold only what a slider can; the studio has boxes of its own.
 STYLE = (
     "<style>.mantine-Slider-root + .mantine-NumberInput-root { display: none }"
     " .mantine-Slider-root { margin-bottom: 0.55em }"

@@ -32,6 +32,7 @@ from sevenbar.kinematics.loop.rigid import flaw_of_rotation
 from sevenbar.kinematics.measures import is_of_forces
 from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 from sevenbar.kinematics.ranges.ball_angle import ball_angle
+from sevenbar.reporting.shown import Shown
 
 #: The most that residuals are where points are to be met exactly.
 EXACT = 1e-6
@@ -41,6 +42,9 @@ OPENINGS = 12
 
 #: A place whose slopes are all below this part of the size stands still.
 STILL = 1e-12
+
+#: How far an input may be beyond a stop by rounding [rad, or share of the size].
+ON_STOP = 1e-9
 
 #: Fewest samples of a dwell or a straight way.
 FEWEST_SAMPLES = 3
@@ -107,6 +111,7 @@ def start_flaws(task: DesignTask) -> Iterator[Problem]:
             f"free.{task.free[number].name}", "cannot change alone without opening the loop; leave it out"
         )
     yield from _outside(task, loop, q)
+    yield from _stops(task)
 
 
 def closed_poses(loop: TaskLoop, circuits: Sequence[Circuit]) -> Floats | None:
@@ -218,6 +223,53 @@ def _free(task: DesignTask) -> Iterator[Problem]:
 def _of_want(task: DesignTask, want: Want) -> Flaws:
     yield from not_positive("weight", want.weight, "weight")
     yield from _FLAWS[type(want)](task, want)
+
+
+def _stops(task: DesignTask) -> Iterator[Problem]:
+    """Stops of the linkage's file that neither the inputs of the wants nor a must of a range hold."""
+    linkage = task.draft.linkage
+    held = {must.column for must in task.musts if isinstance(must, kinds.InRange)}
+    for column, ends in linkage.stops.ranges.items():
+        if column in held or not task.wants:
+            continue
+        show = Shown(linkage.unit_of(column))
+        between = f"{show(ends[0])} to {show(ends[1])}"
+        known = [_inputs_of(want) if column == linkage.drive.joint else None for want in task.wants]
+        if None in known:
+            yield Problem(
+                "must",
+                f"none holds the stop of {column}, {between}; give one with kind = 'range', joint = "
+                f"{shown(column)} and this range, or a linkage without the stop",
+            )
+            continue
+        for i, inputs in enumerate(known, 1):
+            if inputs is not None and not _within(linkage, inputs, ends):
+                yield Problem(
+                    f"want[{i}]",
+                    f"its inputs, {show(inputs[0])} to {show(inputs[1])}, go beyond a stop of {column}, "
+                    f"{between}; give inputs between the stops, or move the stop",
+                )
+
+
+def _within(linkage: Linkage, inputs: tuple[float, float], ends: tuple[float, float]) -> bool:
+    """Whether inputs are between stops of the input, by whole turns of it or not."""
+    turns = linkage.turns(linkage.drive.joint)
+    room = ON_STOP * (1.0 if turns else linkage.size)
+    low, high = ends[0] - room, ends[1] + room
+    first = math.ceil((low - inputs[0]) / math.tau) * math.tau if turns else 0.0
+    return inputs[0] + first >= low and inputs[1] + first <= high
+
+
+def _inputs_of(want: Want) -> tuple[float, float] | None:
+    """The least and the greatest input of a want; `None` where the search has to find them."""
+    match want:
+        case kinds.DwellWant() | kinds.StraightWant():
+            return min(want.inputs), max(want.inputs)
+        case kinds.FunctionWant(zeros=(float(zero), _)):
+            return float(want.input.min()) + zero, float(want.input.max()) + zero
+        case kinds.PathWant() | kinds.PoseWant() if want.timing is not None and not want.phase:
+            return float(np.min(want.timing)), float(np.max(want.timing))
+    return None
 
 
 def _function(task: DesignTask, want: kinds.FunctionWant) -> Flaws:

@@ -165,10 +165,10 @@ def text(found: TaskDesigns) -> RenderableType:
 
 #: Why the conditions of an optimum are missed, by how the search ended.
 REASONS = {
-    "edge": "ends at an edge: a small step further the linkage does not close, or a measure jumps where the "
-    "motion type changes, so slopes need not vanish; along the edge there may be better ones. Bound a "
-    "measure or a range so that designs keep off it, or take another design",
-    "valley": "ends in a narrow valley before an optimum, where each step gains next to nothing. Begin again "
+    "edge": "ends at an edge: a small step further the linkage does not close, or a measure jumps as the "
+    "motion type changes. There may be better designs along the edge. Bound a measure or a range so that "
+    "designs stay away from it, or take another design",
+    "valley": "ends in a narrow valley, where the error falls too slowly to reach its bottom. Begin again "
     "with this design as the linkage, give a measure a greater unit, or take more --starts",
 }
 

@@ -200,7 +200,7 @@ def sensitivities(
     RSSR; lengths, twists, offsets, angles and pitches of rows; coordinates of joints and axes as drawn; and
     those of points. L2 that a file leaves out is a number of its own, as of a rod that is made; in `follow`
     it follows from the others, and its derivatives are 0. `lengths` of a drawing, by the names that its
-    report has, are numbers besides its coordinates. The arguments are those of `Linkage.motion`. Raises
+    report has, are numbers as its coordinates are. The arguments are those of `Linkage.motion`. Raises
     `RequestError` for a linkage made without a description and for an argument that does not fit.
 
         >>> import sevenbar as sb

@@ -10,6 +10,7 @@ from typing import Protocol
 from sevenbar.arrays import Floats
 from sevenbar.forces.result import Forces, Reaction
 from sevenbar.kinematics.circuits.circuit_values import Trace
+from sevenbar.kinematics.circuits.extents import Allowed
 from sevenbar.kinematics.circuits.link_motion import LinkMotion
 from sevenbar.kinematics.loop.columns import column_named
 from sevenbar.kinematics.loop.geometry import Loop
@@ -26,6 +27,10 @@ class AnsweringRows(Protocol):
     @property
     def mechanical_advantage(self) -> Floats:
         """On each row (n,)."""
+
+    @property
+    def allowed(self) -> Allowed:
+        """Which rows are within the stops."""
 
     def point(self, link: int | str, at: Sequence[float] | None = None) -> Trace:
         """A point along the rows."""
@@ -102,6 +107,13 @@ class OnePose(Printed):
     def mechanical_advantage(self) -> float:
         """Torque or force of the output over that of the input; see `Circuit.mechanical_advantage`."""
         return float(self._rows.mechanical_advantage[self._row])
+
+    @property
+    def stopped_by(self) -> str:
+        """The stops of the linkage that the pose lies beyond, as "range of crank"; empty within them."""
+        if not self._linkage.stops.stops:
+            return ""
+        return str(self._rows.allowed.stopped_by[self._row])
 
     def forces(self, *, at_rest: bool = False) -> Forces | None:
         """The forces in this pose, of one row; `None` where the linkage has no body, load or spring.

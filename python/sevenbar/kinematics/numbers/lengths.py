@@ -11,7 +11,7 @@ line, whose turn by their coordinates is left out of the derivatives of c u. So 
 stay, as do the other lengths, the zeros of joints, and what links carry, from the joint before each; at zero
 the loop closes no longer.
 
-Source: docs/file-format.md, "Longer links".
+The page is "Longer links" of the linkage files.
 """
 
 from __future__ import annotations
@@ -67,9 +67,22 @@ def drawn_length(joints: Sequence[Mapping[str, Any]], link: int) -> float:
     found = axis_at([joint["kind"] for joint in joints], link)
     if found is None:
         return math.hypot(*line)
-    joint, which = found
-    axis = joints[joint]["axes"][which] if "axes" in joints[joint] else joints[joint]["axis"]
-    return math.hypot(*cross(unit(axis), line))
+    return math.hypot(*cross(unit(_axis(joints, *found)), line))
+
+
+def reached(joints: Sequence[Mapping[str, Any]], link: int) -> tuple[float, float, float]:
+    """The place of the joint after a link, counted from 0, as a link has it that is longer than drawn."""
+    drawn = np.array(joints[link + 1]["at"], dtype=np.float64)
+    longer = float(joints[link].get(LONGER, 0.0))
+    if not longer:
+        x, y, z = drawn.tolist()
+        return x, y, z
+    line, by = _line(joints, link), axis_at([joint["kind"] for joint in joints], link)
+    if by is not None:
+        axis = unit(_axis(joints, *by))
+        line = line - (line @ axis) * axis
+    x, y, z = (drawn + longer * unit(line)).tolist()
+    return x, y, z
 
 
 def across(joints: Sequence[Mapping[str, Any]]) -> dict[int, Floats]:
@@ -80,6 +93,13 @@ def across(joints: Sequence[Mapping[str, Any]]) -> dict[int, Floats]:
         for link, joint in enumerate(joints[:-1])
         if LONGER in joint and axis_at(kinds, link) is None
     }
+
+
+def _axis(joints: Sequence[Mapping[str, Any]], joint: int, which: int) -> Sequence[float]:
+    """An axis of a joint as drawn."""
+    table = joints[joint]
+    found: Sequence[float] = table["axes"][which] if "axes" in table else table["axis"]
+    return found
 
 
 def _line(joints: Sequence[Mapping[str, Any]], link: int) -> Floats:

@@ -360,6 +360,10 @@ def points_of(form: Form, word: Word, description: Mapping[str, Any], kind: str)
             Carried(len(word.steps) - 1, Product()),
         ]
     elif kind == "RSSR":
-        found += [word.point(link, ("joint", joint, "at")) for link, joint in ((1, 1), (3, 2))]
+        # the crank may be longer than drawn
+        steps, frame = word.carrier(1)
+        ball = word.slots.three(("joint", 1, "at"))
+        found.append(Carried(steps, frame + _longer(kind, word.slots, 0), ball))
+        found.append(word.point(3, ("joint", 2, "at")))
     tables = enumerate(description.get("point", ()))
     return found + [word.point(int(table["link"]), ("point", i, "at")) for i, table in tables]

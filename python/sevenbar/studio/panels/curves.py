@@ -1,4 +1,4 @@
-"""The curves beside the linkage, each with a cursor that goes along with the motion."""
+"""The curves next to the linkage, each with a cursor that goes along with the motion."""
 
 from __future__ import annotations
 

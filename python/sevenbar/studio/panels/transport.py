@@ -167,8 +167,8 @@ def _reading(session: Session, view: View) -> str:
         way = " rising" if view.path.sign[int(session.row)] * view.motion.speed > 0 else " falling"
     modes, reach = session.modes(), session.reach
     lines = [
-        f"{view.motion.input} {view.input_text(session.row)}{way}",
-        f"{view.motion.output} {value_text(view.linkage, circuit.output_column, second)}",
+        f"input {view.input_text(session.row)}{way}",
+        f"output {value_text(view.linkage, circuit.output_column, second)}",
         f"t = {view.time_at(session.row):.4g} s",
     ]
     if modes:

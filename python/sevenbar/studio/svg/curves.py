@@ -144,7 +144,7 @@ def _panel(
     ]
     content = [
         f'<rect width="{frame.width}" height="{frame.height}" fill="{picture.GROUND}"/>',
-        picture.head(frame, quantity.name, beside.unit(quantity.unit), _keys(quantity, own), own.colour),
+        picture.head(frame, quantity.heading, beside.unit(quantity.unit), _keys(quantity, own), own.colour),
         picture.grid(frame, below, beside, name, unit),
         _limits(own.view, frame, below, unit) if over == "input" else "",
         f'<svg x="{left}" y="{top}" width="{wide}" height="{tall}" viewBox="0 0 {wide}0 {tall}0" '
@@ -176,7 +176,7 @@ def _empty(frame: picture.Frame, quantity: Quantity, reason: str) -> picture.Pan
     content = [
         f'<rect width="{frame.width}" height="{frame.height}" fill="{picture.GROUND}"/>',
         f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" fill="#f4f5f7"/>',
-        picture.head(frame, quantity.name, quantity.unit, (), picture.INK),
+        picture.head(frame, quantity.heading, quantity.unit, (), picture.INK),
         picture.words(frame, *middle, text, anchor="middle", look=f'fill="{picture.QUIET}"'),
     ]
     nothing = np.empty(0)

@@ -25,6 +25,9 @@ ORDERS = ("angle", "velocity", "acceleration")
 SIZES = {1: "speed", 2: "acceleration"}
 
 
+#: What the output's quantities have at the end of their names in the menu.
+OF_OUTPUT = " (output)"
+
 #: The key of the transmission angle.
 TRANSMISSION = "transmission"
 
@@ -44,6 +47,11 @@ class Quantity:
     order: int
     column: int | None = None
     point: int | None = None
+
+    @property
+    def heading(self) -> str:
+        """Its name above a curve, where there is little room."""
+        return self.name.removesuffix(OF_OUTPUT)
 
     @property
     def kind(self) -> str:
@@ -121,7 +129,7 @@ def quantities(motion: Motion) -> tuple[Quantity, ...]:
             add(f"{key}.{word}", f"{name} {shown}{role}", unit, order, column=column)
 
     ends = linkage.columns.index(motion.input), linkage.columns.index(motion.output)
-    add_column("output", motion.output, ends[1], " (output)")
+    add_column("output", motion.output, ends[1], OF_OUTPUT)
     # its values are for those who draw it
     if motion.circuits and coupling_of(linkage, *ends) is not None:
         add(TRANSMISSION, "transmission angle", "deg", 0)

@@ -180,7 +180,7 @@ def _free(draft: Draft, form: TaskForm, mistakes: _Mistakes) -> list[FreeNumber]
         with mistakes.of(f"free.{name}"):
             found = [d for d in every if name in (d.name, d.key) or fnmatchcase(d.name, name)]
             if not found:
-                known = [d.name for d in every]
+                known = [d.name for d in (*draft.lengths, *every)]
                 raise RequestError(
                     f"is not a number of the linkage; {suggestion(name, known)}give some of "
                     f"{', '.join(known)}, or a pattern as 'L*'"
