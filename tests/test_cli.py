@@ -391,7 +391,7 @@ def test_the_folder_of_a_general_loop_holds_joints_and_paths_too(tmp_path):
         ),
         (
             ["plot", "rssp", "--kind", "path", "--out", "out"],
-            "--kind: 'path' is not a figure; give curves, joints, modes, configuration, point, transmission, coupler, axodes or all",
+            "--kind: 'path' is not a figure; give curves, joints, modes, configuration, point, transmission, coupler, axodes, skeleton or all",
         ),
         (["plot", "rssp", "--point", "C", "--out", "out"], "--point: no point 'C'; this linkage has B"),
         (

@@ -16,6 +16,7 @@ from sevenbar.design.task.report import TaskDesigns, task_report
 from sevenbar.design.task.search import designed
 from sevenbar.design.task.task import FigureMust
 from sevenbar.design.task.transmitting import LeastAngle
+from sevenbar.design.task.wants.figures import Figures
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.measures import gradient
 from textbook_loops import four_bar_joints, linkage, slider_crank_joints, spherical_joints
@@ -157,3 +158,66 @@ def test_a_function_and_a_dwell_need_no_motion_that_is_measured():
     want = FunctionWant(np.radians([0.0, 30.0, 60.0]), np.radians([0.0, 10.0, 20.0]))
     model = TaskModel(DesignTask(start, (FreeNumber("length_2", 80, 120),), (want,)))
     assert not model.searched.measured
+
+
+@pytest.mark.parametrize(
+    ("name", "measures"),
+    [
+        ("planar_4r", ["swing", "time_ratio", "velocity_highest"]),
+        ("rssp", ["swing", "transmission_lowest", "acceleration_lowest"]),
+        ("seven_r", ["velocity_highest", "velocity_lowest"]),
+        ("rssr_press", ["swing", "peak_torque"]),
+    ],
+)
+def test_measures_of_the_circuit_through_a_pose_are_those_of_the_whole_motion(name, measures):
+    draft = Draft.of_linkage(sb.load(name))
+    motion = draft.linkage.motion(72)
+    known = gradient(motion, len(motion.circuits) - 1, only=measures)
+    names = [d.name for d in draft.dimensions if d.kind != "speed"]
+    smooth = np.all([np.isfinite(known[one].slopes) for one in measures], axis=0)
+    loop = TaskLoop(draft, [name for name, good in zip(names, smooth, strict=True) if good][:4])
+    figures = Figures(loop, measures)
+    row = next(row for row in motion.circuits[-1].q if np.isfinite(row).all())
+    values, by = figures.at(loop.start, row)
+    assert values == pytest.approx([known[one].value for one in measures], rel=1e-9)
+    own = [loop.all_slopes(loop.start, known[one].slopes) for one in measures]
+    assert by == pytest.approx(np.array(own), rel=1e-6, abs=1e-9)
+
+
+def test_a_gradient_of_some_measures_is_part_of_that_of_all():
+    motion = sb.load("planar_4r").motion(72)
+    every = gradient(motion)
+    for name in ("swing", "time_ratio", "velocity_lowest", "jerk_highest", "transmission_highest"):
+        (only,) = gradient(motion, only=[name]).values()
+        assert np.array_equal(only.slopes, every[name].slopes, equal_nan=True)
+
+
+def test_over_the_whole_circuit_a_function_generator_is_found_that_transmits(tmp_path):
+    must = "[[must]]\nkind = 'measure'\nname = 'transmission_lowest'\nleast = '40deg'"
+    (design,) = designed(written(tmp_path, must), count=1, starts=8).designs
+    a, b, c = design.values
+    ends = [(b * b + c * c - (90 + way * a) ** 2) / (2 * b * c) for way in (-1, 1)]
+    assert 90 - np.degrees(np.abs(np.arcsin(ends))).max() == pytest.approx(40, abs=1e-6)
+
+
+def test_an_angle_that_shall_be_great_is_so_where_its_two_extremes_are_equal(tmp_path):
+    # swing 50 of crank, coupler, rocker with a ground of 90: the best has equal angles at both ends
+    path = tmp_path / "task.toml"
+    path.write_text(
+        'linkage = "planar_4r"\ngoal = "minimax"\nfree = { length_1 = "15:60", length_3 = "40:120" }\n[[want]]\n'
+        'kind = "measure"\nname = "transmission_lowest"\nvalue = "great"\n[[must]]\nkind = "measure"\n'
+        'name = "swing"\nleast = "49.9999deg"\nmost = "50.0001deg"\n'
+    )
+    (design,) = designed(task_file(path).task, count=1, starts=4).designs
+    a, c = design.values
+    low, high = ((100**2 + c * c - (90 + way * a) ** 2) / (200 * c) for way in (-1, 1))
+    crank, rocker = np.meshgrid(np.linspace(15, 60, 901), np.linspace(40, 120, 801), indexing="ij")
+    cosines = [(100**2 + rocker**2 - (90 + way * crank) ** 2) / (200 * rocker) for way in (-1, 1)]
+    dead = [(90**2 + rocker**2 - (100 + way * crank) ** 2) / (180 * rocker) for way in (-1, 1)]
+    turns = np.arccos(np.clip(dead, -1, 1))
+    swing = np.degrees(np.abs(turns[1] - turns[0]))
+    lowest = 90 - np.degrees(np.arcsin(np.clip(np.abs(cosines).max(axis=0), -1, 1)))
+    best = lowest[(np.abs(swing - 50) < 0.1) & (lowest > 0)].max()
+    assert math.degrees(design.transmission) == pytest.approx(best, abs=0.2)
+    assert design.optimality < 1e-9
+    assert abs(low) <= math.cos(design.transmission) + 1e-9 >= abs(high)

@@ -369,3 +369,88 @@ def test_a_wrong_option_of_figures_gets_one_message_and_no_file(
     assert result.stderr.count("\n") == 1
     assert message in result.stderr
     assert not list(tmp_path.iterdir())
+
+
+# --- the linkage alone
+
+
+@pytest.mark.parametrize("name", ["planar_4r", "rssr", "spherical_4r", "seven_r", "engine"])
+@pytest.mark.parametrize("size", [None, (1.0, 1.0)])
+def test_a_skeleton_has_links_and_joints_and_neither_numbers_nor_words(name, size) -> None:
+    figure = plot.skeleton(sb.load(name).motion(samples=36), figsize=size)
+    (axes,) = figure.axes
+    assert not axes.axison
+    assert not figure.legends
+    assert not figure.texts
+    assert not [text for text in axes.texts if text.get_text().strip()]
+    assert axes.get_title() == ""
+    assert len(axes.lines) >= 3
+
+
+def test_a_skeleton_is_drawn_in_the_drawn_pose_or_at_a_value_of_the_input() -> None:
+    drawn = sb.from_axes(SLIDER_CRANK).motion(samples=36)
+    links = plot.skeleton(drawn).axes[0].lines
+    places = np.concatenate([np.column_stack(line.get_data()) for line in links])
+    pin = SLIDER_CRANK[1]["at"]
+    assert np.abs(places - pin[:2]).max(axis=1).min() < 1e-6
+    turned = plot.skeleton(drawn, at="90 deg").axes[0].lines
+    moved = np.concatenate([np.column_stack(line.get_data()) for line in turned])
+    assert np.abs(moved - pin[:2]).max(axis=1).min() > 1.0
+    named = plot.skeleton(drawn, names=True).axes[0]
+    assert {text.get_text() for text in named.texts} >= {"crank", "crank pin"}
+
+
+def test_a_skeleton_on_a_small_page_has_thinner_lines() -> None:
+    motion = sb.load("planar_4r").motion(samples=36)
+    widths = [
+        max(line.get_linewidth() for line in plot.skeleton(motion, figsize=(s, s)).axes[0].lines)
+        for s in (3, 1)
+    ]
+    assert widths[1] < 0.5 * widths[0]
+
+
+def test_pages_that_are_too_small_are_refused_with_what_to_draw_instead() -> None:
+    motion = sb.load("planar_4r").motion(samples=36)
+    with pytest.raises(RequestError, match="size: 40 x 40 mm is too small for 3 panels"):
+        plot.curves(motion, figsize=(40 / 25.4, 40 / 25.4))
+    with pytest.raises(
+        RequestError, match=r"size: 40 x 40 mm is too small for this picture .*--kind skeleton"
+    ):
+        plot.configuration(motion, figsize=(40 / 25.4, 40 / 25.4))
+
+
+def test_a_skeleton_is_drawn_from_the_command_line(tmp_path: Path) -> None:
+    sevenbar(
+        "plot",
+        "planar_4r",
+        "--kind",
+        "skeleton",
+        "--size",
+        "25x25mm",
+        "--out",
+        "out",
+        "--figures",
+        "svg",
+        cwd=tmp_path,
+    )
+    text = (tmp_path / "out" / "skeleton.svg").read_text(encoding="utf-8")
+    assert "<text" not in text
+
+
+def test_a_circuit_far_away_is_named_and_not_drawn_to_scale() -> None:
+    joints = [
+        {"name": name, "kind": kind, "at": at, "axis": axis}
+        for name, kind, at, axis in (
+            ("crank", "R", [0, 0, 0], [0, 0, 1]),
+            ("pin", "R", [50, 0, 0], [0, 0, 1]),
+            ("wrist", "R", [0, -397, 0], [0, 0, 1]),
+            ("ram", "P", [0, -397, 0], [0, 1, 0]),
+        )
+    ]
+    figure = plot.curves(sb.from_axes(joints).motion(samples=36), "input", quantities=["angle"])
+    (axes,) = figure.axes
+    low, high = axes.get_ylim()
+    assert 100 < high - low < 150
+    (said,) = [text.get_text() for text in axes.texts]
+    assert said.startswith("circuit 1: 74")
+    assert said.endswith("not shown")

@@ -10,7 +10,7 @@ import sevenbar as sb
 from sevenbar.curves.curve import Peak
 from sevenbar.design.points import Mass, inertia
 from sevenbar.errors import RequestError
-from sevenbar.forces.sizing import sizing
+from sevenbar.forces.sizing import cycle_loads, unevenness_of
 
 
 @dataclass
@@ -18,6 +18,11 @@ class Wrench:
     force: np.ndarray
     moment: np.ndarray
     determinate: np.ndarray = field(default_factory=lambda: np.ones(6, dtype=bool))
+
+
+def sizing(rows, *, unevenness=None, **given):
+    delta, found = unevenness_of(unevenness), cycle_loads(rows, **given)
+    return None if found is None else found.sizing(delta)
 
 
 @dataclass

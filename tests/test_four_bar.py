@@ -257,6 +257,37 @@ def test_links_of_a_planar_loop_with_balls_are_those_in_its_plane_however_it_is_
 FOUR_BARS = ("engine", "planar_4r", "spherical_4r", "universal_joint")
 
 
+@pytest.mark.parametrize("small", [1e-3, 1e-5, 1e-6, 1e-7, 1e-8])
+def test_however_short_a_link_is_both_circuits_are_found(small):
+    short_rod = [
+        {"kind": "R", "at": [0, 0, 0], "axis": [0, 0, 1]},
+        {"kind": "R", "at": [0.8, 0.6, 0], "axis": [0, 0, 1]},
+        {"kind": "R", "at": [0.8 + 0.6 * small, 0.6 + 0.8 * small, 0], "axis": [0, 0, 1]},
+        {"kind": "P", "at": [0.8 + 0.6 * small, 0.6 + 0.8 * small, 0], "axis": [1, 0, 0]},
+    ]
+    coupler = sb.four_bar(1, small, 1, 1)
+    for short, ends in (
+        (coupler, ("theta_1", "theta_4")),
+        (coupler, ("theta_4", "theta_1")),
+        (sb.four_bar(1, small, 1.3, 1.9), ("theta_1", "theta_4")),
+        (sb.four_bar(small, 1, 1, 1), ("theta_1", "theta_4")),
+        (sb.four_bar(1, 1, 1, small), ("theta_1", "theta_4")),
+        (sb.spherical_four_bar(1, small, 1, 1), ("theta_1", "theta_4")),
+        (sb.spherical_four_bar(small, 1, 1, 1), ("theta_1", "theta_4")),
+        (sb.slider_crank(small, 1, 0.3), ("crank", "slider")),
+        (sb.from_axes(short_rod), (None, None)),
+    ):
+        motion = short.motion(24, input=ends[0], output=ends[1])
+        assert (len(motion), motion.search.unfollowed) == (2, 0)
+
+
+def test_of_a_triangle_one_pose_is_enough():
+    triangle = sb.from_axes(
+        [{"kind": "R", "at": at, "axis": [0, 0, 1]} for at in ([0, 0, 0], [2, 0, 0], [1, 2, 0])]
+    )
+    assert triangle.motion(24).motion_type == "rigid"
+
+
 def test_other_loops_have_none():
     for name in sb.gallery.names():
         found = sb.load(name)

@@ -15,7 +15,7 @@ SOURCE = CORE / "src"
 IN_ORDER = """
 error outcome one_pose number simd vector_math vectors random taylor twofold trigonometric rigid stopping parallel piecewise driven
 
-rssr: linkage pair rates domain extremes frames motion circuits batch lines classify measures
+rssr: linkage pair free_side rates domain extremes frames motion circuits batch lines classify measures
 
 survey: draw figures kind swing transmission cone wish readings pose tally judge cascade
 

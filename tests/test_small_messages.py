@@ -1,6 +1,8 @@
 """What people type first and nearly right: each is taken, or answered with what to write."""
 
 import importlib
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ import sevenbar as sb
 from commands import mistake
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError
+from sevenbar.reporting.four_bar_text import grashof_text
 
 
 def test_public_modules_are_imported_by_their_public_names():
@@ -126,7 +129,10 @@ def test_a_map_needs_no_count():
     assert said == "over: L1: '100:400:61' has a count, and a map needs none; give 100:400"
 
 
-@pytest.mark.parametrize(("unit", "meant"), [("Hz", "rev/s"), ("U/min", "rpm"), ("1/min", "rpm")])
+@pytest.mark.parametrize(
+    ("unit", "meant"),
+    [("Hz", "rev/s"), ("U/min", "rpm"), ("1/min", "rpm"), ("min^-1", "rpm"), ("s^-1", "rev/s")],
+)
 def test_other_words_for_speeds_are_known(unit, meant):
     with pytest.raises(RequestError, match=f"did you mean '{meant}'"):
         sb.load("rssr").motion(speed=f"2 {unit}")
@@ -160,3 +166,23 @@ def test_a_column_that_is_not_read_is_named_where_a_kind_lacks(tmp_path):
     assert "in a column 'kind'; not read: 'Typ'" in mistake("analyze", str(table))
     table.write_text("a_(i-1),alpha_(i-1),d_i,theta_i\n0,0,0,0\n1,0,0,0\n", encoding="utf-8")
     assert "modified (Craig's) Denavit-Hartenberg rows" in mistake("analyze", str(table))
+
+
+def test_a_font_that_is_missing_is_said_once_for_all_figures(tmp_path):
+    """In a process of its own: what was said is remembered by the program."""
+    code = (
+        "import sys, sevenbar.drawing.fonts as fonts; fonts._installed = lambda: None;"
+        "from sevenbar.commands.cli import main;"
+        f"sys.argv = ['sevenbar', 'plot', 'planar_4r', '--lang', 'zh', '-o', {str(tmp_path / 'a')!r}, '--kind', 'curves,joints'];"
+        "main()"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert result.returncode == 0
+    assert result.stderr.count("no font with Chinese characters") == 1
+
+
+def test_a_report_spells_the_classes_of_grashof_as_its_motion_types():
+    assert grashof_text(sb.four_bar(50, 60, 70, 100).as_four_bar(), "mm").endswith(
+        "; triple-rocker: no joint turns fully"
+    )
+    assert grashof_text(sb.four_bar(50, 90, 50, 90).as_four_bar(), "mm").endswith("; change-point")

@@ -93,7 +93,7 @@ def test_a_power_of_ten_stands_at_the_axis_whose_numbers_it_takes() -> None:
     _, beside = ticks(velocity)
     assert "time [10⁻⁶ s]" in [text.text for text in texts(angle.svg)]
     assert value_at(below, angle.x)[-1] == pytest.approx(math.tau, rel=1e-3)
-    assert "output velocity [10³ rad/s]" in [text.text for text in texts(velocity.svg)]
+    assert "rocker velocity (output) [10³ rad/s]" in [text.text for text in texts(velocity.svg)]
     assert value_at(beside, velocity.y).max() == pytest.approx(velocity.values.max() / 1e3, rel=1e-3)
 
 
@@ -173,11 +173,11 @@ def test_quantities_are_the_output_then_every_other_column_then_the_points() -> 
     motion = motion_of("slide out")
     found = quantities(motion)
     assert [(q.name, q.unit) for q in found[:3]] == [
-        ("output position", "mm"),
-        ("output velocity", "mm/s"),
-        ("output acceleration", "mm/s²"),
+        ("slider position (output)", "mm"),
+        ("slider velocity (output)", "mm/s"),
+        ("slider acceleration (output)", "mm/s²"),
     ]
-    columns = [name for name in motion.linkage.columns if name != motion.input]
+    columns = [name for name in motion.linkage.columns if name not in (motion.input, motion.output)]
     keys = [f"column.{name}.{word}" for name in columns for word in ("angle", "velocity", "acceleration")]
     points = [
         f"point.{point.name}.{word}" for point in motion.linkage.points for word in ("speed", "acceleration")
@@ -335,3 +335,19 @@ def test_axodes_are_the_axes_of_the_joints_at_their_moments() -> None:
         place = frame[:3, :3] @ axes.moving_point[row] + frame[:3, 3]
         assert np.abs(place - axes.point[row]).max() < 1e-9 * view.frame.span
     assert len(fixed) == len(moving) > 50
+
+
+def test_a_curve_fills_its_picture_where_another_circuit_lies_far_away() -> None:
+    """A press whose mirrored circuit has its ram 800 mm higher."""
+    z = [0, 0, 1]
+    joints = [
+        {"name": "crank", "kind": "R", "at": [0, 0, 0], "axis": z},
+        {"name": "pin", "kind": "R", "at": [50, 0, 0], "axis": z},
+        {"name": "wrist", "kind": "R", "at": [0, -397, 0], "axis": z},
+        {"name": "ram", "kind": "P", "at": [0, -397, 0], "axis": [0, 1, 0]},
+    ]
+    motion = sb.from_axes(joints).motion()
+    views = views_of(motion)
+    (panel,) = panels(views, quantities(motion)[:1], 0)
+    assert panel.scale is not None
+    assert np.ptp(panel.values) > 0.8 * (panel.scale.high - panel.scale.low)

@@ -290,5 +290,5 @@ def test_forces_are_seen_switched_and_told_on_the_page(studio: Any, pages: Any) 
     open_tab(page, "Forces")
     desk.says(re.compile(r"\[\[body\]\]"))
     assert shown(page, "force arrows") == "none"
-    assert shown(page, "curve 1").startswith("output")
+    assert shown(page, "curve 1").endswith("(output)")
     assert not pink(settled(page)).sum() > 20

@@ -68,6 +68,37 @@ def test_points_are_pulled_and_a_pull_is_one_step(tmp_path):
     server.stop()
 
 
+def test_a_planar_linkage_is_seen_square_to_its_plane_and_pulled_by_two_arrows(tmp_path):
+    server, _ = served(tmp_path)
+    client, tab = visited(server)
+    eye, target = tab._scenery.stage.look()
+    assert np.allclose((eye - target)[:2], 0.0, atol=1e-9)
+    assert np.allclose(done(tab, lambda: np.array(tab._client.camera.up_direction)), [0, 1, 0])
+    client.put("drag points", True)
+    client.until(lambda: len(handles(client)) == 4)
+    arrows = {handle.active_axes for handle in tab._handles._handles.values()}
+    assert arrows == {(True, True, False)}
+    # a linkage in space stands again, with three arrows
+    client.put(
+        "gallery", next(o for o in client.gui[client.find("gallery")[0]]["options"] if o.startswith("rscr:"))
+    )
+    client.until(lambda: tab.session.draft.linkage.kind == "RSCR")
+    client.until(lambda: len(handles(client)) == 4)
+    assert {handle.active_axes for handle in tab._handles._handles.values()} == {(True, True, True)}
+    assert np.allclose(done(tab, lambda: np.array(tab._client.camera.up_direction)), [0, 0, 1])
+    assert [said for said in client.told if "fault" in str(said).lower()] == []
+    client.close()
+    server.stop()
+
+
+def test_a_new_linkage_begins_with_a_planar_four_bar(tmp_path):
+    server, _ = served(tmp_path)
+    client, _ = visited(server)
+    assert client.value("kind").startswith("planar_4r:")
+    client.close()
+    server.stop()
+
+
 def test_the_points_of_another_form_are_pulled_where_they_are(tmp_path):
     server, _ = served(tmp_path, toml_text("seven_r"))
     client, tab = visited(server)

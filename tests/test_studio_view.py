@@ -14,12 +14,60 @@ import pytest
 import sevenbar as sb
 from evidence.accuracy.reference_loops import Loop
 from sevenbar.description.draft import Draft
+from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, text
 from sevenbar.drawing.skeleton import places_of
+from sevenbar.drawing.view import upright
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.circuits.poses import along, at_row
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, modes_at, views_of
 from studio_sessions import DOUBLE_ROCKER, distance, drawn, opened, state
+
+# --- from where it is seen
+
+
+def hung(gravity):
+    """A four-bar in the plane of x and y, with a weight."""
+    joints = [
+        {"kind": "R", "at": [x, y, 0], "axis": [0, 0, 1]} for x, y in ((0, 0), (0, 40), (80, 80), (90, 0))
+    ]
+    return from_description({"format": 1, "joint": joints, "forces": {"gravity": gravity}})
+
+
+@pytest.mark.parametrize(
+    ("gravity", "right", "up"),
+    [
+        ([0, 0, 0], [1, 0, 0], [0, 1, 0]),
+        ([0, -9.81, 0], [1, 0, 0], [0, 1, 0]),
+        ([0, 9.81, 0], [-1, 0, 0], [0, -1, 0]),
+        ([-9.81, 0, 0], [0, -1, 0], [1, 0, 0]),
+        # square to the plane, up to rounding: it says nothing of the page
+        ([1e-16, 0, -9.81], [1, 0, 0], [0, 1, 0]),
+        ([0, 0, -9.81], [1, 0, 0], [0, 1, 0]),
+        # a machine that leans
+        ([-3, -4, -5], [0.8, -0.6, 0], [0.6, 0.8, 0]),
+    ],
+)
+def test_a_planar_linkage_is_seen_from_above_with_gravity_down(gravity, right, up) -> None:
+    screen = upright(hung(gravity))
+    assert screen is not None
+    assert screen == pytest.approx(np.array([right, up]), abs=1e-12)
+    assert np.cross(*screen) == pytest.approx([0, 0, 1], abs=1e-12)
+
+
+def test_the_output_of_the_drawn_pose_reads_zero_whatever_the_pin() -> None:
+    """The drawn pose may lie a turn further on along its circuit."""
+    for x in (40.0, 60.0, 95.0):
+        linkage = hung([0, 0, 0])
+        raw = {**linkage.description, "joint": [dict(joint) for joint in linkage.description["joint"]]}
+        raw["joint"][1]["at"] = [x, 0, 0]
+        views = views_of(from_description(raw).motion())
+        (view,) = [view for view in views if view.home is not None]
+        column = view.circuit.output_column
+        shown = at_row(along(view.linkage, view.circuit, column), view.home) + view.whole_turns(column)
+        assert shown == pytest.approx(0.0, abs=1e-6)
+
 
 # --- modes
 

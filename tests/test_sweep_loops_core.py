@@ -60,7 +60,11 @@ def ends(linkage: sb.Linkage) -> tuple[int, int]:
 
 
 def batch(
-    linkages: Sequence[sb.Linkage], threads: int = 1, samples: int = SAMPLES, speed: float = 1.0
+    linkages: Sequence[sb.Linkage],
+    threads: int = 1,
+    samples: int = SAMPLES,
+    speed: float = 1.0,
+    columns: tuple[int, int] | None = None,
 ) -> _core.LoopBatch:
     """All of them, which have one pattern of joints, at once."""
     parts = [expanded(linkage) for linkage in linkages]
@@ -71,7 +75,7 @@ def batch(
         np.array([part.base for part in parts]),
         np.array([linkage.ground for linkage in linkages]),
         np.array([part.links for part in parts]),
-        *ends(linkages[0]),
+        *(columns or ends(linkages[0])),
         samples,
         np.full(len(linkages), speed),
         threads,
@@ -138,6 +142,15 @@ def test_loops_of_the_gallery_come_to_what_their_motion_says(name: str, letters:
     got = assert_is_the_motion([linkage])
     assert got.status == [0]
     assert got.circuits[0] > 0
+
+
+def test_an_output_with_more_than_two_strokes_has_no_time_ratio_in_a_batch_either() -> None:
+    linkage = sb.load("rccc")
+    columns = linkage.columns.index("crank"), linkage.columns.index("slide_3")
+    ratios = batch([linkage] * 2, columns=columns).measures.time_ratio
+    assert len(ratios) > 0
+    assert np.isnan(ratios).all()
+    assert all(circuit.many_strokes for circuit in linkage.motion(36, output="slide_3"))
 
 
 @pytest.mark.parametrize("count", [1, 17])

@@ -264,3 +264,11 @@ def test_linkages_measured_all_at_once_have_the_rows_of_linkages_one_by_one(
                 else:
                     near = None if math.isnan(value) else pytest.approx(value, rel=1e-8, abs=1e-8)
                     assert row[key] == near, (row["linkage"], name)
+
+
+@pytest.mark.parametrize("given", [grid(-5, -1, 3), span(-5, 0), [-1.0, 0.0]])
+def test_values_of_a_length_of_which_none_is_one_are_refused(given):
+    with pytest.raises(
+        RequestError, match=r"over: L1: no value is a length, the highest is (-1|0); give values above 0"
+    ):
+        SweepPlan.of(sb.load("rssr"), {"L1": given}, ["limits"], count=3)

@@ -73,7 +73,7 @@ def test_denavit_hartenberg_rows_are_read_as_people_write_them(tmp_path, content
     assert linkage.kind == "RRRRRRR"
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252"])
 def test_a_table_is_read_in_the_encodings_of_spreadsheets(tmp_path, encoding):
     path = tmp_path / "dh.csv"
     path.write_text("Prüfstand\n" + written(ROWS, DH), encoding=encoding)

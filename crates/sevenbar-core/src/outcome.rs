@@ -112,6 +112,12 @@ impl Role {
     }
 }
 
+/// Extremes of the output [rad, or relative to the size] that differ by less differ by rounding.
+const ALIKE: f64 = 1e-9;
+
+/// Inputs with a smaller sine of half their difference are one.
+const SAME_INPUT: f64 = 1e-7;
+
 /// What a circuit is measured by, whichever solver found it.
 #[derive(Clone, Debug)]
 pub struct CircuitMeasures {
@@ -131,6 +137,8 @@ pub struct CircuitMeasures {
     pub transmission: Option<Ends>,
     /// Velocity, acceleration and jerk of the output; `None` where they have no bound or the circuit is not smooth.
     pub rates: [Option<Ends>; 3],
+    /// That of which differences of the output are parts: 1 for an angle, the linkage's size for a slide.
+    pub output_unit: f64,
 }
 
 impl CircuitMeasures {
@@ -177,12 +185,34 @@ impl CircuitMeasures {
         self.output.map(|[low, high]| high - low)
     }
 
+    /// Whether the input turns fully and never back.
+    fn goes_round(&self) -> bool {
+        self.closed && self.input.is_none() && !self.turns_back()
+    }
+
+    /// Whether the output is at its highest, or lowest, at several inputs: more than two strokes.
+    pub fn many_strokes(&self) -> bool {
+        let Some(ends) = self.angle().filter(|_| self.goes_round()) else {
+            return false;
+        };
+        ends.iter().any(|[end, at]| {
+            let elsewhere = |d: &DeadCentre| (0.5 * (d.input - at)).sin().abs() > SAME_INPUT;
+            let alike = |d: &DeadCentre| (d.output - end).abs() < ALIKE * self.output_unit;
+            let mut outputs = self
+                .dead_centres
+                .iter()
+                .filter(|d| d.kind == DeadCentreKind::Output);
+            outputs.any(|d| alike(d) && elsewhere(d))
+        })
+    }
+
     /// Time of the slower stroke of the output over that of the quicker, for an input that turns fully and never back; `None` also
-    /// where both ends of the output are at one input: a stroke without time. A circuit may take several turns of the input.
+    /// where both ends of the output are at one input, a stroke without time, and where more than two strokes leave open which count. A
+    /// circuit may take several turns of the input.
     pub fn time_ratio(&self) -> Option<f64> {
         let [low, high] = self
             .angle()
-            .filter(|_| self.input.is_none() && !self.turns_back())?;
+            .filter(|_| self.goes_round() && !self.many_strokes())?;
         let round = TAU * self.turns.max(1) as f64;
         let stroke = (high[1] - low[1]).rem_euclid(round);
         let (slower, quicker) = (stroke.max(round - stroke), stroke.min(round - stroke));

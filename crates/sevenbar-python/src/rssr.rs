@@ -52,6 +52,12 @@ impl Rssr {
         self.0.size()
     }
 
+    /// Whether crank or rocker is free at some angle of the other.
+    #[getter]
+    fn has_free_side(&self) -> bool {
+        self.0.has_free_side()
+    }
+
     /// Both branches and their derivatives up to an order: an array (2, n) for each order from 0.
     #[pyo3(signature = (inputs, order, input, speed, law=None))]
     fn outputs<'py>(

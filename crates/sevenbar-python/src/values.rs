@@ -52,6 +52,7 @@ pub(crate) struct RawCircuit {
     jerk: Option<Extremes>,
     swing: Option<f64>,
     time_ratio: Option<f64>,
+    many_strokes: bool,
     rows: Option<Py<Rows>>,
     course: Option<Py<Course>>,
 }
@@ -85,6 +86,7 @@ impl RawCircuit {
             jerk,
             swing: measures.swing(),
             time_ratio: measures.time_ratio(),
+            many_strokes: measures.many_strokes(),
             rows,
             course,
         }

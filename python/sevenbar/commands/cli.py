@@ -292,8 +292,8 @@ def plot_(
     kind: Annotated[
         list[str] | None,
         typer.Option(
-            help=f"{', '.join(KINDS)}, or all (the default), without the last two; may be repeated. "
-            "coupler: a point's path alone."
+            help=f"{', '.join(KINDS)}, or all (the default), without the last three; may be repeated. "
+            "coupler: a point's path alone; skeleton: the linkage in one pose, without numbers and legend."
         ),
     ] = None,
     point: options.PointName = None,
@@ -397,6 +397,10 @@ def gallery(
         typer.echo(f"{name:<{width}}  {sb.load(name).name}")
 
 
+#: Warnings of fonts that this program has written.
+_warned: set[str] = set()
+
+
 def _tell_warning(
     message: Warning | str,
     category: type[Warning],
@@ -407,6 +411,11 @@ def _tell_warning(
 ) -> None:
     """Writes a warning of ours as one line on the error stream, any other as Python does."""
     text = warnings.formatwarning(message, category, filename, lineno, line)
+    if issubclass(category, MissingFontWarning):
+        # of each figure, and the registry of what was said once is emptied on the way
+        if str(message) in _warned:
+            return
+        _warned.add(str(message))
     if issubclass(category, (AngleUnitWarning, MissingFontWarning)):
         text = f"sevenbar: {message}\n"
     (file or sys.stderr).write(text)
@@ -422,8 +431,7 @@ def main() -> NoReturn:
     with warnings.catch_warnings():
         warnings.showwarning = _tell_warning
         warnings.simplefilter("always", AngleUnitWarning)
-        # every figure would say it anew
-        warnings.simplefilter("once", MissingFontWarning)
+        warnings.simplefilter("always", MissingFontWarning)
         _run()
 
 

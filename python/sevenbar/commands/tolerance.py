@@ -85,6 +85,7 @@ def tolerance(
         output=output,
         speed=speed,
         follow=options.words(follow, "--follow"),
+        lengths=tuple(tolerances),
     )
     if wanted is not None:
         error = _wanted(wanted, found.outputs[found.place(of, quantity)].unit)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -134,7 +134,7 @@ class Pieces:
 
     def mean_of(self, function: Callable[[Floats], Floats]) -> float:
         """The mean of a function of the values, by Gauss's rule on every piece."""
-        at, weights = legendre.leggauss(GAUSS)
+        at, weights = _gauss()
         values = function(np.asarray(chebyshev.chebval(at, np.moveaxis(self.series, 1, 0))))
         shares = (self.ends - self.starts) / (self.ends[-1] - self.starts[0])
         return float(shares @ values @ weights / 2)
@@ -156,6 +156,12 @@ class Pieces:
         sizes = (values**2).reshape(len(self.starts), -1, 2 * terms).sum(axis=1)
         rows = (self.rows**2).reshape(len(self.rows), -1).sum(axis=1)
         return Pieces(rows, self.starts, self.ends, series_through(sizes), self.breaks)
+
+
+@cache
+def _gauss() -> tuple[Floats, Floats]:
+    """Places and weights of Gauss's rule."""
+    return legendre.leggauss(GAUSS)
 
 
 def pieces(

@@ -55,6 +55,11 @@ def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
         problems = [
             Problem(f"joint[{i}].{name}", message) for i, t in tables for name, message in _wrong_keys(t)
         ]
+        if tables and tables[-1][0] == len(entries(raw, key)) and "longer" in tables[-1][1]:
+            message = (
+                "does not belong to the last joint; the ground is as its joints are drawn, so leave it out"
+            )
+            problems.append(Problem(f"joint[{tables[-1][0]}].longer", message))
     elif key == "link":
         tables = [(i, t) for i, t in enumerate(entries(raw, key), 1) if t.get("joint", "R") in ROW_KINDS]
         problems = [Problem(f"link[{i}].{name}", m) for i, t in tables for name, m in _wrong_row_keys(t)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import tomllib
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,7 +17,16 @@ from sevenbar.description.toml_text import is_tables
 from sevenbar.errors import RequestError, of_extra, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Loop, Place
-from sevenbar.kinematics.numbers.dimensions import Dimension, description_of, dimensions_of, masses_of
+from sevenbar.kinematics.numbers.dimensions import (
+    Dimension,
+    description_of,
+    dimensions_of,
+    lengths_of,
+    masses_of,
+)
+
+#: A length of a drawing is the one that the report prints, up to rounding [share of it].
+AS_PRINTED = 1e-9
 
 #: Characters of a line from which rows of a load's table are written one below the other.
 LONGEST_ROWS = 110
@@ -95,14 +105,27 @@ class Draft:
 
         Raises `RequestError` where there is none.
         """
-        for dimension in (*self.dimensions, *self.masses):
-            if name in (dimension.name, dimension.key):
+        for dimension in (*self.dimensions, *self.lengths, *self.masses):
+            if name in (dimension.name, dimension.key) or (dimension.drawn and name == dimension.label):
                 return dimension
-        known = [dimension.name for dimension in self.dimensions]
+        known = [dimension.name for dimension in (*self.lengths, *self.dimensions)]
+        if why := self._no_length(name):
+            raise RequestError(f"dimension: {shown(name)} {why}; give one of {', '.join(known)}")
         raise RequestError(
             f"dimension: {shown(name)} is not a dimension of {shown(self.source)}; "
             f"{suggestion(name, known)}give one of {', '.join(known)}"
         )
+
+    def _no_length(self, name: str) -> str:
+        """Why a name that a report has is no dimension; empty for other names."""
+        if self.linkage.form != "drawn" or (bar := self.linkage.as_four_bar()) is None:
+            return ""
+        printed = {*bar.links, *(["offset"] if bar.offset is not None else [])}
+        if name.replace("_", " ") not in printed:
+            return ""
+        if bar.kind == "spherical":
+            return "is an arc, which follows from the axes as drawn"
+        return "follows from where joints are drawn"
 
     def with_values(self, values: Mapping[str, float]) -> Draft:
         """The draft with other values of dimensions, by name, each in the file's unit."""
@@ -132,6 +155,19 @@ class Draft:
                 found = replace(found.with_value(dimension.place, dimension.value), held=(*found.held, name))
         return found
 
+    def giving(self, names: Collection[str]) -> Draft:
+        """The draft in which those of its `lengths` that are named are dimensions, as any other number.
+
+        >>> import sevenbar as sb
+        >>> bar = [("R", (0, 0)), ("R", (0, 40)), ("R", (80, 80)), ("R", (90, 0))]
+        >>> joints = [{"kind": kind, "at": [*at, 0], "axis": [0, 0, 1]} for kind, at in bar]
+        >>> draft = Draft.of_linkage(sb.from_axes(joints)).giving(["input_link"])
+        >>> [d.name for d in draft.dimensions if "." not in d.name], [d.name for d in draft.lengths]
+        (['input_link', 'speed'], ['coupler', 'output_link'])
+        """
+        found = {d.place: 0 for d in self.lengths if d.name in names or d.label in names}
+        return self.with_places(found) if found else self
+
     def _no_follower(self, name: str, left_out: Sequence[str]) -> str:
         known = {dimension.name: dimension for dimension in self.dimensions}
         if name not in known:
@@ -159,13 +195,30 @@ class Draft:
         return dimensions_of(description_of(self.linkage), self.linkage)
 
     @cached_property
+    def lengths(self) -> tuple[Dimension, ...]:
+        """The lengths that a report gives of a drawing, without those that are dimensions already."""
+        linkage = self.linkage
+        if linkage.form != "drawn":
+            return ()
+        every = lengths_of(description_of(linkage), linkage)
+        if linkage.kind != "RSSR":
+            bar = linkage.as_four_bar()
+            printed = {} if bar is None or bar.kind == "spherical" else bar.links
+            # as printed: joints of more freedoms may be drawn aside
+            every = tuple(
+                d for d in every if math.isclose(printed.get(d.label, math.nan), d.value, rel_tol=AS_PRINTED)
+            )
+        known = {dimension.place for dimension in self.dimensions}
+        return tuple(d for d in every if d.place not in known)
+
+    @cached_property
     def masses(self) -> tuple[Dimension, ...]:
         """The masses of bodies, in the order of the file."""
         return masses_of(description_of(self.linkage))
 
     def written(self, dimension: Dimension, value: float) -> object:
         """What stands in the file for a value of a dimension: a speed with its unit, else the number."""
-        number = plain_number(value)
+        number = plain_number(value - dimension.drawn)
         return f"{number!r} {dimension.unit}" if dimension.place == ("drive", "speed") else number
 
     def toml(self) -> str:

@@ -24,6 +24,7 @@ from sevenbar.errors import (
 )
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.paths import is_file
+from sevenbar.text.table import wide_text
 
 if TYPE_CHECKING:
     from sevenbar.description.table_reader import TableDescription
@@ -248,7 +249,7 @@ def decoded(content: bytes, place: str) -> str:
         found.linkage(from_description, place)  # its mistakes, with their places in the table
         return found.toml(Path(place).name)
     # UTF-16, as Notepad's "Unicode" writes it
-    wide = _wide(content)
+    wide = wide_text(content)
     try:
         return content.decode(wide or "utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
@@ -272,18 +273,6 @@ def _of_other_program(content: bytes, place: str) -> str:
             'line 1: JSON cannot be read; write TOML, a key as in name = "rocker"; '
             "'sevenbar gallery rssr' prints a file that is right"
         )
-    return ""
-
-
-def _wide(content: bytes) -> str:
-    """The kind of UTF-16 of a text; empty for another. Without a mark plain letters have a zero byte each."""
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16"
-    head = content[:_HEAD]
-    for first, name in ((1, "utf-16-le"), (0, "utf-16-be")):
-        zeros, others = head[first::2], head[1 - first :: 2]
-        if zeros and not any(zeros) and all(others):
-            return name
     return ""
 
 

@@ -30,6 +30,7 @@ from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.loop.rigid import unit
 from sevenbar.kinematics.loop.stops import Cone, Stops
+from sevenbar.kinematics.numbers.lengths import LONGER, across, drawn_length
 from sevenbar.text.listed import listed
 from sevenbar.text.units import LENGTHS, as_written, measured_unit
 
@@ -364,6 +365,8 @@ def _values(form: LoopForm) -> dict[Place, float]:
         vectors |= {("axes", which): axis for which, axis in enumerate(joint.axes or ())}
         for place, vector in vectors.items():
             found |= {("joint", i, *place, k): value for k, value in enumerate(vector)}
+        if joint.longer is not None:
+            found["joint", i, LONGER] = joint.longer
     return found
 
 
@@ -374,6 +377,7 @@ def _linkage(form: LoopForm, written: Form, joints: tuple[Joint, ...], **parts: 
 
     numbers = _values(form)
     slots, values = Slots(zip(numbers, count())), np.array([*numbers.values()], dtype=np.float64)
+    slots.across = across(_tables(form.joint or ()))
     base, links, ground, frames = outer_of(written, [joint.kind for joint in joints], slots)
     return Linkage(
         name=form.name,
@@ -426,12 +430,17 @@ def _from_rows(form: LoopForm, rows: tuple[LinkForm, ...], source: str) -> Linka
     return _linkage(form, "planar", joints, dimensions=dimensions)
 
 
+def _tables(drawn: Sequence[JointForm]) -> list[dict[str, Any]]:
+    """Joints as drawn, as a description has them, without what is left out."""
+    return [{key: value for key, value in joint if value is not None} for joint in drawn]
+
+
 def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> Linkage:
     """Joints as drawn, all at zero."""
     names, kinds = zip(*form.joints, strict=True)
     rssr = "".join(kinds) == "RSSR"
     problems = _coincident(drawn, names) if rssr else _coincident_balls(drawn)
-    if problems:
+    if problems := problems or _too_short(drawn):
         raise DescriptionError(problems, source)
     last = len(drawn) - 1
     joints = tuple(
@@ -447,6 +456,25 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
     )
     points = (Point("A", 1, drawn[1].at), Point("B", 3, drawn[2].at)) if rssr else ()
     return _linkage(form, "drawn", joints, points=points)
+
+
+def _too_short(drawn: Sequence[JointForm]) -> list[Problem]:
+    """Links that are longer than drawn, where the drawing gives no direction, or shorter by all they have."""
+    tables, problems = _tables(drawn), []
+    for i, joint in enumerate(drawn):
+        if joint.longer is None:
+            continue
+        length, place = drawn_length(tables, i), f"joint[{i + 1}].longer"
+        size = max(math.hypot(*np.subtract(other.at, joint.at)) for other in drawn)
+        if not length > NO_LENGTH * size:
+            message = (
+                f"link {i + 1} has no length as drawn, so no direction; draw it with one, or leave this out"
+            )
+            problems.append(Problem(place, message))
+        elif not length + joint.longer > NO_LENGTH * size:
+            message = f"{joint.longer:g} leaves nothing of link {i + 1}; give more than {-length:g}"
+            problems.append(Problem(place, message))
+    return problems
 
 
 def _between(first: tuple[float, ...], second: tuple[float, ...]) -> float:

@@ -48,7 +48,7 @@ def _word(value: object) -> str:
 #: What the numbers of each table are; a test compares this with the schema.
 KINDS_OF_NUMBERS: Mapping[str, Mapping[str, NumberKind]] = {
     "rssr": dict.fromkeys(("M", "N", "L1", "L2", "L3", "D"), "length"),
-    "joint": {"at": "length", "axis": "number", "axes": "number", "pitch": "pitch"},
+    "joint": {"at": "length", "axis": "number", "axes": "number", "pitch": "pitch", "longer": "length"},
     "link": {"length": "length", "offset": "length", "pitch": "pitch", "twist": "angle", "angle": "angle"},
     "point": {"at": "length"},
     "forces": {"gravity": "acceleration"},

@@ -61,7 +61,13 @@ def held_of(draft: Draft, moved: Collection[str]) -> HeldDimensions:
 
     Points and the speed are not among it: they move no joint.
     """
-    own = [d for d in draft.dimensions if d.kind != "speed" and d.place[0] != "point" and d.name not in moved]
+    every = [d for d in draft.dimensions if d.kind != "speed" and d.place[0] != "point"]
+    lengths = [d for d in (*draft.lengths, *every) if d.drawn]
+    if any(d.name in moved for d in lengths):
+        # of a drawing whose lengths change, what other joints are drawn for
+        ends = 0, len(draft.linkage.joints) - 1
+        every = [*lengths, *(d for d in every if d.place[1] in ends and not d.drawn)]
+    own = [d for d in every if d.name not in moved]
     return HeldDimensions(
         tuple(d for d in own if not d.follows),
         tuple(d.name for d in own if d.name in draft.held),

@@ -87,6 +87,12 @@ class JointForm(TableForm):
             "length per turn",
         ),
     ] = None
+    longer: Annotated[
+        Number | None,
+        key(
+            "not of the last: how much longer than drawn the link after it is; shorter if negative", "length"
+        ),
+    ] = None
 
 
 class LinkForm(TableForm):

@@ -23,6 +23,7 @@ SPELLINGS: Mapping[str, tuple[str, ...]] = {
     "offset": ("offset", "d", "d i", "di", "s", "joint offset", "link offset"),
     "angle": ("angle", "theta", "\u03b8", "theta i", "\u03b8 i", "joint angle"),
     "pitch": ("pitch", "h", "lead"),
+    "longer": ("longer",),
     "link": ("link", "body", "on link"),
     "order": ("order", "sequence", "loop order"),
     "input": ("input", "drive", "driver", "driven", "driving"),

@@ -288,6 +288,9 @@ class _Reader(TableCells):
         if "pitch" in self.columns and (pitch := self.amount(row, "pitch", "pitch")) is not None:
             table["pitch"] = pitch
             self.note_place(f"{place}.pitch", row, "pitch")
+        if "longer" in self.columns and (longer := self.amount(row, "longer", "length")) is not None:
+            table["longer"] = longer
+            self.note_place(f"{place}.longer", row, "longer")
         if kind in KINDS and "axis" in KINDS[kind].drawn_keys and "axis" not in table:
             self.wrong(f"no axis; a joint of kind {kind} needs one, in columns axis x, axis y, axis z", row)
         # a ball has no axis, whatever a list of axes holds

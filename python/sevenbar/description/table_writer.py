@@ -8,6 +8,7 @@ from typing import Any
 from sevenbar.description.table_columns import DIMENSIONS
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.numbers.dimensions import description_of
+from sevenbar.kinematics.numbers.lengths import LONGER
 
 #: A cell: `None` is empty.
 Cell = str | float | int | None
@@ -50,11 +51,14 @@ def linkage_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
     axes = ["axis x", "axis y", "axis z"] + (["axis 2 x", "axis 2 y", "axis 2 z"] if crossed else [])
     head = ["name", "kind", *(f"{letter} [{length}]" for letter in "xyz"), *axes]
     head += [f"pitch [{length}]"] if pitched else []
+    longer = any(LONGER in table for table in tables)
+    head += [f"{LONGER} [{length}]"] if longer else []
     drawn: list[list[Cell]] = []
     for name, table, mark in zip(names, tables, marks, strict=True):
         first, second = table.get("axes", (table.get("axis", (None,) * 3), (None,) * 3))
         row: list[Cell] = [name, table["kind"], *table["at"], *first, *(second if crossed else ())]
-        drawn.append([*row, *([table.get("pitch")] if pitched else []), *mark])
+        drawn.append([*row, *([table.get("pitch")] if pitched else [])])
+        drawn[-1] += [*([table.get(LONGER)] if longer else []), *mark]
     return [*head, *drive], drawn
 
 

@@ -13,7 +13,7 @@ from matplotlib.transforms import Bbox
 
 from sevenbar.arrays import whole_number
 from sevenbar.drawing import page
-from sevenbar.drawing.figure import given_axes, new_figure, slides, title_of, title_text
+from sevenbar.drawing.figure import given_axes, new_figure, refuse_small, slides, title_of, title_text
 from sevenbar.drawing.lettering import write_names
 from sevenbar.drawing.names import short, shown_name
 from sevenbar.drawing.scene import bars, frame_box, keys, put, shown_places, stage
@@ -197,6 +197,9 @@ def modes_overview(
             height = top + foot + down * (heading + page.picture_height(seen, box, width / across))
             page.set_height(figure, height)
         side = width / across, (height - top - foot) / down
+        left, right, below, above = page.margins(seen)
+        room = side[0] - left - right, side[1] - heading - below - above
+        refuse_small(figure, *room, f"{count} modes with their numbers", page.ALONE)
         for index in range(count):
             row, column = divmod(index, across)
             left, bottom = column * side[0], height - top - (row + 1) * side[1]

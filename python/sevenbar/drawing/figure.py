@@ -19,7 +19,7 @@ from matplotlib.text import Text
 from sevenbar.arrays import Floats
 from sevenbar.drawing.names import quantity_label, short, shown_name
 from sevenbar.drawing.space import measuring
-from sevenbar.drawing.style import STYLE, page_size
+from sevenbar.drawing.style import STYLE, letters, page_size
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.errors import OutputError, RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -39,6 +39,9 @@ BOTH_COLUMNS = 7.5
 
 #: Letters [points] below which none are made smaller.
 SMALLEST = 4.0
+
+#: Width and height [inch] of a picture or a panel at least, for letters of 9 points: less cannot be read.
+LEAST_ROOM = 0.8, 0.3
 
 #: What a title may take of the width of its page.
 TITLE_SHARE = 0.97
@@ -166,6 +169,15 @@ def given_axes(ax: Any, count: int, what: str) -> list[Any]:
     if len(found) != count or not all(hasattr(axes, "plot") for axes in found):
         raise RequestError(f"ax: give {count} axes of matplotlib, {what}")
     return found
+
+
+def refuse_small(figure: Figure, wide: float, tall: float, what: str, instead: str) -> None:
+    """`RequestError` for a page that leaves so little width and height [inch] to what it shows."""
+    least = letters() / 9.0 * np.array(LEAST_ROOM)
+    if wide >= least[0] and tall >= least[1]:
+        return
+    given = " x ".join(f"{25.4 * side:.3g}" for side in figure.get_size_inches())
+    raise RequestError(f"size: {given} mm is too small for {what}; give a greater one, or {instead}")
 
 
 def tidy(figure: Figure) -> None:

@@ -41,6 +41,12 @@ EXTREME, LIMIT, CHANGE_POINT = "extreme", "input limit", "change point"
 #: The rows of the output's curves.
 QUANTITIES = ("angle", "velocity", "acceleration")
 
+#: Times its own width at which a range that other circuits share makes a curve flat.
+FLATTEST = 5.0
+
+#: The ends of a range.
+Span = tuple[float, float]
+
 #: Curves nearer than this [deg, or share of the size] on all rows are one.
 SAME_CURVE = 1e-6
 
@@ -218,9 +224,58 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
         axes.yaxis.set_major_locator(DegreeLocator(7))
     else:
         axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    if quantity == "angle":
+        _on_view(axes, motion, drawn, factor)
     widen(axes.yaxis, factor * _natural(motion, quantity))
     axes.set_xlabel(input_label(motion) if over == "input" else say("time [s]"))
     axes.set_ylabel(output_label(motion, quantity, length))
+
+
+def home_circuit(motion: Motion) -> Circuit:
+    """The circuit that a motion is about: that of the drawn pose, all joints at zero, else the first."""
+    if motion.linkage.form != "drawn":
+        return motion.circuits[0]
+    turning = motion.linkage.turning
+
+    def distance(circuit: Circuit) -> float:
+        off = circuit.q - math.tau * np.round(circuit.q / math.tau) * turning
+        off = np.abs(off / np.where(turning, 1.0, circuit.size or 1.0)).max(axis=1)
+        return float(np.nanmin(off, initial=math.inf))
+
+    return min(motion.circuits, key=distance)
+
+
+def _on_view(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], factor: float) -> None:
+    """Leaves circuits out of a panel's range with which the one the motion is about would be flat."""
+    home = home_circuit(motion)
+    spans: dict[int, Span] = {}
+    for line in drawn:
+        if (span := range_drawn(line.circuit, line.angle, "angle")) is not None:
+            low, high = spans.get(line.circuit.index, span)
+            spans[line.circuit.index] = min(low, span[0]), max(high, span[1])
+    own = spans.get(home.index)
+    if own is None or not own[1] > own[0]:
+        return
+    wide = own[1] - own[0]
+    far = [
+        index
+        for index, span in spans.items()
+        if max(span[1], own[1]) - min(span[0], own[0]) > FLATTEST * wide
+        and (span[0] > own[1] or span[1] < own[0])
+    ]
+    if not far:
+        return
+    near = [span for index, span in spans.items() if index not in far]
+    low, high = factor * min(span[0] for span in near), factor * max(span[1] for span in near)
+    axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
+    values = "; ".join(
+        say(
+            "{circuit}: {low:.4g} to {high:.4g}, not shown",
+            circuit=circuits_text([index]), low=factor * spans[index][0], high=factor * spans[index][1],
+        )
+        for index in far
+    )  # fmt: skip
+    axes.annotate(values, (0.01, 0.98), xycoords="axes fraction", va="top", fontsize="x-small", color=QUIET)
 
 
 def _natural(motion: Motion, quantity: str) -> float:

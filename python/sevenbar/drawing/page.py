@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import headline, new_figure
+from sevenbar.drawing.figure import headline, new_figure, refuse_small
 from sevenbar.drawing.scene import draw_box, frame_box
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.space import (
@@ -36,6 +36,8 @@ LINE, PANEL_ROOM = 1.2, 0.08
 LOWEST, HIGHEST = 0.3, 1.15
 #: Share of the caller's axes that the box of three dimensions fills.
 FILL = 0.72
+#: What to draw on a small page.
+ALONE = "draw the linkage alone (--kind skeleton, plot.skeleton)"
 #: Columns of a legend.
 MOST_COLUMNS = 6
 
@@ -145,6 +147,9 @@ def page_of_one(
     if figsize is None:
         height = top + foot + picture_height(view, box, width)
         set_height(figure, height)
+    left, right, below, above = margins(view)
+    wide, tall = width - left - right, height - top - foot - below - above
+    refuse_small(figure, wide, tall, "this picture with its numbers and words", ALONE)
     return figure, ViewAxes(own_axes(figure, view), view), (0.0, foot, width, height - top - foot)
 
 

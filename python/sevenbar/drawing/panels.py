@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
@@ -10,7 +11,15 @@ from typing import Any, Literal, TypeVar
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from sevenbar.drawing.figure import given_axes, headline, key_below, new_figure, tidy, title_text
+from sevenbar.drawing.figure import (
+    given_axes,
+    headline,
+    key_below,
+    new_figure,
+    refuse_small,
+    tidy,
+    title_text,
+)
 from sevenbar.drawing.style import page_size
 
 Line = TypeVar("Line")
@@ -54,7 +63,24 @@ class Panels:
             if text := title_text(title, usual):
                 headline(self.figure, text)
             key_below(self.figure, handles, heading)
-            tidy(self.figure)
+            count = len(self.axes)
+            what = f"{count} panels" if count > 1 else "a panel"
+            wide, tall = self._least()
+            refuse_small(
+                self.figure, wide, tall, f"{what} with numbers and legend", "in Python fewer panels, or ax="
+            )
+
+    def _least(self) -> tuple[float, float]:
+        """The least width and height [inch] of a panel, once titles, labels and legend have their room."""
+        with warnings.catch_warnings():
+            warnings.filterwarnings("error", "constrained_layout not applied")
+            try:
+                tidy(self.figure)
+            except UserWarning:
+                return 0.0, 0.0
+        boxes = [axes.get_window_extent() for axes in self.axes]
+        dpi = self.figure.dpi
+        return min(box.width for box in boxes) / dpi, min(box.height for box in boxes) / dpi
 
 
 def panels_of(

@@ -22,6 +22,7 @@ from sevenbar.drawing.joint_curves import joints
 from sevenbar.drawing.measure_figures import axodes, transmission
 from sevenbar.drawing.output_curves import curves
 from sevenbar.drawing.paths import point_path
+from sevenbar.drawing.skeleton_figure import skeleton
 from sevenbar.drawing.style import STYLES
 from sevenbar.drawing.view import NAMED as VIEWS
 
@@ -40,6 +41,7 @@ __all__ = [
     "reactions",
     "save",
     "shaking",
+    "skeleton",
     "torque",
     "transmission",
 ]

@@ -29,6 +29,9 @@ NAMED = ("plane", "space", *ALONG, "iso")
 #: Elevations and, from each side, azimuths [deg] of which the best is taken.
 ELEVATIONS, AZIMUTHS = (20.0, 30.0, 45.0), (25.0, 45.0, 65.0)
 
+#: Share of gravity that has to lie in the plane to say what is down there; less is a tilt of the machine.
+IN_PLANE = 0.1
+
 
 @dataclass(frozen=True, eq=False)
 class Projection:
@@ -120,6 +123,26 @@ def _view(asked: Asked, loop: Loop, places: Floats) -> Projection:
     elevation, azimuth = wide_view(places) if angles is None or isinstance(angles, str) else angles
     screen = directions(elevation, azimuth)
     return Projection(screen, np.zeros(3), flat=False, elevation=elevation, azimuth=azimuth)
+
+
+def upright(loop: Loop) -> Floats | None:
+    """The directions (2, 3) seen as right and up of a planar loop in its plane; `None` of any other.
+
+    Gravity points down where it lies in the plane; otherwise the plane's own y points up.
+
+        >>> import sevenbar as sb
+        >>> upright(sb.load("planar_4r")).tolist(), upright(sb.load("rssr"))
+        ([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], None)
+    """
+    plane = plane_of(loop)
+    if plane is None:
+        return None
+    gravity = np.array(loop.loading.gravity)
+    down = gravity - (gravity @ plane.normal) * plane.normal
+    if not math.hypot(*down) > IN_PLANE * math.hypot(*gravity):
+        return np.stack([plane.x, plane.y])
+    up = -down / math.hypot(*down)
+    return np.stack([cross(up, plane.normal), up]) + 0.0
 
 
 def _letter(way: Floats) -> str:

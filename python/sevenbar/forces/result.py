@@ -17,7 +17,7 @@ from sevenbar.forces.bodies import Body
 from sevenbar.forces.closing import Closing, closing
 from sevenbar.forces.heard import ROUNDING
 from sevenbar.forces.loading import Loading
-from sevenbar.forces.sizing import WITHHELD, Sizing, sizing
+from sevenbar.forces.sizing import WITHHELD, CycleLoads, Sizing, cycle_loads, unevenness_of
 from sevenbar.text.printing import Drawable, Printed
 from sevenbar.text.units import LENGTHS
 
@@ -294,39 +294,16 @@ class Forces(ReadOnly, Drawable):
         Source: docs/theory_forces.md, (10) to (16).
         """
         own = self.within_stops
-        if own is not self:
-            return None if own is None else own.sizing(unevenness=unevenness)
-        if self.part is not None and unevenness is not None:
+        if own is not None and own.part is not None and unevenness is not None:
             raise RequestError(
                 "unevenness: stops end the motion, so that the input does not go round and no flywheel "
                 "evens it; leave it out"
             )
-        period = self._way
-        passes = 1 if self.part is not None else len(np.unique(self.branch))
-        if period is None and passes > 1 and np.isfinite(self.torque).all():
-            raise RequestError(
-                "sizing: the rows are passes one after the other; give one, as in "
-                "forces.on(forces.branch == 0).sizing()"
-            )
-        breaks = self._breaks
-        if self.part is not None and self.between is None:
+        delta = unevenness_of(unevenness)
+        found = loads_of(self)
+        if own is None or found is None:
             return None
-        if self.through_change_points and len(breaks):
-            return None
-        found = sizing(
-            self,
-            period=period,
-            speed=self.even_speed * self.metre if period is not None else None,
-            evaluate=None if self.through_change_points else self.between,
-            breaks=breaks,
-            gaps=self.status == "change-point" if self.through_change_points else None,
-            unevenness=unevenness,
-        )
-        if found is None or max(found.tail, self.unclosed) > WITHHELD:
-            return None
-        found = found.in_units(self.unit, self.length_unit if self.slides else "rad")
-        # between stops force by length unit, in joule
-        return found if self.part is None else replace(found, fluctuation=self.metre * found.fluctuation)
+        return found.sizing(delta).in_units(own.unit, own.length_unit if own.slides else "rad")
 
     @property
     def balance(self) -> float | None:
@@ -422,3 +399,37 @@ class Forces(ReadOnly, Drawable):
 def _greatest(values: Floats) -> float:
     """The greatest size of known values, 0 without any."""
     return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
+
+
+def loads_of(forces: Forces) -> CycleLoads | None:
+    """The loads of a cycle, of which a sizing is made, between stops those of the part that is used.
+
+    `None` where `Forces.sizing` is; raises what that does for rows that are several passes.
+    """
+    own = forces.within_stops
+    if own is None:
+        return None
+    period = own._way
+    passes = 1 if own.part is not None else len(np.unique(own.branch))
+    if period is None and passes > 1 and np.isfinite(own.torque).all():
+        raise RequestError(
+            "sizing: the rows are passes one after the other; give one, as in "
+            "forces.on(forces.branch == 0).sizing()"
+        )
+    breaks = own._breaks
+    if own.part is not None and own.between is None:
+        return None
+    if own.through_change_points and len(breaks):
+        return None
+    found = cycle_loads(
+        own,
+        period=period,
+        speed=own.even_speed * own.metre if period is not None else None,
+        evaluate=None if own.through_change_points else own.between,
+        breaks=breaks,
+        gaps=own.status == "change-point" if own.through_change_points else None,
+    )
+    if found is None or max(found.tail, own.unclosed) > WITHHELD:
+        return None
+    # between stops force by length unit, in joule
+    return found if own.part is None else replace(found, work=own.metre)

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from operator import attrgetter
 from typing import Any, Literal, Protocol
 
@@ -166,7 +167,7 @@ class Sizing(Printed):
         return replace(self, unit=unit, input_unit=input_unit, bearings=bearings)
 
 
-def sizing(
+def cycle_loads(
     rows: Rows,
     *,
     period: float | None,
@@ -174,24 +175,16 @@ def sizing(
     evaluate: Callable[[Floats], Rows] | None = None,
     breaks: Sequence[float] = (),
     gaps: npt.NDArray[np.bool_] | None = None,
-    unevenness: float | None = None,
-) -> Sizing | None:
-    """The sizing of a cycle; `None` where a row has no torque.
+) -> CycleLoads | None:
+    """Torque and wrenches of a cycle; `None` where a row has no torque.
 
     Of a circuit whose input goes round at constant `speed` [rad/s], `period` [rad] is its way till it closes,
     negative for a negative speed, and the n rows are at equal steps; `evaluate` gives rows at any inputs, and
     `breaks` are inputs where loads set in or end. Of a law's rows `period` is `None`. `gaps` (n,) are rows
     without values, which the series through the others goes across.
 
-    Raises `RequestError` for an unevenness that is not > 0 and up to 2, and for breaks without `evaluate`.
+    Raises `RequestError` for breaks without `evaluate`.
     """
-    delta = None if unevenness is None else finite_number("unevenness", unevenness)
-    # twice the mean: the lowest speed is 0
-    if delta is not None and not 0 < delta <= 2:
-        raise RequestError(
-            f"unevenness: {shown(unevenness)} is not an unevenness; "
-            "give a part of the mean speed > 0 and up to 2, as in 0.01"
-        )
     names = tuple(rows.reactions)
     table = _table(rows, names)
     known = np.array(
@@ -227,43 +220,142 @@ def sizing(
         ask = between if evaluate is not None else None
         every = cycle_curve(ask, table / units, float(rows.input[0]), period)
         found = "series" if isinstance(every, CycleSeries) else "refined"
-    torque = every.part(0)
-    unit = float(units[0])
-    if period is None:
-        power: Curve = TimedRows(rows.power, rows.input, rows.time)
-        peak_power, braking, energy, work = power.highest(), power.lowest(), power.running(), 1.0
-    else:
-        rate, work, value_of = speed or 0.0, unit, attrgetter("value")
-        ends = [Peak(rate * unit * one.value + 0.0, one.input) for one in (torque.highest(), torque.lowest())]
-        peak_power, braking = max(ends, key=value_of), min(ends, key=value_of)
-        energy = torque.running()
-    top, bottom = energy.highest(), energy.lowest()
-    peak = greatest(torque)
-    # energies of what goes to and fro are parts of the peak's over the cycle
-    way = (
-        float(np.abs(peak_power.value)) * float(np.ptp(rows.time)) if period is None else peak.value * period
-    )
-    fluctuation = heard(work * (top.value - bottom.value), way * (1.0 if period is None else work))
-    if not fluctuation:
-        top = bottom = Peak(0.0, float(rows.input[0]))
-    return Sizing(
-        peak_torque=Peak(unit * peak.value + 0.0, peak.input),
-        rms_torque=unit * math.sqrt(max(0.0, torque.mean_of(np.square))),
-        mean_torque=unit * heard(mean(torque), peak.value),
-        peak_power=peak_power,
-        braking_power=braking if heard(braking.value, peak_power.value) < 0 else None,
-        fluctuation=fluctuation,
-        fastest=bottom.input,
-        slowest=top.input,
-        unevenness=delta,
-        flywheel=None if not (delta and period and speed) else flywheel(fluctuation, speed, delta),
-        bearings={
-            name: _bearing(every, units, known, rows.reactions[name], 1 + 6 * i)
-            for i, name in enumerate(names)
-        },
-        found=found,
-        tail=every.tail,
-    )
+    return CycleLoads(rows, every, units, known, found, period, speed or 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class CycleLoads:
+    """Torque and wrenches along a cycle as one curve, from which each number of a sizing is made when asked.
+
+    `every` has the torque, then moment and force of each joint, in `units`; where not `known` it is 0.
+    `period` is `None` of a law's rows, `speed` that of the input.
+    """
+
+    rows: Rows
+    every: Curve
+    units: Floats
+    known: Booleans
+    found: Found
+    period: float | None
+    speed: float
+    #: What a torque times the input is in joule.
+    work: float = 1.0
+
+    @property
+    def tail(self) -> float:
+        """How much may lie between the rows, as a part of the greatest value."""
+        return self.every.tail
+
+    @cached_property
+    def _torque(self) -> Curve:
+        return self.every.part(0)
+
+    @property
+    def _unit(self) -> float:
+        return float(self.units[0])
+
+    @cached_property
+    def _peak(self) -> Peak:
+        return greatest(self._torque)
+
+    @cached_property
+    def peak_torque(self) -> Peak:
+        """The torque that is farthest from zero."""
+        return Peak(self._unit * self._peak.value + 0.0, self._peak.input)
+
+    @cached_property
+    def rms_torque(self) -> float:
+        """The root of the mean square of the torque."""
+        return self._unit * math.sqrt(max(0.0, self._torque.mean_of(np.square)))
+
+    @cached_property
+    def mean_torque(self) -> float:
+        """The mean of the torque."""
+        return self._unit * heard(mean(self._torque), self._peak.value)
+
+    @cached_property
+    def _powers(self) -> tuple[Peak, Peak]:
+        """The highest and the lowest power [W]."""
+        if self.period is None:
+            power = TimedRows(self.rows.power, self.rows.input, self.rows.time)
+            return power.highest(), power.lowest()
+        rate = self.speed * self._unit
+        ends = [
+            Peak(rate * one.value + 0.0, one.input) for one in (self._torque.highest(), self._torque.lowest())
+        ]
+        value_of = attrgetter("value")
+        return max(ends, key=value_of), min(ends, key=value_of)
+
+    @property
+    def peak_power(self) -> Peak:
+        """The highest power [W]."""
+        return self._powers[0]
+
+    @property
+    def braking_power(self) -> Peak | None:
+        """The lowest power [W]; `None` where the drive never brakes."""
+        lowest = self._powers[1]
+        return lowest if heard(lowest.value, self.peak_power.value) < 0 else None
+
+    @cached_property
+    def _energy(self) -> tuple[float, float, float]:
+        """The fluctuation [J], and the inputs where a drive of constant torque runs fastest and slowest."""
+        if self.period is None:
+            curve: Curve = TimedRows(self.rows.power, self.rows.input, self.rows.time)
+            # energies of what goes to and fro are parts of the peak's over the cycle
+            unit, way = 1.0, float(np.abs(self.peak_power.value)) * float(np.ptp(self.rows.time))
+        else:
+            curve, unit = self._torque, self._unit
+            way = self._peak.value * self.period * unit
+        energy = curve.running()
+        top, bottom = energy.highest(), energy.lowest()
+        fluctuation = heard(unit * (top.value - bottom.value), way)
+        if not fluctuation:
+            top = bottom = Peak(0.0, float(self.rows.input[0]))
+        return self.work * fluctuation, bottom.input, top.input
+
+    @property
+    def fluctuation(self) -> float:
+        """That of the energy about a drive of constant torque [J]."""
+        return self._energy[0]
+
+    def bearing(self, name: str) -> Bearing:
+        """What the bearing of a joint bears."""
+        names = list(self.rows.reactions)
+        wrenches, start = self.rows.reactions[name], 1 + 6 * names.index(name)
+        return _bearing(self.every, self.units, self.known, wrenches, start)
+
+    def sizing(self, unevenness: float | None = None) -> Sizing:
+        """All numbers, with the flywheel for an unevenness."""
+        fluctuation, fastest, slowest = self._energy
+        wheel = unevenness and self.period and self.speed
+        return Sizing(
+            peak_torque=self.peak_torque,
+            rms_torque=self.rms_torque,
+            mean_torque=self.mean_torque,
+            peak_power=self.peak_power,
+            braking_power=self.braking_power,
+            fluctuation=fluctuation,
+            fastest=fastest,
+            slowest=slowest,
+            unevenness=unevenness,
+            flywheel=flywheel(fluctuation, self.speed, unevenness) if wheel and unevenness else None,
+            bearings={name: self.bearing(name) for name in self.rows.reactions},
+            found=self.found,
+            tail=self.tail,
+        )
+
+
+def unevenness_of(given: float | None) -> float | None:
+    """An unevenness as it may be; raises `RequestError` for one that is not > 0 and up to 2."""
+    delta = None if given is None else finite_number("unevenness", given)
+    # twice the mean: the lowest speed is 0
+    if delta is not None and not 0 < delta <= 2:
+        raise RequestError(
+            f"unevenness: {shown(given)} is not an unevenness; "
+            "give a part of the mean speed > 0 and up to 2, as in 0.01"
+        )
+    return delta
 
 
 def flywheel(fluctuation: float, speed: float, unevenness: float) -> float:

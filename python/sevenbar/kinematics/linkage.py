@@ -464,7 +464,7 @@ class Linkage(Solvable):
 
     def _has_closed_form(self, method: str) -> bool:
         check_word("method", method, ("auto", "general"))
-        return method == "auto" and self.kind == "RSSR"
+        return method == "auto" and self.kind == "RSSR" and not self._closed_form.has_free_side
 
 
 def closure_tolerance(name: str, value: object) -> float:

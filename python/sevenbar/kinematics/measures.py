@@ -9,10 +9,10 @@ from functools import partial
 from typing import Any, Literal
 
 from sevenbar.errors import RequestError, no_joint, shown, suggestion
-from sevenbar.forces.sizing import Bearing, Sizing
+from sevenbar.forces.sizing import Bearing, CycleLoads
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
-from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
+from sevenbar.kinematics.circuits.motion import Motion, Solvable, chosen_circuit
 from sevenbar.kinematics.dynamics.force_measures import force_slopes, mass_slopes, peak_shaking, sized
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.numbers.gradients import MeasureSlopes, measure_slopes
@@ -124,7 +124,7 @@ def _of_rate(rate: Literal["velocity", "acceleration", "jerk"]) -> list[Measure]
     return _ends(rate, rate, *titles)
 
 
-def _of_sizing(name: str, quantity: Quantity, pick: Callable[[Sizing], float], title: str) -> Measure:
+def _of_sizing(name: str, quantity: Quantity, pick: Callable[[CycleLoads], float], title: str) -> Measure:
     """A number of a circuit's sizing; none where its torque has no bound."""
 
     def value(circuit: Circuit) -> float | None:
@@ -223,7 +223,7 @@ def _of_bearing(pick: Callable[[Bearing], float]) -> Callable[[Circuit, str], fl
 
     def value(circuit: Circuit, joint: str) -> float | None:
         found = sized(circuit, (joint,))
-        number = math.nan if found is None else pick(found.bearings[joint])
+        number = math.nan if found is None else pick(found.bearing(joint))
         return number if math.isfinite(number) else None
 
     return value
@@ -355,16 +355,22 @@ def gradient(
 
     Source: docs/theory_design.md, (6); docs/theory_measures.md, (16).
     """
-    chosen = chosen_circuit(motion, circuit)
-    numbers = Numbers(motion.linkage)
+    return circuit_gradient(motion.linkage, chosen_circuit(motion, circuit), only=only)
+
+
+def circuit_gradient(
+    linkage: Solvable, chosen: Circuit, *, only: Sequence[str] | None = None
+) -> dict[str, MeasureSlopes]:
+    """`gradient` of a circuit of a linkage that need not be one of a motion."""
+    numbers, speed = Numbers(linkage), chosen.speed
     names = None if only is None else [one.name for one in measures_named(only)]
     extents = stopped_measures(numbers) if names is None else list(filter(is_extent, names))
     found: list[MeasureSlopes] = []
     if names is None or not all(is_extent(name) or is_of_forces(name) for name in names):
-        found += measure_slopes(numbers, chosen, motion.speed)
+        found += measure_slopes(numbers, chosen, speed, names)
         if names is None or any(name.startswith("transmission") for name in names):
             found += transmission_slopes(numbers, chosen)
-    found += force_slopes(numbers, chosen, motion.speed, names)
+    found += force_slopes(numbers, chosen, speed, names)
     found += extent_slopes(numbers, chosen, extents)
     return {one.name: one for one in found if names is None or one.name in names}
 
@@ -385,7 +391,13 @@ def mass_gradient(
 
     Source: docs/theory_forces.md, (9).
     """
-    numbers = Numbers(motion.linkage)
+    return circuit_mass_gradient(motion.linkage, chosen_circuit(motion, circuit), only=only)
+
+
+def circuit_mass_gradient(
+    linkage: Solvable, chosen: Circuit, *, only: Sequence[str] | None = None
+) -> dict[str, MeasureSlopes]:
+    """`mass_gradient` of a circuit of a linkage that need not be one of a motion."""
     names = None if only is None else [one.name for one in measures_named(only)]
-    found = mass_slopes(numbers, chosen_circuit(motion, circuit), motion.speed, names)
+    found = mass_slopes(Numbers(linkage), chosen, chosen.speed, names)
     return {one.name: one for one in found}

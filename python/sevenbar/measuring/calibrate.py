@@ -175,6 +175,7 @@ def calibrate(
     for word in offsets:
         check_word("offset", word, OFFSETS)
     ends = ends_of(linkage) if ends is None else ends
+    linkage = Draft.of_linkage(linkage).giving(free).linkage
     numbers = Numbers(linkage)
     names = _named(numbers, free, hold, follow)
     if follow:

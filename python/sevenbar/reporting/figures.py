@@ -22,9 +22,19 @@ if TYPE_CHECKING:
 Places = Mapping[str, tuple[int, tuple[float, float, float]]]
 
 #: What can be drawn of a motion.
-KINDS = ("curves", "joints", "modes", "configuration", "point", "transmission", "coupler", "axodes")
-#: Those that are drawn where none is named: not a point's path alone, nor axodes.
-USUAL_KINDS = KINDS[:-2]
+KINDS = (
+    "curves",
+    "joints",
+    "modes",
+    "configuration",
+    "point",
+    "transmission",
+    "coupler",
+    "axodes",
+    "skeleton",
+)
+#: Those that are drawn where none is named: not a point's path alone, nor axodes, nor the linkage alone.
+USUAL_KINDS = KINDS[:-3]
 
 
 @dataclass(frozen=True)
@@ -133,6 +143,7 @@ def _files(
         ("joints", "joints", partial(plot.joints, motion, **curves)),
         ("transmission", "transmission", partial(plot.transmission, motion, **curves)),
         ("axodes", "axodes", partial(plot.axodes, motion, circuit=circuit, **pictures)),
+        ("skeleton", "skeleton", partial(plot.skeleton, motion, circuit, **look.of_pictures)),
         ("configuration", "configuration", partial(plot.configuration, motion, circuit, **pictures)),
     )
     draw = {name: one for kind, name, one in known if kind in kinds}

@@ -15,6 +15,7 @@ from sevenbar.studio.panels.legend import Legend
 from sevenbar.studio.panels.points import PointsPanel
 from sevenbar.studio.panels.scenery import Scenery
 from sevenbar.studio.panels.shaping import ShapePanel
+from sevenbar.studio.panels.sketching import SketchPanel
 from sevenbar.studio.panels.transport import Transport
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.shelf import Shelf
@@ -54,6 +55,8 @@ class Tab:
             self._legend = Legend(gui, session)
             tabs = gui.add_tab_group()
             with tabs.add_tab("Shape", viser.Icon.RULER_2):
+                with gui.add_folder("New linkage", expand_by_default=False):
+                    SketchPanel(gui, self.worker, session)
                 self._shape = ShapePanel(gui, self.worker, session)
             with tabs.add_tab("Show", viser.Icon.EYE):
                 self._scenery = Scenery(client, self.worker, session)

@@ -127,6 +127,7 @@ def axis_of(dimension: Dimension, given: Given) -> SweepAxis:
             )
         if not math.isfinite(high - low):
             raise RequestError(f"{name}: {given.low} to {given.high} is too wide; give ends nearer together")
+        _refuse_no_length(dimension, high)
         if isinstance(given, Span):
             return SweepAxis(dimension, low, high, None)
         count = whole_number(name, given.count, 2, MOST_COUNTED, "a count of values", ", or one value alone")
@@ -140,7 +141,16 @@ def axis_of(dimension: Dimension, given: Given) -> SweepAxis:
         number = "no values are" if len(given) == 0 else f"{len(given)} values are"
         raise RequestError(f"{name}: {number} listed; give 1 to {MOST_LISTED}, or a grid")
     listed = tuple(_value(dimension, one) for one in given)
+    _refuse_no_length(dimension, max(listed))
     return SweepAxis(dimension, min(listed), max(listed), len(listed), listed)
+
+
+def _refuse_no_length(dimension: Dimension, highest: float) -> None:
+    """`RequestError` where no value of a length is one."""
+    if dimension.positive and highest <= 0:
+        raise RequestError(
+            f"over: {dimension.name}: no value is a length, the highest is {highest:g}; give values above 0"
+        )
 
 
 def _value(dimension: Dimension, given: object) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats, whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, check_word, shown
+from sevenbar.kinematics.numbers.dimensions import check_apart
 from sevenbar.sweep.axes import Given, SweepAxis, axis_of
 from sevenbar.sweep.sampling import MOST_SOBOL, random_points, sobol_points
 
@@ -61,6 +62,7 @@ class Space:
         if len(axes) > MOST_AXES:
             raise RequestError(f"over: {len(axes)} dimensions are too many; give at most {MOST_AXES}")
         found = tuple(axis_of(draft.dimension(name), given) for name, given in axes.items())
+        check_apart("over", [axis.dimension for axis in found])
         names = [axis.name for axis in found]
         for name in names:
             if names.count(name) > 1:

@@ -26,6 +26,9 @@ from sevenbar.text.workbook import ZIP, refuse_old, sheets_of
 #: Largest file [bytes]: a table of a million rows has some 50 MB, so a larger one is the wrong file.
 LARGEST_FILE = 200_000_000
 
+#: What of a file shows its encoding [bytes].
+HEAD = 2000
+
 #: Longest line [characters]: a row has some dozen cells, so a longer line is no row of a table.
 LONGEST_LINE = 100_000
 
@@ -271,13 +274,25 @@ def read_bytes(path: Path, of: str) -> bytes:
     return content
 
 
+def wide_text(content: bytes) -> str:
+    """The kind of UTF-16 of a text; empty for another. Without a mark plain letters have a zero byte each."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    head = content[:HEAD]
+    for first, name in ((1, "utf-16-le"), (0, "utf-16-be")):
+        zeros, others = head[first::2], head[1 - first :: 2]
+        if zeros and not any(zeros) and all(others):
+            return name
+    return ""
+
+
 def text_of_bytes(content: bytes, path: str) -> str:
     """The text of a file's bytes, as `read_text` gives it."""
     refuse_old(content, path)
     if content.startswith(ZIP):
         return sheets_of(content, path)[0].text()
-    wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
-    for encoding in ("utf-16",) if wide else ("utf-8-sig", "cp1252"):
+    wide = wide_text(content)
+    for encoding in (wide,) if wide else ("utf-8-sig", "cp1252"):
         try:
             text = content.decode(encoding)
         except UnicodeDecodeError:

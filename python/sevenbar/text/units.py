@@ -20,8 +20,10 @@ TURNING_SPEEDS = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.tau / 60, "r
 
 #: Other words for them.
 OTHER_SPEEDS = {
-    **dict.fromkeys(("hz", "1/s", "rps", "u/s"), "rev/s"),
-    **dict.fromkeys(("u/min", "1/min", "min-1", "tr/min", "rev/min"), "rpm"),
+    **dict.fromkeys(("hz", "1/s", "rps", "u/s", "s^-1", "s-1", "s\u207b\u00b9"), "rev/s"),
+    **dict.fromkeys(
+        ("u/min", "1/min", "min-1", "min^-1", "min\u207b\u00b9", "tr/min", "rev/min", "upm"), "rpm"
+    ),
 }
 
 #: Units of time and their size in seconds.

@@ -76,6 +76,7 @@ impl From<Circuit> for CircuitMeasures {
             dead_centres: circuit.dead_centres,
             transmission: Some(ends(circuit.transmission)),
             rates: [circuit.velocity, circuit.acceleration, circuit.jerk].map(|rate| rate.map(ends)),
+            output_unit: 1.0,
         }
     }
 }

@@ -13,6 +13,7 @@ mod classify;
 mod domain;
 mod extremes;
 mod frames;
+mod free_side;
 mod lines;
 mod linkage;
 mod measures;

@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.numbers.dimensions import Dimension, read_at
+from sevenbar.kinematics.numbers.dimensions import Dimension, check_apart, read_at
 from sevenbar.text.ranges import split_grid, split_named, split_range
 
 #: The form of a range, for messages.
@@ -79,6 +79,7 @@ def axes_of(draft: Draft, over: Mapping[str, Range]) -> tuple[MapAxis, MapAxis]:
             f"over: {count} given where a map has two; give a range for each of two, {EXAMPLE}"
         )
     first, second = (_axis(draft.dimension(name), span) for name, span in over.items())
+    check_apart("over", (first.dimension, second.dimension))
     if first.dimension.place == second.dimension.place:
         raise RequestError(f"over: {first.name} is given twice under two names; give two dimensions")
     return first, second

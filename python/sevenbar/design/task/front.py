@@ -5,8 +5,9 @@ solves
 
     least f1    with f2 <= e                                                                          (1)
 
-for a bound e between the value of f2 where f1 alone is best, and the best value of f2 (the epsilon
-constraint). Each search begins at the neighbouring designs found so far.
+or the same with f1 and f2 exchanged (the epsilon constraint). At the ends e is the best value of f2 alone.
+From there the widest gap between neighbours is halved, both values relative to their extent; the want that
+differs more there is bounded. Each search begins at the neighbouring designs found so far.
 
 Source: Y. Haimes, L. Lasdon and D. Wismer, "On a bicriterion formulation of the problems of integrated system
 identification and system optimization", IEEE Trans. Systems, Man, and Cybernetics 1 (1971), 296-297.
@@ -17,6 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -24,7 +26,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.contradictions import refuse_contradictions
-from sevenbar.design.task.search import STARTS, DesignsFound, designed, named
+from sevenbar.design.task.search import EXACT, STARTS, DesignsFound, designed, named
 from sevenbar.design.task.task import DesignTask, FigureMust, FigureWant, Most, Must, Want, residual_unit
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.progress import Progress, silent
@@ -32,14 +34,17 @@ from sevenbar.text.progress import Progress, silent
 #: Points of a front, by default and at most.
 POINTS, MOST_POINTS = 9, 50
 
-#: The weight of the want that is bounded and not improved: enough to choose among equals.
-BESIDES = 1e-6
+#: The weight of the want that is bounded and not improved: below what counts as met exactly.
+BESIDES = 1e-12
 
 #: Two points closer than this share of the front's extent are the same, and count as equally good.
 SAME = 1e-4
 
-#: Ends of a front this many times apart are joined by bounds in equal ratios.
-RATIO = 20.0
+#: What a want at its best may lose while the other is improved [relative, and of its unit]: beyond rounding.
+LOST = 1e-9
+
+#: A gap narrower than this share of the front's extent is not halved.
+NARROW = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,18 +100,20 @@ def pareto(
     """
     refuse_contradictions(task)
     one, other = (_place(task, key, name) for key, name in (("first", first), ("second", second)))
+    pair = one, other
     if one == other:
         raise RequestError(f"pareto: want {one + 1} is named twice; give two wants")
     if not 3 <= points <= MOST_POINTS:
         raise RequestError(f"points: {points} points make no front; give 3 to {MOST_POINTS}")
-    course = SearchCourse(points, progress)
+    course = SearchCourse(points + 2, progress)
     kept: list[ParetoPoint] = []
-    solved = missing = 0
+    bounds: list[tuple[int, float]] = []
+    missing = 0
 
     def search(improved: int, musts: Sequence[Must], given: Sequence[ParetoPoint], tries: int) -> int:
         """Designs in which one of the wants is improved."""
         wants = tuple(
-            replace(want, weight=BESIDES) if i in (one, other) and i != improved else want
+            replace(want, weight=BESIDES) if i in pair and i != improved else want
             for i, want in enumerate(task.wants)
         )
         own = replace(task, wants=wants, musts=(*task.musts, *musts), goal="minimax")
@@ -118,21 +125,24 @@ def pareto(
         return len(found.designs)
 
     with course.until_stopped(kept, 2):
-        for improved in (one, other):
+        for improved, second in ((one, other), (other, one)):
             if not search(improved, (), kept, starts):
                 raise RequestError(
                     f"pareto: no design is found for want {improved + 1} alone; solve the task first, "
                     "and ease what must hold"
                 )
-        low, high = sorted(point.values[1] for point in kept)
-        # from the wide one to the narrow one, the ends left out
-        spread = np.geomspace if 0 < low * RATIO < high else np.linspace
-        for bound in spread(high, low, points)[1:-1]:
-            near = sorted(kept, key=lambda point: abs(point.values[1] - bound))
-            solved += 1
-            missing += not search(one, [_must(task, other, bound)], near[:3], 0)
-    front = _front(task, (one, other), kept)
-    return ParetoFront(task, (one, other), front, solved + 2, missing, course.unfinished)
+            # among equals the best of the other
+            best = min(kept, key=lambda point: point.values[pair.index(improved)])
+            value = best.values[pair.index(improved)]
+            bound = value + LOST * max(abs(value), 1.0)
+            search(second, [_must(task, improved, bound)], [best], starts if best.design.cost < EXACT else 0)
+        while len(bounds) < points - 2 and (gap := _widest_gap(kept, bounds)) is not None:
+            bounds.append(gap)
+            axis, bound = gap
+            near = sorted(kept, key=lambda point: abs(point.values[axis] - bound))
+            missing += not search(pair[1 - axis], [_must(task, pair[axis], bound)], near[:3], 0)
+    front = _front(task, pair, kept)
+    return ParetoFront(task, pair, front, len(bounds) + 2, missing, course.unfinished)
 
 
 def _place(task: DesignTask, key: str, given: int | str) -> int:
@@ -177,11 +187,26 @@ def _is_great(want: Want) -> bool:
     return isinstance(want, FigureWant) and want.value == "great"
 
 
-def _front(task: DesignTask, pair: tuple[int, int], kept: Sequence[ParetoPoint]) -> tuple[ParetoPoint, ...]:
-    """The points of which none is better in both, each once, by rising first value.
+def _widest_gap(kept: Sequence[ParetoPoint], bounds: Sequence[tuple[int, float]]) -> tuple[int, float] | None:
+    """Which value is bounded next, 0 or 1, and by what; `None` where no gap is wide.
 
-    Of a measure that shall be great the value is its negative here, and the measure itself in the answer.
+    A bound tried within a gap led to no point of it: what lies below the bound is empty.
     """
+    values = np.array([point.values for point in _unbeaten(kept)])
+    extent = np.ptp(values, axis=0)
+    widest, best = NARROW, None
+    for ends in pairwise(values) if (extent > 0).all() else ():
+        for axis in (0, 1):
+            low, high = sorted(float(end[axis]) for end in ends)
+            low = max([low, *(bound for tried, bound in bounds if tried == axis and low < bound < high)])
+            width = (high - low) / extent[axis]
+            if width > widest:
+                widest, best = width, (axis, (low + high) / 2)
+    return best
+
+
+def _unbeaten(kept: Sequence[ParetoPoint]) -> list[ParetoPoint]:
+    """The points of which none is better in both, each once, by rising first value."""
     ordered = sorted(kept, key=lambda point: point.values)
     every = np.array([point.values for point in ordered]).reshape(-1, 2)
     slack = SAME * np.ptp(every, axis=0) if len(every) else np.zeros(2)
@@ -193,7 +218,16 @@ def _front(task: DesignTask, pair: tuple[int, int], kept: Sequence[ParetoPoint])
                 front.pop()
             front.append(point)
             best = point.values[1]
+    return front
+
+
+def _front(task: DesignTask, pair: tuple[int, int], kept: Sequence[ParetoPoint]) -> tuple[ParetoPoint, ...]:
+    """The points of the front, values as they are read.
+
+    Of a measure that shall be great the value is its negative before, and the measure itself in the answer.
+    """
     signs = [-1.0 if _is_great(task.wants[place]) else 1.0 for place in pair]
     return tuple(
-        replace(point, values=(signs[0] * point.values[0], signs[1] * point.values[1])) for point in front
+        replace(point, values=(signs[0] * point.values[0], signs[1] * point.values[1]))
+        for point in _unbeaten(kept)
     )

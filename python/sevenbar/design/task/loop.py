@@ -197,6 +197,11 @@ class TaskLoop:
         opening = self.at(values).slopes(q, 0).opening
         return [k for k, opens in zip(self._moving, opening, strict=False) if opens]
 
+    def near(self, values: Floats, row: Floats) -> Floats | None:
+        """The pose (1, columns) at these values near a row of others, at its input; `None` where none is."""
+        q = self.closed(values, row[[self.input]], self.poses(values, row[None]))
+        return q if np.isfinite(q).all() else None
+
     def drawn(self, values: Floats) -> Draft:
         """The draft with these values (k,)."""
         own = [(self.dimensions[i], float(x)) for i, x in zip(self.free, values, strict=True)]

@@ -113,10 +113,11 @@ class TaskModel:
             self.figure_musts.append(kinds.FigureMust("transmission_lowest", least=math.degrees(least)))
         names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
         self.figures = Figures(loop, list(dict.fromkeys(names)))
-        #: Musts of the least transmission angle in closed form, and the measures that a search works out.
+        #: Wants and musts of the least transmission angle in closed form, and the measures worked out.
         self.in_line = LeastAngle(loop)
-        self.angle_musts = [must for must in self.figure_musts if self._in_line(must)]
-        names = [w.name for w in self.figure_wants]
+        self.angle_wants = [want for want in self.figure_wants if self._in_line(want)]
+        self.angle_musts = [must for must in self.figure_musts if self._in_line(must) and must.most is None]
+        names = [want.name for want in self.figure_wants if want not in self.angle_wants]
         names += [must.name for must in self.figure_musts if must not in self.angle_musts]
         self.searched = Figures(loop, list(dict.fromkeys(names)))
         self.rooms = pose_rooms(loop, task.musts)
@@ -132,8 +133,13 @@ class TaskModel:
         #: Wants, by their places among the sampled, whose residuals have been asked to stay small.
         self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, kinds.Most)]
 
-    def _in_line(self, must: kinds.FigureMust) -> bool:
-        return self.in_line.known and must.name == "transmission_lowest" and must.most is None
+    def _in_line(self, asked: kinds.FigureWant | kinds.FigureMust) -> bool:
+        return self.in_line.known and asked.name == "transmission_lowest"
+
+    @property
+    def measures(self) -> bool:
+        """Whether the search reads measures of circuits."""
+        return bool(self.searched.names or self.angle_wants)
 
     @property
     def holds(self) -> bool:
@@ -254,8 +260,9 @@ class TaskProblem:
         self._taken = z.tobytes(), self.at(z)
         if poses is not None:
             self._poses = poses
-            if len(poses):
-                self._anchor = poses[0]
+            near = poses[:1] if len(poses) else self.loop.near(self.values(z), self._anchor)
+            if near is not None:
+                self._anchor = near[0]
 
     def seed(self, z: Floats) -> TaskSeed:
         """The start that z is."""
@@ -487,28 +494,39 @@ class TaskProblem:
             model.effort.take(model.searched.motions - before)
         if found is None:
             return None
-        read = {name: own for name, *own in zip(model.searched.names, *found, strict=True)}
+        read = {
+            name: [(float(own[0]), own[1])] for name, *own in zip(model.searched.names, *found, strict=True)
+        }
+        ends: list[tuple[float, Floats]] = []
+        if model.angle_wants or model.angle_musts:
+            both = model.in_line.ends(values, self._anchor, slopes=slopes)
+            if both is None:
+                return None
+            ends, read["transmission_lowest"] = both, [min(both, key=lambda end: end[0])]
         lefts = [
             (want.weight * value, want.weight * by)
             for want in model.figure_wants
-            for value, by in [figure_left(want, *read[want.name])]
+            # each end a height of its own: the lower of two has a kink where they are equal
+            for own in (ends if self.minimax and self._by_ends(want) else read[want.name])
+            for value, by in [figure_left(want, *own)]
         ]
         rooms = [
             (way * (value - end) / unit, way * by / unit)
             for must in model.figure_musts
             if must not in model.angle_musts
-            for value, by in [read[must.name]]
+            for value, by in read[must.name]
             for way, end in ((1.0, must.least), (-1.0, must.most))
             if end is not None
             for unit in [max(abs(end), 1e-3)]
         ]
         for must in model.angle_musts:
-            ends = model.in_line.ends(values, self._anchor, slopes=slopes)
-            if ends is None:
-                return None
             least = must.least or 0.0
             rooms += [((value - least) / max(least, 1.0), by / max(least, 1.0)) for value, by in ends]
         return self._stacked(lefts), self._stacked(rooms)
+
+    def _by_ends(self, want: kinds.FigureWant) -> bool:
+        """Whether it is the least of two angles that shall be great."""
+        return want in self.model.angle_wants and want.value == "great"
 
     def _stacked(self, rows: Sequence[tuple[float, Floats]]) -> Rooms:
         """Single values with slopes (k,) by the free numbers, as (r,) with those by all unknowns."""

@@ -11,6 +11,7 @@ converge as Newton's do.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -27,9 +28,12 @@ FIRST_REACH, MOST_REACH, LEAST_REACH = 0.1, 1.0, 1e-9
 #: Gain of a step, relative to the greatest height, below which it is the last.
 WORTH = 1e-5
 
-#: Weight of a missed room relative to the greatest height: above any multiplier, so that none is missed for a
-#: lower height.
-MISSED = 100.0
+#: Weight of a missed room relative to the greatest height, at first and at most, and by how much it rises
+#: where a room would be missed for a lower height: its multiplier is greater.
+MISSED, MOST_MISSED, RISE = 100.0, 1e8, 10.0
+
+#: A room missed by more than the least within the reach, relative to what is missed, is missed for a height.
+TRADED = 1e-6
 
 #: Least unit of heights: what rounding leaves.
 LEAST_UNIT = 1e-13
@@ -49,13 +53,17 @@ class MinimaxValues:
 
     @property
     def unit(self) -> float:
-        """The greatest height, by which a program is scaled: solvers have absolute tolerances."""
-        return max(float(self.height.max()), LEAST_UNIT)
+        """The greatest height or missed room, which scales a program: solvers have absolute tolerances."""
+        return max(float(self.height.max()), self.missed, LEAST_UNIT)
 
-    def merit(self, unit: float) -> float:
-        """The greatest height and the worst missed room, relative to a unit."""
-        missed = max(float(-self.room.min()), 0.0)
-        return (float(self.height.max()) + MISSED * missed) / unit
+    @property
+    def missed(self) -> float:
+        """By how much the worst room is missed."""
+        return max(float(-self.room.min(initial=0.0)), 0.0)
+
+    def merit(self, unit: float, weight: float) -> float:
+        """The greatest height and the worst missed room by its weight, relative to a unit."""
+        return (float(self.height.max()) + weight * self.missed) / unit
 
 
 def lowered(
@@ -70,23 +78,24 @@ def lowered(
     `heights` gives `None` where there is nothing to measure; a step never leads there. `mended` brings the
     end of a step to where rooms are kept that bend away.
     """
-    z, reach = start, FIRST_REACH
+    z, reach, weight = start, FIRST_REACH, MISSED
     now = heights(z)
     if now is None:
         return z
     for _ in range(MOST_STEPS):
-        step, promised = _step(now, reach)
+        weight = _weight(now, reach, weight)
+        step, promised = _step(now, reach, weight)
         if not promised > worth:
             break
         end = mended(z + step)
         then = heights(end)
-        gained = _gained(now, then)
+        gained = _gained(now, then, weight)
         if then is not None and not gained > KEPT_MOST * promised:
             # heights bend: the same program again with what they really were at its end
-            bent, _ = _step(_bent(now, then, end - z), reach)
+            bent, _ = _step(_bent(now, then, end - z), reach, weight)
             there = heights(mended(z + bent))
-            if _gained(now, there) > gained:
-                step, end, then, gained = bent, mended(z + bent), there, _gained(now, there)
+            if _gained(now, there, weight) > gained:
+                step, end, then, gained = bent, mended(z + bent), there, _gained(now, there, weight)
         longest = float(np.abs(step).max())
         if then is None or not gained > KEPT_LITTLE * promised:
             reach = min(longest, reach) / 4
@@ -101,9 +110,9 @@ def lowered(
     return z
 
 
-def _gained(now: MinimaxValues, then: MinimaxValues | None) -> float:
+def _gained(now: MinimaxValues, then: MinimaxValues | None, weight: float) -> float:
     """By how much a place is better than another, relative to its unit."""
-    return -np.inf if then is None else now.merit(now.unit) - then.merit(now.unit)
+    return -np.inf if then is None else now.merit(now.unit, weight) - then.merit(now.unit, weight)
 
 
 def _bent(now: MinimaxValues, then: MinimaxValues, step: Floats) -> MinimaxValues:
@@ -113,11 +122,30 @@ def _bent(now: MinimaxValues, then: MinimaxValues, step: Floats) -> MinimaxValue
     )
 
 
-def _step(now: MinimaxValues, reach: float) -> tuple[Floats, float]:
+def _weight(now: MinimaxValues, reach: float, weight: float) -> float:
+    """The weight of a missed room, raised until a step misses none that another within the reach keeps."""
+    missed = _program(now, reach, weight)[2]
+    if missed <= TRADED * now.missed:
+        return weight
+    fewest = _program(now, reach, math.inf)[2]
+    while missed > fewest + TRADED * now.missed and weight < MOST_MISSED:
+        weight *= RISE
+        missed = _program(now, reach, weight)[2]
+    return weight
+
+
+def _step(now: MinimaxValues, reach: float, weight: float) -> tuple[Floats, float]:
     """The step (k,) of one program, and the gain it promises relative to the unit."""
+    step, height, missed = _program(now, reach, weight)
+    return step, now.merit(now.unit, weight) - (height + weight * missed) / now.unit
+
+
+def _program(now: MinimaxValues, reach: float, weight: float) -> tuple[Floats, float, float]:
+    """The step (k,) of least greatest height and missed room by its weight, or of room alone; and both."""
     from scipy.optimize import linprog
 
     unit, count = now.unit, now.height_slopes.shape[1]
+    nothing = np.zeros(count), float(now.height.max()), now.missed
     # rows out of reach of every step are left out
     up, down = (reach * np.abs(by).sum(axis=1) for by in (now.height_slopes, now.room_slopes))
     tall, near = ~(now.height + up < (now.height - up).max()), ~(now.room > down)
@@ -129,10 +157,12 @@ def _step(now: MinimaxValues, reach: float) -> tuple[Floats, float]:
     )
     sides = np.concatenate([-now.height[tall], now.room[near]]) / unit
     if not (np.isfinite(matrix).all() and np.isfinite(sides).all()):
-        return np.zeros(count), 0.0
+        return nothing
     bounds: list[tuple[float, float | None]] = [(-reach, reach)] * count
-    cost = np.append(np.zeros(count), [1.0, MISSED])
+    # the heaviest counts 1: solvers have absolute tolerances
+    ends = [0.0, 1.0] if math.isinf(weight) else [1.0 / max(weight, 1.0), weight / max(weight, 1.0)]
+    cost = np.append(np.zeros(count), ends)
     found = linprog(cost, A_ub=matrix, b_ub=sides, bounds=[*bounds, (0.0, None), (0.0, None)], method="highs")
     if found.x is None:
-        return np.zeros(count), 0.0
-    return found.x[:count], now.merit(unit) - float(cost @ found.x)
+        return nothing
+    return found.x[:count], float(found.x[-2] * unit), float(found.x[-1] * unit)

@@ -62,9 +62,7 @@ def programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
         last = conditions(problem, x, unit) or last
         return last
 
-    course = _Course(
-        problem.within(problem.start), bool(problem.model.searched.names), problem.model.searched.measured
-    )
+    course = _Course(problem.within(problem.start), problem.model.measures, problem.model.searched.measured)
 
     def value(x: Floats) -> TaskValues | None:
         z = unknowns(problem, x)

@@ -32,9 +32,12 @@ TRIED, TAKEN = 8, 3
 #: squares are more than so many times those of the designs that are kept.
 ONE, HOPELESS = 1e-3, 2.0
 
+#: Starts in a row of a task with measures that lead to nothing new, after which the search ends.
+IDLE = 8
+
 #: First ones that miss a room by more are taken last; those whose costs, rooms and numbers differ by less are
-#: one.
-MISSED, SAME = -0.01, 1e-7
+#: one; seeds of one linkage whose errors differ by less are mirror images.
+MISSED, ALIKE, SAME = -0.01, 1e-4, 1e-7
 
 #: A cost below which a task is met exactly: no other start can be better.
 EXACT = 1e-11
@@ -176,12 +179,13 @@ def _search(
             return
     tried.sort(key=lambda look: (look.hopeless, look.room < MISSED, look.cost))
     tried = _unlike(model, tried)
-    # starts in a row of a task with measures that led to nothing new
     idle, known = 0, (0, math.inf)
     for i, look in enumerate(tried):
         now = len(distinct(kept, scale_free=False)), kept[0].cost if kept else math.inf
-        idle, known = (idle + 1, known) if now[0] <= known[0] and not now[1] < known[1] else (0, now)
-        if idle > TAKEN * count and model.searched.names:
+        idle, known = (
+            (idle + 1, known) if now[0] <= known[0] and not now[1] < (1 - SAME) * known[1] else (0, now)
+        )
+        if idle > min(IDLE, TAKEN * count) and model.figures.names:
             break
         if len(distinct(kept, scale_free=False)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
             break
@@ -217,7 +221,7 @@ def _unlike(model: TaskModel, tried: Sequence[Solved]) -> list[Solved]:
     for look in tried:
         ways = [look.cost, look.room, *look.seed.values / model.loop.scales]
         known = ([one.cost, one.room, *one.seed.values / model.loop.scales] for one in kept)
-        if not any(np.allclose(ways, other, rtol=SAME, atol=SAME) for other in known):
+        if not any(np.allclose(ways, other, rtol=ALIKE, atol=ALIKE) for other in known):
             kept.append(look)
     return kept
 

@@ -120,18 +120,20 @@ def solved(
     leads to, or the start has taken all the motions that it may.
     """
     model.effort.begin(effort.WHOLE if whole else effort.LOOK)
-    found = _least_squares(model, seed, evaluations, FIRST[0])
-    if whole and (found is None or (found.stuck and not _ended(found.problem, found.z))):
+    # where measures must hold the programs know better from the first step on
+    alone = whole and model.task.goal == "minimax" and bool(model.figure_musts) and model.searched.measured
+    found = _begun(model, seed) if alone else _least_squares(model, seed, evaluations, FIRST[0])
+    if whole and not alone and (found is None or (found.stuck and not _ended(found.problem, found.z))):
         # a first step too far may have led into a corner where the linkage hardly closes
         other = _least_squares(model, seed, evaluations, FIRST[1])
         if found is None or (other is not None and other.size < found.size):
             found = other
-    if whole and found is not None and NOTHING < found.size <= EXACT:
+    if whole and not alone and found is not None and NOTHING < found.size <= EXACT:
         found = _least_squares(model, found.problem.seed(found.z), LONG, FIRST[0])
     if found is None:
         return None
     problem, z = found.problem, found.z
-    if not whole or found.size > most or _hopeless(problem, z):
+    if not whole or (found.size > most and not alone) or _hopeless(problem, z):
         return _as_solved(problem, z, math.nan)
     if model.task.goal != "least squares":
         problem = TaskProblem(model, problem.seed(z), minimax=True)
@@ -210,6 +212,13 @@ class _Squares:
         return self.problem.size(self.z)
 
 
+def _begun(model: TaskModel, seed: TaskSeed) -> _Squares | None:
+    """A problem at its seed as it is; `None` where the linkage does not close."""
+    problem = TaskProblem(model, seed)
+    z = problem.within(problem.start)
+    return None if problem.at(z) is None else _Squares(problem, z, stuck=False)
+
+
 def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: float) -> _Squares | None:
     """Least squares with missed rooms as penalties."""
     problem = TaskProblem(model, seed)
@@ -233,7 +242,7 @@ def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: fl
             return np.concatenate([here.left_by, weight * missed[:, None] * here.room_by])
 
         most = min(evaluations, model.effort.left)
-        if model.figure_musts and model.searched.measured:
+        if model.figure_musts:
             # penalties only lead near: a measure has kinks at which their steps become short
             most = min(most, NEAR_BY)
         nearest = nearest_least(
@@ -349,13 +358,15 @@ def _settled(problem: TaskProblem, z: Floats) -> tuple[Floats, float]:
             break
         step = _newton(at, curved, rows)
         step *= min(1.0, FARTHEST / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-        then = conditions(problem, x + step)
+        then_x = x + step
+        then_x[: len(z)] = problem.within(then_x[: len(z)])
+        then = conditions(problem, then_x)
         if then is None:
             break
         then_active, then_y, then_missed = multipliers(then)
         if not then_missed < missed:
             break
-        x, at, active, y, missed = x + step, then, then_active, then_y, then_missed
+        x, at, active, y, missed = then_x, then, then_active, then_y, then_missed
         problem.take(unknowns(problem, x))
     return unknowns(problem, x), missed
 

@@ -56,12 +56,12 @@ class LeastAngle:
         if self._made is None or not self.known:
             return None
         loop = self._loop
-        q = loop.closed(values, anchor[[loop.input]], loop.poses(values, anchor[None]))
-        if not np.isfinite(q).all():
+        q = loop.near(values, anchor)
+        if q is None:
             return None
         here = loop.here(values, q, slopes=slopes)
         found = self._made.turning(here.points[:, self._places], here.points_by[:, self._places, :, :-1])
-        if found is None or not np.isfinite(found[1]).all():
+        if found is None or not all(np.isfinite(part).all() for part in found):
             return None
         none = np.zeros(len(values))
         return [(math.degrees(x), np.degrees(by) if slopes else none) for x, by in zip(*found, strict=True)]

@@ -137,6 +137,7 @@ class Sensitivities(Printed):
             length_unit=self.linkage.length_unit,
             opening=self.opening,
             following=self.followers,
+            lengths=[one.name for one in self.draft.lengths],
         )
 
     def designs(self, changes: Floats) -> Floats:
@@ -190,6 +191,7 @@ def sensitivities(
     output: str | None = None,
     speed: float | str | None = None,
     follow: Collection[str] = (),
+    lengths: Collection[str] = (),
 ) -> Sensitivities:
     """Exact derivatives of every output of a circuit by every number of the linkage's description.
 
@@ -197,7 +199,8 @@ def sensitivities(
     named point's position and velocity, and the circuit's measures. Numbers are M, N, L1, L2, L3 and D of an
     RSSR; lengths, twists, offsets, angles and pitches of rows; coordinates of joints and axes as drawn; and
     those of points. L2 that a file leaves out is a number of its own, as of a rod that is made; in `follow`
-    it follows from the others, and its derivatives are 0. The arguments are those of `Linkage.motion`. Raises
+    it follows from the others, and its derivatives are 0. `lengths` of a drawing, by the names that its
+    report has, are numbers besides its coordinates. The arguments are those of `Linkage.motion`. Raises
     `RequestError` for a linkage made without a description and for an argument that does not fit.
 
         >>> import sevenbar as sb
@@ -205,7 +208,7 @@ def sensitivities(
         >>> [dimension.name for dimension, _, _ in found.ranking()[:2]]
         ['L2', 'L1']
     """
-    draft = Draft.of_linkage(linkage).holding(follow)
+    draft = Draft.of_linkage(linkage).giving(lengths).holding(follow)
     numbers = Numbers(draft.linkage)
     following = Following.among(numbers.dimensions)
     motion = draft.linkage.motion(samples, input=input, output=output, speed=speed)

@@ -83,6 +83,7 @@ def tolerances(
     length_unit: str,
     opening: Sequence[str] = (),
     following: Sequence[str] = (),
+    lengths: Sequence[str] = (),
 ) -> Tolerances:
     """Tolerances from half widths by name or pattern: `{"L1": 0.5, "twist_*": "0.1deg", "*": "ISO 2768-m"}`.
 
@@ -110,8 +111,8 @@ def tolerances(
         matched = matched if place is None else [place]
         if not matched:
             raise RequestError(
-                f"tolerance: no dimension {shown(pattern)}; {suggestion(pattern, names)}"
-                f"this linkage has {', '.join(names)}"
+                f"tolerance: no dimension {shown(pattern)}; {suggestion(pattern, [*lengths, *names])}"
+                f"this linkage has {', '.join([*lengths, *names])}"
             )
         if place is not None and names[place] in following:
             raise RequestError(

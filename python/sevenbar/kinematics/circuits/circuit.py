@@ -39,9 +39,6 @@ if TYPE_CHECKING:
 #: Dead centres of input and output whose angles [rad, or relative to the size] differ by less are one pose.
 TOGETHER = 1e-7
 
-#: Extremes of the output [rad, or relative to the size] that differ by less differ by rounding.
-ALIKE = 1e-9
-
 #: An output that moves less than this compared with the input [rad, or relative to the size] rests.
 AT_REST = 1e-12
 
@@ -153,8 +150,12 @@ class Circuit(ReadOnly, Printed, WithExtents):
     angle: Extremes | None
     #: How far the output rocks [rad, or length]; `None` for one that turns fully.
     swing: float | None
-    #: Time of the slower stroke over that of the quicker, as the core has it.
-    _time_ratio: float | None = field(repr=False)
+    #: Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output. `None`
+    #: also for a crank that turns back on the way, at a change point where both ends of the output are at
+    #: one input, a stroke without time, and where `many_strokes` leave it open which count.
+    time_ratio: float | None
+    #: Whether the output is at its highest, or lowest, at several inputs: more than two strokes.
+    many_strokes: bool
     input_column: int
     output_column: int
     #: Whether input and output are angles, not slides.
@@ -193,28 +194,6 @@ class Circuit(ReadOnly, Printed, WithExtents):
 
         ends, turns = ([d for d in self.dead_centres if d.kind == kind] for kind in ("input", "output"))
         return [one for one in ends if any(same(one, other) for other in turns)]
-
-    @property
-    def time_ratio(self) -> float | None:
-        """Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output.
-
-        `None` also for a crank that turns back on the way, at a change point where both ends of the output
-        are at one input, a stroke without time, and where `many_strokes` leave it open which count.
-        """
-        return None if self.many_strokes else self._time_ratio
-
-    @property
-    def many_strokes(self) -> bool:
-        """Whether the output is at its highest, or lowest, at several inputs: more than two strokes."""
-        unit = 1.0 if self.output_turns else self.size
-        ends = () if self.angle is None else (self.angle.lowest, self.angle.highest)
-        turns = [d for d in self.dead_centres if d.kind == "output"]
-        for end in ends:
-            inputs = [d.input for d in turns if abs(d.output - end) < ALIKE * unit]
-            apart = np.abs(np.sin((np.array(inputs) - inputs[0]) / 2)) if inputs else np.zeros(1)
-            if self.goes_round and float(apart.max()) > TOGETHER:
-                return True
-        return False
 
     @property
     def output_rests(self) -> bool:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import sevenbar._core as _core
-from sevenbar.arrays import Booleans, Floats, Integers, Words
+from sevenbar.arrays import Booleans, Floats, Integers, Words, within_turn
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import STATUSES, DeadCentre, Extremes, Tally, Trace
 from sevenbar.kinematics.circuits.motion import ChangePoint, Solvable
@@ -31,7 +31,8 @@ def change_points_from(raw: _core.RawMotion, column: int) -> tuple[ChangePoint, 
         ChangePoint(values[column], np.array(values), tuple(circuits), ways, freedoms)
         for values, circuits, ways, freedoms in raw.change_points
     )
-    return tuple(sorted(points, key=lambda point: point.input % math.tau))
+    # just below zero by rounding is zero, not a whole turn
+    return tuple(sorted(points, key=lambda point: float(within_turn(point.input))))
 
 
 def search_from(raw: _core.RawSearch, columns: Sequence[str]) -> Search:
@@ -126,7 +127,8 @@ def circuit_from(
         jerk=jerk,
         angle=_extremes(raw.angle),
         swing=raw.swing,
-        _time_ratio=raw.time_ratio,
+        time_ratio=raw.time_ratio,
+        many_strokes=raw.many_strokes,
         input_column=input_column,
         output_column=output_column,
         input_turns=linkage.turns(input_column),

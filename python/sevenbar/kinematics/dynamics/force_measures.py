@@ -20,8 +20,9 @@ from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Peak
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.loading import Loading
+from sevenbar.forces.result import loads_of
 from sevenbar.forces.shaking import shaking_along
-from sevenbar.forces.sizing import Sizing
+from sevenbar.forces.sizing import CycleLoads
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.dynamics.forces import ForceSolver
 from sevenbar.kinematics.numbers.gradients import MeasureSlopes, nearest, poses_at
@@ -29,8 +30,8 @@ from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.text.units import LENGTHS
 
 
-def sized(circuit: Circuit, joints: Sequence[str] = ()) -> Sizing | None:
-    """The sizing of a circuit's torque, with the bearings of these joints only.
+def sized(circuit: Circuit, joints: Sequence[str] = ()) -> CycleLoads | None:
+    """The loads of a circuit's cycle, of which a sizing is made, with the bearings of these joints only.
 
     `None` for a circuit that rocks: its measures are of constant speed. Between stops those of the part on
     which the linkage is used.
@@ -42,7 +43,7 @@ def sized(circuit: Circuit, joints: Sequence[str] = ()) -> Sizing | None:
     own = found.within_stops
     if own is None or (own.part is None and not circuit.goes_round):
         return None
-    return replace(own, reactions={name: own.reactions[name] for name in joints}).sizing()
+    return loads_of(replace(own, reactions={name: own.reactions[name] for name in joints}))
 
 
 def peak_shaking(circuit: Circuit) -> float | None:
@@ -156,8 +157,8 @@ def _measured(
         for name, one in found.reactions.items()
         if one.determinate[3:].all() and wanted(f"peak_force:{name}")
     }
-    sizing = replace(found, reactions=joints).sizing()
-    if sizing is None:
+    loads = loads_of(replace(found, reactions=joints))
+    if loads is None:
         return
     names = list(found.reactions)
 
@@ -177,7 +178,7 @@ def _measured(
             yield MeasureSlopes(name, unit, peak.value, by[best].copy())
 
     if wanted("peak_torque"):
-        top = sizing.peak_torque
+        top = loads.peak_torque
         sign = math.copysign(1.0, top.value)
         yield from peak_of(
             "peak_torque",
@@ -185,25 +186,25 @@ def _measured(
             replace(top, value=abs(top.value)),
             lambda here: (sign * here.torque, sign * here.torque_by),
         )
-    if wanted("rms_torque") and sizing.found == "series" and sizing.rms_torque > 0:
+    if wanted("rms_torque") and loads.found == "series" and loads.rms_torque > 0:
         rows = slopes(circuit.input, solver.numbers.poses(circuit.q))
         if np.isfinite(rows.torque).all():
             mean = (rows.torque[:, None] * rows.torque_by).mean(axis=0)
-            yield MeasureSlopes("rms_torque", found.unit, sizing.rms_torque, mean / sizing.rms_torque)
+            yield MeasureSlopes("rms_torque", found.unit, loads.rms_torque, mean / loads.rms_torque)
     if wanted("peak_power"):
         # no number changes the speed
         rate = circuit.speed * (LENGTHS[found.length_unit] if found.slides else 1.0)
         yield from peak_of(
-            "peak_power", "W", sizing.peak_power, lambda here: (rate * here.torque, rate * here.torque_by)
+            "peak_power", "W", loads.peak_power, lambda here: (rate * here.torque, rate * here.torque_by)
         )
     shaken = shaking_along(found) if wanted("peak_shaking") else None
     if shaken is not None and shaken.force.value > 0:
         yield from peak_of(
             "peak_shaking", "N", shaken.force, lambda here: _sizes(here.shaking, here.shaking_by)
         )
-    for name, bearing in sizing.bearings.items():
-        joint = names.index(name)
-        yield from peak_of(f"peak_force:{name}", "N", bearing.force.peak, partial(_of_joint, joint))
+    for name in joints:
+        peak = loads.bearing(name).force.peak
+        yield from peak_of(f"peak_force:{name}", "N", peak, partial(_of_joint, names.index(name)))
 
 
 def _of_joint(joint: int, here: _Slopes) -> tuple[Floats, Floats]:

@@ -44,6 +44,10 @@ Grashof = Literal[
 ]
 
 
+#: The links of a loop with four joints, where the first and the last are input and output.
+ROLES = ("input link", "coupler", "output link", "ground")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class FourBar(Printed):
     """The links of a four-bar or a slider-crank, and their sum by Grashof's rule.
@@ -121,6 +125,16 @@ def least(arcs: Sequence[float]) -> list[float]:
         flipped = [math.pi - arc if signs[k] != signs[(k + 1) % 4] else arc for k, arc in enumerate(arcs)]
         ways.append((round(sum(flipped), 12), sum(signs), flipped))
     return min(ways)[2]
+
+
+def link_roles(names: Sequence[str], input: str, output: str) -> list[str]:
+    """The names of the links after each of four joints."""
+    # the ground is where the list of joints closes
+    if (input, output) == (names[0], names[-1]):
+        return list(ROLES)
+    if (output, input) == (names[0], names[-1]):
+        return [*ROLES[2::-1], ROLES[3]]
+    return ["link 1", "link 2", "link 3", "ground"]
 
 
 def _ordered(links: dict[str, float]) -> dict[str, float]:

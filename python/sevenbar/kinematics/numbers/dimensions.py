@@ -12,6 +12,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.loop.geometry import Joint, Loop, Place, following_coupler
+from sevenbar.kinematics.numbers.lengths import LONGER, drawn_length, link_names
 from sevenbar.text.units import ANGLES, MASSES, examples_of
 
 
@@ -20,7 +21,8 @@ class Dimension:
     """A number of the description that can be changed.
 
     `name` is its own among all: "L1"; "length_2"; "crank.axis_x"; "P.u". `value` and `unit` are the file's;
-    `group` is what it belongs to; `follows` where the file leaves it out and it follows from the others.
+    `group` is what it belongs to; `follows` where the file leaves it out and it follows from the others. The
+    file has a length of a drawing as what it is longer than the `drawn` one.
     """
 
     name: str
@@ -31,6 +33,7 @@ class Dimension:
     value: float
     positive: bool = False
     follows: bool = False
+    drawn: float = 0.0
 
     @property
     def key(self) -> str:
@@ -122,6 +125,7 @@ def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimens
             found.append(Dimension(f"{key}_{i + 1}", ("link", i, key), key, group, unit, value))
     for i, table in enumerate(description.get("joint", ())):
         found += _of_drawn(i, table, joints[i], length)
+    found += (d for d in lengths_of(description, linkage) if LONGER in description["joint"][d.place[1]])
     letters = "uvw" if linkage.in_rows else "xyz"
     for i, table in enumerate(description.get("point", ())):
         name = table["name"]
@@ -131,6 +135,39 @@ def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimens
     # a point may have the name of a joint
     taken = Counter(dimension.name for dimension in found)
     return tuple(replace(d, name=d.key) if taken[d.name] > 1 else d for d in found)
+
+
+def lengths_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimension, ...]:
+    """The length of each moving link of a drawing, whether or not the file says that it is longer."""
+    tables = description.get("joint", ())
+    found = []
+    for i, name in enumerate(link_names(linkage)[: len(tables)]):
+        drawn = drawn_length(tables, i)
+        # without the rounding of a sum
+        value = float(f"{drawn + float(tables[i].get(LONGER, 0.0)):.15g}")
+        group, place = f"link {i + 1}", ("joint", i, LONGER)
+        one = Dimension(
+            name.replace(" ", "_"), place, name, group, linkage.length_unit, value, positive=True, drawn=drawn
+        )
+        found.append(one)
+    return tuple(found)
+
+
+def check_apart(option: str, dimensions: Sequence[Dimension]) -> None:
+    """Raises `RequestError` for a length of a drawing together with a number of a joint at its ends.
+
+    A length counts from the drawn one, which would change with that number.
+    """
+    for length in dimensions:
+        if not length.drawn:
+            continue
+        ends = length.place[1], int(length.place[1]) + 1
+        for other in dimensions:
+            if other.place[0] == "joint" and other.place[1] in ends and not other.drawn:
+                raise RequestError(
+                    f"{option}: {length.name} counts from its drawn length, which {other.name} changes; "
+                    "give one of the two"
+                )
 
 
 def masses_of(description: Mapping[str, Any]) -> tuple[Dimension, ...]:

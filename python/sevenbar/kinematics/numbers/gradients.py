@@ -11,7 +11,7 @@ Source: docs/theory_design.md, (6).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,10 +50,17 @@ class MeasureSlopes:
     scale: float = 1.0
 
 
-def measure_slopes(numbers: Numbers, circuit: Circuit, speed: float) -> tuple[MeasureSlopes, ...]:
-    """Extremes of a circuit's output and its limits, with derivatives; NaN by numbers that open the loop."""
+def measure_slopes(
+    numbers: Numbers, circuit: Circuit, speed: float, names: Sequence[str] | None = None
+) -> tuple[MeasureSlopes, ...]:
+    """Extremes of a circuit's output and its limits, with derivatives; NaN by numbers that open the loop.
+
+    With `names` those that these need, and others perhaps.
+    """
     loop = numbers.loop(circuit.input_column)
-    found = [*_extremes(loop, circuit, speed), *_limits(numbers, circuit)]
+    found = list(_extremes(loop, circuit, speed, names))
+    if names is None:
+        found += _limits(numbers, circuit)
     opening = loop.opening(circuit)
     for one in found:
         one.slopes[opening] = np.nan
@@ -64,12 +71,14 @@ def _apart(values: Floats, turns: bool) -> Floats:
     return short_way(values) if turns else values
 
 
-def _extremes(loop: NumberedLoop, circuit: Circuit, speed: float) -> Iterator[MeasureSlopes]:
+def _extremes(
+    loop: NumberedLoop, circuit: Circuit, speed: float, names: Sequence[str] | None
+) -> Iterator[MeasureSlopes]:
     """Extremes of the output and its rates, swing and time ratio."""
     column, numbers = circuit.output_column, loop.numbers
     unit, scale = shown_in(numbers.linkage, column)
     ends = []
-    if circuit.angle is not None:
+    if circuit.angle is not None and (names is None or not {"swing", "time_ratio"}.isdisjoint(names)):
         for end in ("lowest", "highest"):
             value, at = getattr(circuit.angle, end), getattr(circuit.angle, f"{end}_at")
             here = _rates_at(loop, circuit, at, 0, value, speed)
@@ -98,6 +107,8 @@ def _extremes(loop: NumberedLoop, circuit: Circuit, speed: float) -> Iterator[Me
             continue
         rate = numbers.linkage.unit_of(column) + PER_TIME[order]
         for end in ("lowest", "highest"):
+            if names is not None and f"{quantity}_{end}" not in names:
+                continue
             value, at = getattr(extremes, end), getattr(extremes, f"{end}_at")
             here = _rates_at(loop, circuit, at, order, value, speed)
             if here is not None:

@@ -30,6 +30,7 @@ from sevenbar.kinematics.circuits.circuit_values import Sensitivity
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.loop.rigid import about, zyx_turns
 from sevenbar.kinematics.numbers.dimensions import Dimension, description_of, dimensions_of
+from sevenbar.kinematics.numbers.lengths import across
 from sevenbar.kinematics.numbers.word import Slots, holding_axis, points_of, word_of
 
 #: Part of what one of a number moves [rad, or relative to the size, for a radian or the size of it] that no
@@ -99,8 +100,11 @@ class Numbers:
         self.spun, self.held, self.spins = linkage.held
         #: What one of each number is in radians or lengths.
         self.carried_units = np.array([d.scale for d in self.dimensions])
+        #: What the core's numbers are less than these: lengths of a drawing count from the drawn ones.
+        self.drawn: Floats = np.array([d.drawn for d in self.dimensions])
         form, kinds, values = linkage.form, linkage.kind, self.values(self.nominal)
         slots = Slots({d.place: k for k, d in enumerate(self.dimensions)})
+        slots.across = across(linkage.description.get("joint", ()))
         axes = {
             ball: holding_axis(form, kinds, slots, values, ball, linkage.spin_axes[linkage.joints[ball].name])
             for ball in self.spun
@@ -123,8 +127,8 @@ class Numbers:
         )
 
     def values(self, p: Floats) -> Floats:
-        """The numbers p (k,) in radians and lengths."""
-        return np.asarray(p * self.carried_units)
+        """The numbers p (k,) in radians and lengths, as the word has them."""
+        return np.asarray((p - self.drawn) * self.carried_units)
 
     def loop(
         self,
@@ -209,7 +213,7 @@ class NumberedLoop:
         self.only = range(len(p)) if only is None else only
         points = list(numbers.points)
         #: What the core knows of it.
-        self.core = numbers.core.at(p, input, self.only, [*points, *extra])
+        self.core = numbers.core.at(p - numbers.drawn, input, self.only, [*points, *extra])
 
     def followed(
         self, x: npt.ArrayLike, q: Floats, designs: Floats | None = None, steps: Floats | None = None
@@ -225,7 +229,8 @@ class NumberedLoop:
         scaled = None if steps is None else steps / scales
         start = q / scales
         start[:, self.numbers.held] = 0.0
-        found, sides = self.core.follow(start, inputs, designs, scaled)
+        own = None if designs is None else designs - self.numbers.drawn
+        found, sides = self.core.follow(start, inputs, own, scaled)
         return found * scales, sides
 
     def opening(self, circuit: Circuit) -> Booleans:

@@ -23,6 +23,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,7 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import Form, Place
 from sevenbar.kinematics.loop.joints import KINDS, JointKind, Z
 from sevenbar.kinematics.loop.rigid import axis_to_z, cross, half_turn, pose, unit
+from sevenbar.kinematics.numbers.lengths import LONGER, axis_at
 
 #: A point that a link carries.
 Carried = _core.Carried
@@ -75,7 +77,12 @@ class WordStep:
 
 
 class Slots(dict[Place, int]):
-    """Where numbers of a description stand among all, by their places; what it leaves out is 0."""
+    """Where numbers of a description stand among all, by their places; what it leaves out is 0.
+
+    `across` are the directions of `lengths.across`.
+    """
+
+    across: Mapping[int, Floats] = MappingProxyType({})
 
     def three(self, place: Place) -> Three:
         """Where the numbers of a vector stand."""
@@ -292,9 +299,25 @@ def _drawn(kinds: Sequence[str], slots: Slots) -> _Outer:
     pairs = [_drawn_frames(kinds, slots, i) for i in range(len(kinds))]
     sides = [[side + _turned(kinds, i) for side in pair] for i, pair in enumerate(pairs)]
     before, behind = zip(*sides, strict=True)
-    links = tuple(a.back + b for a, b in zip(behind[:-1], before[1:], strict=True))
+    links = tuple(behind[i].back + _longer(kinds, slots, i) + before[i + 1] for i in range(len(kinds) - 1))
     frames = (*(frame.back for frame in behind[:-1]), Product())
     return before[0], links, behind[-1], frames
+
+
+def _longer(kinds: Sequence[str], slots: Slots, link: int) -> Product:
+    """What a link of a drawing, counted from 0, is longer than drawn, in ground coordinates."""
+    place = ("joint", link, LONGER)
+    if place not in slots:
+        return Product()
+    line = [slots.three(("joint", i, "at")) for i in (link, link + 1)]
+    found = axis_at(kinds, link)
+    if found is None:
+        frame = Product.held(line, 2, None, slots.across[link])
+    else:
+        joint, which = found
+        frame = Product.held(line, 2, _axes(kinds, slots, joint)[which], np.zeros(3))
+    # its z runs against the line
+    return frame + slots.slide(2, place).back + frame.back
 
 
 def _inner(kinds: Sequence[str], slots: Slots, joint: int, row: JointKind) -> tuple[Product, ...]:

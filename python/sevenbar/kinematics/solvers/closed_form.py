@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -46,6 +46,14 @@ class ClosedForm:
         """Crank, coupler and rocker [length]."""
         crank, coupler, rocker = self._core.lengths
         return crank, coupler, rocker
+
+    @cached_property
+    def has_free_side(self) -> bool:
+        """Whether crank or rocker is free at some angle of the other: (4) gives no angle there.
+
+        Source: docs/rssr.md, motion type.
+        """
+        return self._core.has_free_side
 
     def outputs(
         self,

@@ -10,13 +10,16 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.grashof import FourBar, four_bar_of_links, least, slider_crank_of_links
+from sevenbar.kinematics.loop.grashof import (
+    FourBar,
+    four_bar_of_links,
+    least,
+    link_roles,
+    slider_crank_of_links,
+)
 from sevenbar.kinematics.loop.rigid import cross, inverse
 from sevenbar.kinematics.solvers.general import Expanded, expanded
 from sevenbar.kinematics.solvers.plane_and_sphere import SAME, in_plane, sphere_of
-
-#: The links of a loop with four joints, where the first and the last are input and output.
-ROLES = ("input link", "coupler", "output link", "ground")
 
 _Z = np.array([0.0, 0.0, 1.0])
 
@@ -54,7 +57,7 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     if len(moves) != 4 or letters.count("P") > 1 or set(letters) - {"R", "P"}:
         return None
     between = _between(parts.links, inverse(parts.ground) @ parts.base, moves)
-    roles = _roles(names, input, output)
+    roles = link_roles(names, input, output)
     if found is None:
         arcs = [math.atan2(math.hypot(*cross(m[:3, 2], _Z)), float(m[2, 2])) for m in between]
         return None if min(arcs) <= SAME else four_bar_of_links("spherical", least(arcs), names, roles)
@@ -97,13 +100,3 @@ def _between(links: Sequence[Floats], last: Floats, moves: Sequence[int]) -> lis
             now, i = now @ ahead[i], (i + 1) % len(ahead)
         found.append(now)
     return found
-
-
-def _roles(names: Sequence[str], input: str, output: str) -> list[str]:
-    """The names of the links after each of four joints."""
-    # the ground is where the list of joints closes
-    if (input, output) == (names[0], names[-1]):
-        return list(ROLES)
-    if (output, input) == (names[0], names[-1]):
-        return [*ROLES[2::-1], ROLES[3]]
-    return ["link 1", "link 2", "link 3", "ground"]

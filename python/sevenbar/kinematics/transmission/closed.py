@@ -71,11 +71,13 @@ def turns_in_line(coupling: Coupling, letters: str) -> bool:
     return coupling.kind != "ball" and own == "RRR" and letters[coupling.output] in "RP"
 
 
+@np.errstate(invalid="ignore", divide="ignore")
 def turning_cosines(coupling: Coupling, axes: Axes) -> Floats | None:
     """The cosines (2,) of the angle where the input is in line with the ground, by the axes of a pose.
 
     For a slide as the output where it is square to that. Beyond 1 the input does not turn so far. Analytic in
-    the axes, real or complex. `None` for other loops, and for a slide as the input.
+    the axes, real or complex; not finite where two axes coincide. `None` for other loops, and for a slide as
+    the input.
     """
     letters, pin, near, output = axes.parts.letters, coupling.at, coupling.free[0], coupling.output
     if not turns_in_line(coupling, letters):

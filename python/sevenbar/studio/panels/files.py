@@ -1,4 +1,4 @@
-"""New linkages, opening and saving: the gallery, files of one's own, and what can be taken home."""
+"""Opening and saving: the gallery, files of one's own, and what can be taken home."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from sevenbar.description.gallery import names, title
 from sevenbar.errors import SevenbarError
 from sevenbar.studio.panels.controls import Alert, on_change, put
 from sevenbar.studio.panels.downloads import DOWNLOADS, Scene
-from sevenbar.studio.panels.sketching import SketchPanel
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.shelf import ENDING, ChangedError, Shelf
 from sevenbar.studio.worker import Worker
@@ -52,8 +51,6 @@ class FilesPanel:
             self._kind = gui.add_dropdown("export", tuple(DOWNLOADS))
             write = gui.add_button("Export", icon=viser.Icon.DOWNLOAD)
             self._unsaved = Alert(gui)
-        with gui.add_folder("New linkage", expand_by_default=False):
-            SketchPanel(gui, worker, session)
         on_change(self._gallery, worker, "open", self._chosen)
         self._open.on_upload(self._uploaded)
         save.on_click(lambda _: worker.ask("save", lambda: self._download("linkage (TOML)")))

@@ -9,6 +9,7 @@ import numpy as np
 import viser
 
 from sevenbar.arrays import Floats
+from sevenbar.kinematics.loop.rigid import quaternion
 from sevenbar.studio.panels.controls import Alert, on_change, put
 from sevenbar.studio.pictures.stage import Stage
 from sevenbar.studio.state.grips import Grip, grips
@@ -53,6 +54,8 @@ class Handles:
         self._handles: dict[str, viser.TransformControlsHandle] = {}
         self._grips: dict[str, Grip] = {}
         self._shown: tuple[object, ...] = ()
+        #: The plane in which handles are pulled, as the stage has it; `None` in space.
+        self._plane: Floats | None = None
 
     def _turn(self, *, on: bool) -> None:
         self._on, self._shown = on, ()
@@ -99,7 +102,11 @@ class Handles:
             f'<div style="padding:0 12px 8px;font-size:12px;line-height:1.35;color:#555">{escape(note)}</div>'
         )
         self._note.visible = True
-        for key in [key for key in self._handles if key not in self._grips]:
+        planar = session.draft.linkage.is_planar
+        plane = stage.plane if planar else None
+        turned = plane is not self._plane
+        self._plane = plane
+        for key in [key for key in self._handles if turned or key not in self._grips]:
             self._handles.pop(key).remove()
         for key, grip in self._grips.items():
             place = stage.in_scene(grip.at)
@@ -116,6 +123,9 @@ class Handles:
             disable_rotations=True,
             depth_test=False,
             position=place,
+            # square to the plane a pull would take a planar linkage apart
+            active_axes=(True, True, self._plane is None),
+            wxyz=quaternion(np.eye(3) if self._plane is None else self._plane),
         )
         stroke = object()
 

@@ -6,6 +6,7 @@ from html import escape
 
 import numpy as np
 
+from sevenbar.drawing.view import upright
 from sevenbar.kinematics.ranges.reach import Reach, within
 from sevenbar.studio.local_server import LocalServer
 from sevenbar.studio.panels.transport import CYCLE
@@ -53,10 +54,11 @@ def _scene(view: View, reach: Reach | None) -> str:
     server = LocalServer("127.0.0.1", 0)
     try:
         stage = Stage(server.scene)
-        stage.frame_view(view.frame.places)
+        stage.frame_view(view.frame.places, upright(view.linkage))
         stage.set(view.frame, (view.motion.input, view.motion.output), within(view))
         place, target = stage.look()
         server.initial_camera.fov = FIELD
+        server.initial_camera.up = stage.up
         server.initial_camera.position, server.initial_camera.look_at = place, target
         rows = _rows(view, reach)
         stage.pose(view.frame.pose(rows[0]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import viser
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import places_of, skeleton_of
 from sevenbar.drawing.style import ACCELERATION, VELOCITY, circuit_colour
+from sevenbar.drawing.view import upright
 from sevenbar.kinematics.circuits.poses import frames_of
 from sevenbar.kinematics.ranges.reach import within
 from sevenbar.studio.panels.controls import settle
@@ -27,6 +29,10 @@ QUESTIONS = (0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 20.0, 30.0)
 #: Changes of the field of view that make the browser answer, of the camera's place in the scene that are a
 #: person's, and of the picture's shape that are none; shares, and [1].
 NUDGE, MOVED, SAME_SHAPE = 1e-4, 1e-3, 0.01
+
+#: How much larger the picture may be for all circuits than for the one on view; and the distance from the
+#: middle of the scene [1] from which a place is no longer in sight.
+WITH_ALL, OUT_OF_SIGHT = 1.4, 1.5
 
 NO_AXODES = "no link"
 NO_GHOSTS, ALONG, MODES = "none", "positions along the motion", "all modes at this input"
@@ -62,6 +68,7 @@ class Scenery:
         for control in controls:
             control.on_update(lambda _: worker.ask("scenery", lambda: None))
         self._framed: object = None
+        self._motion: object = None
         self._aimed: tuple[Floats, float] | None = None
         self._arrived = False
         client.camera.on_update(self._camera_changed)
@@ -81,7 +88,13 @@ class Scenery:
         aspect = camera.aspect
         place, target = self.stage.look(aspect, self._everything)
         camera.fov = FIELD
+        up = self.stage.up
+        if not np.allclose(camera.up_direction, up):
+            # a camera that looks along its own up is refused, on the way to the new place, too
+            ahead = [np.subtract(target, place), np.subtract(camera.look_at, camera.position)]
+            camera.up_direction = between(ahead)
         camera.position, camera.look_at = place, target
+        camera.up_direction = up
         self._aimed, self._arrived = (place, aspect), False
 
     def watch(self) -> None:
@@ -157,7 +170,7 @@ class Scenery:
         frame = skeleton_of(linkage, frames_of(linkage, zero), linkage.added_points)
         self._everything = frame.places.reshape(-1, 3)
         if self._framed is not draft.text:
-            self.stage.frame_view(self._everything)
+            self.stage.frame_view(self._everything, upright(linkage))
         self.stage.set(frame, (linkage.drive.joint, linkage.drive.output))
         self.stage.pose(frame.places[0])
         self.stage.grey(True)
@@ -174,12 +187,17 @@ class Scenery:
 
     def _take(self, view: View, *, grey: bool) -> None:
         """Draws another view; what was opened anew is checked from where all of it is seen."""
-        fresh = self._framed is not self._session.draft.text
+        own = _places(view)
+        # another circuit of the same motion may lie out of the picture
+        chosen = view.motion is self._motion
+        self._motion = view.motion
+        away = chosen and bool((np.linalg.norm(self.stage.in_scene(own), axis=1) > OUT_OF_SIGHT).any())
+        fresh = away or self._framed is not self._session.draft.text
         if fresh:
-            # of every circuit, so that none is out of the picture when it is chosen
-            every = np.concatenate([each.frame.places.reshape(-1, 3) for each in self._session.views])
-            self._everything = every[np.isfinite(every).all(axis=1)]
-            self.stage.frame_view(self._everything)
+            # with every circuit that makes the picture little smaller, so that it stays when one is chosen
+            every = np.concatenate([_places(each) for each in self._session.views])
+            self._everything = every if _extent(every) <= WITH_ALL * _extent(own) else own
+            self.stage.frame_view(self._everything, upright(view.linkage))
         self.stage.set(view.frame, (view.motion.input, view.motion.output), within(view))
         self.stage.pose(view.frame.pose(self._session.row))
         self._drawn["pose"] = self._session.row
@@ -254,6 +272,24 @@ class Scenery:
                 places.append(view.traces[index].position[view.path.rows][row])
                 words.append(f"{name} {word}: {speeds[row]:.4g} {view.linkage.length_unit}/s")
         self.stage.marks(np.array(places).reshape(-1, 3), words)
+
+
+def _places(view: View) -> Floats:
+    """The places (n, 3) [length] of joints and points along the motion of a view."""
+    places = view.frame.places.reshape(-1, 3)
+    return np.asarray(places[np.isfinite(places).all(axis=1)])
+
+
+def _extent(places: Floats) -> float:
+    """The diagonal of the box round places (n, 3) [length]."""
+    return float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
+
+
+def between(ahead: Sequence[Floats]) -> Floats:
+    """The direction (3,) of a few that is farthest from all of some lines (3,)."""
+    ways = np.concatenate([np.eye(3), np.ones((1, 3)) / np.sqrt(3.0)])
+    along = np.array([np.abs(ways @ line) / np.linalg.norm(line) for line in ahead])
+    return np.asarray(ways[along.max(axis=0).argmin()])
 
 
 def arrow_unit(view: View, sizes: Floats, *, percent: float = 95, longest: float = LONGEST_ARROW) -> float:

@@ -15,7 +15,7 @@ from sevenbar.studio.worker import Worker
 from sevenbar.text.units import LENGTHS
 
 #: What the form begins with.
-FIRST_NAME, FIRST_JOINTS = "My linkage", "R R R R"
+FIRST_NAME, FIRST_KIND, FIRST_JOINTS = "My linkage", "planar_4r", "R R R R"
 
 _Boxes = dict[str, Any]
 
@@ -25,7 +25,8 @@ class SketchPanel:
 
     def __init__(self, gui: viser.GuiApi, worker: Worker, session: Session) -> None:
         self._gui, self._session = gui, session
-        self._kinds = {f"{kind}: {title(kind)}": kind for kind in names()}
+        kinds = (FIRST_KIND, *(kind for kind in names() if kind != FIRST_KIND))
+        self._kinds = {f"{kind}: {title(kind)}": kind for kind in kinds}
         self._name = gui.add_text("new name", FIRST_NAME)
         self._kind = gui.add_dropdown("kind", tuple(self._kinds), hint="with the dimensions of the gallery")
         make = gui.add_button("Make this kind", color="gray", icon=viser.Icon.PLUS)

@@ -159,7 +159,7 @@ def _shown_speed(view: View) -> float:
 def _reading(session: Session, view: View) -> str:
     """Where the linkage stands: input, output, time and mode."""
     circuit = view.circuit
-    second = float(at_row(view.path.output, session.row))
+    second = float(at_row(view.path.output, session.row)) + view.whole_turns(circuit.output_column)
     # a slide at zero is so up to rounding only
     second = 0.0 if abs(second) < ZERO * circuit.size else second
     way = ""
@@ -167,8 +167,8 @@ def _reading(session: Session, view: View) -> str:
         way = " rising" if view.path.sign[int(session.row)] * view.motion.speed > 0 else " falling"
     modes, reach = session.modes(), session.reach
     lines = [
-        f"input {view.input_text(session.row)}{way}",
-        f"output {value_text(view.linkage, circuit.output_column, second)}",
+        f"{view.motion.input} {view.input_text(session.row)}{way}",
+        f"{view.motion.output} {value_text(view.linkage, circuit.output_column, second)}",
         f"t = {view.time_at(session.row):.4g} s",
     ]
     if modes:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from viser import GridHandle, LineSegmentsHandle, SceneApi
+from viser import GridHandle, LineSegmentsHandle, SceneApi, SceneNodeHandle
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.scene import paths, view
@@ -14,7 +14,7 @@ from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import PATH
 from sevenbar.drawing.view import directions
 from sevenbar.kinematics.circuits.extents import Flags
-from sevenbar.kinematics.loop.rigid import rotation_of
+from sevenbar.kinematics.loop.rigid import cross, quaternion, rotation_of
 from sevenbar.studio.pictures.batches import Batches, Labels
 from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, stretched
 from sevenbar.studio.pictures.solids import plan, rgb
@@ -72,6 +72,8 @@ class Stage:
         self._scene = scene
         self._fresh, self._size = False, 1.0
         self.centre, self.scale = np.zeros(3), 1.0
+        #: What is seen as right, up and towards the reader, in columns; as a planar linkage lies, else None.
+        self.plane: Floats | None = None
         self._within: Flags | None = None
         self._grey, self._labels_on, self._axes_on, self._paths_on = False, False, True, True
         self._solids, self._ghosts = Batches(scene, "/linkage"), Batches(scene, "/ghosts", opacity=GHOST)
@@ -92,21 +94,45 @@ class Stage:
         scene.set_up_direction("+z")
         scene.configure_default_lights(enabled=False)
         scene.configure_environment_map(None)
-        scene.add_light_hemisphere(
+        sky = scene.add_light_hemisphere(
             "/lights/sky", intensity=SKY, ground_color=(205, 208, 214), position=(0.0, 0.0, 1.0)
         )
+        self._lights: list[tuple[SceneNodeHandle, tuple[float, float, float]]] = [(sky, (0.0, 0.0, 1.0))]
         for name, (intensity, place) in LIGHTS.items():
-            scene.add_light_directional(f"/lights/{name}", intensity=intensity, position=place)
+            light = scene.add_light_directional(f"/lights/{name}", intensity=intensity, position=place)
+            self._lights.append((light, place))
 
-    def frame_view(self, places: Floats) -> None:
-        """Fixes scale and centre such that places (..., 3) [length] fill the view; lays the floor below."""
+    @property
+    def up(self) -> Floats:
+        """The direction (3,) that is up for the camera."""
+        return np.array([0.0, 0.0, 1.0]) if self.plane is None else self.plane[:, 1]
+
+    def _lie(self, screen: Floats | None) -> None:
+        """Turns the lights to a linkage that is seen in its plane, or back."""
+        plane = None if screen is None else np.column_stack([*screen, cross(screen[0], screen[1])])
+        same = plane is self.plane or (
+            plane is not None and self.plane is not None and np.array_equal(plane, self.plane)
+        )
+        self.plane = plane
+        if same:
+            return
+        for light, place in self._lights:
+            light.position = np.array(place) if plane is None else plane @ place
+
+    def frame_view(self, places: Floats, screen: Floats | None = None) -> None:
+        """Fixes scale and centre such that places (..., 3) [length] fill the view; lays the floor below.
+
+        `screen` (2, 3) is what is seen as right and up of a planar linkage; the floor then is behind it.
+        """
+        self._lie(screen)
+        turned = np.eye(3) if self.plane is None else self.plane
         flat = places.reshape(-1, 3)
         flat = flat[np.isfinite(flat).all(axis=1)]
         low, high = flat.min(axis=0), flat.max(axis=0)
         self.centre = (low + high) / 2
         radius = float(np.linalg.norm(flat - self.centre, axis=1).max())
         self.scale = 1.0 / radius if radius > 0 else 1.0
-        floor = float((low - self.centre)[2]) * self.scale - FLOOR
+        below = float(((flat - self.centre) @ turned[:, 2]).min()) * self.scale - FLOOR
         if self._grid is None:
             self._grid = self._scene.add_grid(
                 "/floor",
@@ -120,9 +146,9 @@ class Stage:
                 fade_distance=4.5,
                 fade_strength=1.6,
                 fade_from="origin",
-                position=(0.0, 0.0, floor),
+                position=(0.0, 0.0, below),
             )
-        self._grid.position = np.array([0.0, 0.0, floor])
+        self._grid.position, self._grid.wxyz = below * turned[:, 2], quaternion(turned)
 
     def in_scene(self, places: Floats) -> Floats:
         """Places (..., 3) [length] in the scene's own frame."""
@@ -139,7 +165,8 @@ class Stage:
         """
         if self._frame is None:
             return np.array([2.0, -2.0, 1.5]), np.zeros(3)
-        right, above = directions(*view(self._frame))
+        seen_as = directions(*view(self._frame)) if self.plane is None else self.plane.T[:2]
+        right, above = seen_as
         back = np.cross(right, above)
         axes = np.stack([right, above, back])
         every = self._drawn() if also is None else np.concatenate([self._drawn(), also])

@@ -16,8 +16,11 @@ from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.circuits.poses import along, at_row, frames_of, joint_frames
 from sevenbar.kinematics.circuits.timed_walk import SAME_INPUT, TimedWalk
+from sevenbar.kinematics.ranges.reach import drawn_row
 from sevenbar.reporting.shown import value_text
 
+#: What an angle may be beyond half a turn by rounding [rad].
+ROUNDED = 1e-8
 #: Poses so much more unlike at the same input than at another [rad] are another circuit's.
 FARTHER = 0.1
 #: What another direction counts beside another place [rad].
@@ -91,6 +94,23 @@ class View(TimedWalk):
         value, column = self.input_at(row), self.circuit.input_column
         turns = self.linkage.turns(column)
         return value_text(self.linkage, column, value % math.tau if turns else value)
+
+    @cached_property
+    def home(self) -> float | None:
+        """The row of the drawn pose; `None` where the circuit has none."""
+        return drawn_row(self)
+
+    def whole_turns(self, column: int) -> float:
+        """The whole turns [rad] that bring a column into (-pi, pi], as drawn or at first; 0 of a slide."""
+        if not self.linkage.turns(column):
+            return 0.0
+        values = self.circuit.q[:, column]
+        if self.home is not None:
+            values = np.array([at_row(along(self.linkage, self.circuit, column), self.home)])
+        known = values[np.isfinite(values)]
+        # a start at half a turn up to rounding stays at +pi
+        first = float(known[0]) if known.size else 0.0
+        return -math.tau * math.ceil((first - math.pi - ROUNDED) / math.tau)
 
     def rates(self, point: int, row: float) -> tuple[Floats, Floats, Floats]:
         """Position, velocity and acceleration (3,) of a named point at a row; NaN where there is none.

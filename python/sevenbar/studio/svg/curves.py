@@ -131,9 +131,9 @@ def _panel(
     name, _, unit = label.removesuffix("]").rpartition(" [")
     below = scale(*reach, max(2, wide // 50), degrees=unit == "deg")
     spans = [each.span(quantity.kind) for each in curves if each is not own]
-    everything = _union([own_span, *(span for span in spans if span is not None)]) or own_span
+    others = [span for span in spans if span is not None]
     least = max(FLAT * quantity.natural(own.view), 1e-9 * max(map(abs, own_span)))
-    low, high = _shown_range(quantity, own_span, everything, least)
+    low, high = _shown_range(quantity, own_span, others, least)
     beside = scale(low, high, max(2, tall // 18), degrees=quantity.unit == "deg")
     places = [(frame.x(below, each.across), frame.y(beside, each.values)) for each in curves]
     x, y = places[circuit]
@@ -205,13 +205,16 @@ def _reach(motion: Motion, places: Sequence[Floats], over: Over) -> Span | None:
     return low - room, high + room
 
 
-def _shown_range(quantity: Quantity, own: Span, everything: Span, least: float) -> Span:
-    """The range of the axis at the left: of places all circuits, of rates the chosen one and some more."""
-    low, high = everything
+def _shown_range(quantity: Quantity, own: Span, others: Sequence[Span], least: float) -> Span:
+    """The range of the axis at the left: the chosen circuit, and what of the others is near it."""
     span = own[1] - own[0]
-    if quantity.order and span > least:
-        # at least a third of the height is left to the chosen circuit
-        low, high = max(low, own[0] - span), min(high, own[1] + span)
+    low, high = own
+    for other in others:
+        if span <= least:
+            low, high = min(low, other[0]), max(high, other[1])
+        elif other[0] < own[1] + span and other[1] > own[0] - span:
+            # at least a third of the height is left to the chosen circuit
+            low, high = min(low, max(other[0], own[0] - span)), max(high, min(other[1], own[1] + span))
     if quantity.is_size:
         low = 0.0
     if high - low <= least:

@@ -85,12 +85,7 @@ class Quantity:
 
     def shift(self, view: View) -> float:
         """The whole turns [deg] that bring the angle's first value into (-180, 180]; 0 for all else."""
-        if self.column is None or self.order or not view.linkage.turns(self.column):
-            return 0.0
-        angles = np.degrees(view.circuit.q[:, self.column])
-        known = angles[np.isfinite(angles)]
-        # a start at half a turn up to rounding stays at +180
-        return -360.0 * math.ceil((float(known[0]) - 180.0 - 1e-6) / 360.0) if known.size else 0.0
+        return 0.0 if self.column is None or self.order else math.degrees(view.whole_turns(self.column))
 
     def natural(self, view: View) -> float:
         """The size of a value that a designer would call neither small nor large, in `unit`."""
@@ -117,21 +112,21 @@ def quantities(motion: Motion) -> tuple[Quantity, ...]:
         name = _free(name, names, "joint" if point is None else "point")
         found.append(Quantity(key, name, unit, order, column, point))
 
-    def add_column(key: str, name: str, column: int) -> None:
+    def add_column(key: str, name: str, column: int, role: str = "") -> None:
         slide = not linkage.turns(column)
         length = linkage.length_unit
         units = (length, f"{length}/s", f"{length}/s²") if slide else ("deg", "rad/s", "rad/s²")
         for order, (word, unit) in enumerate(zip(ORDERS, units, strict=True)):
             shown = "position" if slide and order == 0 else word
-            add(f"{key}.{word}", f"{name} {shown}", unit, order, column=column)
+            add(f"{key}.{word}", f"{name} {shown}{role}", unit, order, column=column)
 
     ends = linkage.columns.index(motion.input), linkage.columns.index(motion.output)
-    add_column("output", "output", ends[1])
+    add_column("output", motion.output, ends[1], " (output)")
     # its values are for those who draw it
     if motion.circuits and coupling_of(linkage, *ends) is not None:
         add(TRANSMISSION, "transmission angle", "deg", 0)
     for column, name in enumerate(linkage.columns):
-        if name != motion.input:
+        if column not in ends:
             add_column(f"column.{name}", name, column)
     for place, point in enumerate(linkage.points):
         for order, word in SIZES.items():

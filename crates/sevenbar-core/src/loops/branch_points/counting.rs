@@ -58,6 +58,12 @@ pub struct Open {
     pub missing: Option<i64>,
 }
 
+impl Open {
+    fn overlaps(&self, other: &Self) -> bool {
+        within(other.from, self.from, self.to) || within(self.from, other.from, other.to)
+    }
+}
+
 /// The account of an input's branch points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Count {
@@ -74,6 +80,13 @@ pub struct Count {
     pub circles: usize,
     /// Ranges that do not balance, none where all do.
     pub open: Vec<Open>,
+}
+
+impl Count {
+    /// A range that balances in another account is settled: open stay those that overlap one of that account's.
+    pub fn settle_those_missing_in(&mut self, other: &[Open]) {
+        self.open.retain(|a| other.iter().any(|b| a.overlaps(b)));
+    }
 }
 
 /// Why nothing was counted.
@@ -141,12 +154,7 @@ pub(crate) fn count(
         };
         let open = std::mem::take(&mut account.open);
         let count = count.get_or_insert_with(|| Count { open: open.clone(), ..Count::default() });
-        // a range that balances on one circle is settled
-        let overlaps = |a: &Open| {
-            open.iter()
-                .any(|b| within(b.from, a.from, a.to) || within(a.from, b.from, b.to))
-        };
-        count.open.retain(overlaps);
+        count.settle_those_missing_in(&open);
         count.column = survey.finder.input;
         count.dead_centres = account.known.dead_centres.len();
         count.complex_branch_points = account.located.iter().filter(|b| !b.real).count();

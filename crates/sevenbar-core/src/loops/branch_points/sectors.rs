@@ -26,6 +26,9 @@ const PARTINGS: [f64; 4] = [0.5, 0.43, 0.59, 0.36];
 /// Least distance of a border from a dead centre [rad].
 pub(super) const CLEAR: f64 = 1e-8;
 
+/// The same from a singular pose, whose input is known to the root of rounding only.
+const CLEAR_OF_SINGULAR: f64 = 1e-6;
+
 /// Inputs of the zeros of the determinant that are known [rad].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Known {
@@ -128,7 +131,7 @@ impl Winding<'_> {
         Some(sectors)
     }
 
-    /// Whether an angle can have a border: its real solutions are all distinct, and no dead centre is near.
+    /// Whether an angle can have a border: its real solutions are all distinct, and no dead centre or singular pose is near.
     fn is_clear(&self, known: &Known, angle: f64, ends: &[Place]) -> bool {
         let slides = &self.survey.finder.slides;
         let all_apart = distinct(slides, ends.iter().map(|p| *p.solution()), SAME_MODE).len() == ends.len();
@@ -138,6 +141,10 @@ impl Winding<'_> {
                 .copied()
                 .chain(self.survey.afar.iter().map(|a| a.input))
                 .all(|at| apart(at, angle) > CLEAR)
+            && known
+                .singular
+                .iter()
+                .all(|at| apart(*at, angle) > CLEAR_OF_SINGULAR)
     }
 
     /// Whether two lists hold the same solutions: each one has a partner in the other list, far nearer than all others and its own.

@@ -166,6 +166,9 @@ impl Arcs {
                 let start = self.points[p].rays[r].start;
                 let mut patience = self.patience;
                 walked_again::follow_on(chain, start, curve, &mut patience, &mut |curve| {
+                    for place in narrow_places(curve) {
+                        self.learn(chain, &place, wished, false);
+                    }
                     let mut all = true;
                     for end in curve.singular_ends() {
                         all &= self.learn(chain, end, wished, true).is_some();

@@ -34,7 +34,9 @@ pub(crate) struct Curves {
     pub change_points: Vec<ChangePoint>,
     pub arcs: Arcs,
     /// Modes at sharp bends, left for the last; and whether they are followed now.
-    unfollowed: Vec<Configuration>,
+    sharp: Vec<Configuration>,
+    /// Modes from which no motion was followed when they were met.
+    not_followed: Vec<Configuration>,
     pub last: bool,
     /// Columns whose limits say what is a change point.
     pub wished: Vec<usize>,
@@ -50,7 +52,8 @@ impl Curves {
             search: Search::new(Completeness::Algebraic),
             change_points: Vec::new(),
             arcs: Arcs::new(),
-            unfollowed: Vec::new(),
+            sharp: Vec::new(),
+            not_followed: Vec::new(),
             last: false,
             wished: wished.to_vec(),
             ahead: Vec::new(),
@@ -116,7 +119,7 @@ impl Curves {
     /// Follows what was left for the last, joins the arcs between change points, and says how freely the loop moves.
     pub fn finish(&mut self, chain: &Chain) {
         self.last = true;
-        for mode in std::mem::take(&mut self.unfollowed) {
+        for mode in std::mem::take(&mut self.sharp) {
             let near = |n: &Node| length(&chain.difference(&n.at, &mode)) * n.inverse_norm < BESIDE_BEND;
             let beside_bend = |c: &Curve| c.nodes.iter().any(|n| n.inverse_norm > SHARP && near(n));
             if self.curves.iter().any(beside_bend) {
@@ -127,6 +130,12 @@ impl Curves {
         self.curves.extend(self.arcs.joined(chain, self.wished[0]));
         self.forget_parts(chain);
         self.change_points = std::mem::take(&mut self.arcs.points);
+        // on a change point, or on a curve that another mode has led to
+        let mut lost = std::mem::take(&mut self.not_followed);
+        lost.retain(|m| {
+            !lies_on_any(chain, &self.curves, m) && !self.change_points.iter().any(|p| p.is_at(chain, m))
+        });
+        self.search.unfollowed += lost.len();
         self.search.unfollowed += self.change_points.iter().map(|p| p.lost).sum::<usize>();
         self.search.unfollowed += self.arcs.not_followed();
         self.name_ends(chain);
@@ -189,7 +198,7 @@ impl Curves {
                 continue;
             }
             if follow::is_far(chain, mode) {
-                self.search.unfollowed += 1;
+                self.not_followed.push(*mode);
                 continue;
             }
             let foreseen = self.foreseen(chain, mode);
@@ -210,7 +219,9 @@ impl Curves {
                 // on a surface every pose is like this one
                 let isolated =
                     chain.columns > rank + 1 && self.arcs.finite < 2 && self.branches(chain, mode, false);
-                self.search.unfollowed += usize::from(!isolated);
+                if !isolated {
+                    self.not_followed.push(*mode);
+                }
                 // a mode next to an isolated pose has a greater rank
                 let pose = self
                     .arcs
@@ -223,12 +234,12 @@ impl Curves {
             if values[rank - 1] < NARROW * values[0] && !self.last {
                 // where a curve bends sharply a start is not known well enough to be met again: from elsewhere first
                 if !self.branches(chain, mode, false) {
-                    self.unfollowed.push(*mode);
+                    self.sharp.push(*mode);
                 }
                 continue;
             }
             if foreseen.is_none() && self.arcs.is_endless() {
-                self.search.unfollowed += 1;
+                self.not_followed.push(*mode);
                 continue;
             }
             let mut direction = [0.0; COLUMNS];
@@ -280,7 +291,7 @@ impl Curves {
             }
             let lost = curve.ends_by(End::Singular) && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
             if curve.nodes.len() < 3 || curve.ends_by(End::Open) || lost {
-                self.search.unfollowed += 1;
+                self.not_followed.push(start.0);
             } else if !self.is_known(chain, &curve) {
                 fresh.push(curve);
             }

@@ -109,9 +109,10 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             out.take(chain, &modes, wished[0]);
         }
         if let (Some(survey), Some(circle)) = (survey, circle) {
-            let mut count = counted(&mut out, chain, &survey, circle, (seed, wished[0]));
-            if let Ok(count) = &mut count {
-                look_into(&mut out, chain, &finder, count);
+            let mut count = counted(&mut out, &survey, circle, wished[0]);
+            if finder.has_free_axes() && is_open(&count) {
+                let other = ModeFinder::about_other_axes(chain, seed);
+                count = counted_again(&mut out, &other, wished[0], count);
             }
             if seed == out.search.columns[0] || count.as_ref().is_ok_and(|c| c.open.is_empty()) {
                 out.search.count = count;
@@ -157,18 +158,24 @@ fn look_beside_paths(curves: &mut Curves, chain: &Chain) {
     }
 }
 
-/// Searches for a pose where the loop closes at no general input, real or not: a structure closes at inputs that no seed has, and so
-/// does a loop in which the input stands still while other joints move.
+/// Searches for poses where the loop closes at no general input, real or not: a structure closes at inputs that no seed has, and so does a
+/// loop in which the input stands still while other joints move, or one whose circuits are all next to nothing wide. One pose of a structure
+/// will do; where the loop moves, each may lie on a circuit of its own.
 fn look_for_a_structure(curves: &mut Curves, chain: &Chain) {
     let column = curves.search.columns[0];
     let finder = ModeFinder::new(chain, column);
-    if finder.algebraic().is_none_or(|a| !a.own().is_empty()) {
+    // where paths were lost the solutions that are left say nothing of the others
+    let closes = finder.algebraic().is_none_or(|a| !a.own().is_empty());
+    if closes && !finder.is_degenerate() {
         return;
     }
-    if let Some(pose) = ALL_FREE.first(chain, column, None, |_| true) {
+    for pose in ALL_FREE.poses(chain, column, None) {
         curves.search.completeness = Completeness::Searched;
         curves.search.count = Err(Uncounted::Searched);
         curves.take(chain, &[pose], curves.wished[0]);
+        if curves.is_empty() {
+            return;
+        }
     }
 }
 
@@ -183,17 +190,41 @@ fn is_doubtful(curves: &Curves) -> bool {
     }
 }
 
-/// The account of a column's branch points; curves that it leads to are followed.
-fn counted(
+/// Whether branch points are not all accounted for.
+fn is_open(count: &Result<Count, Uncounted>) -> bool {
+    !count.as_ref().is_ok_and(|c| c.open.is_empty())
+}
+
+/// The account once more by a finder about other axes: a range that balances by either is settled.
+fn counted_again(
     curves: &mut Curves,
-    chain: &Chain,
-    survey: &Survey,
-    circle: Circle,
-    (column, rising): (usize, usize),
+    finder: &ModeFinder,
+    rising: usize,
+    before: Result<Count, Uncounted>,
 ) -> Result<Count, Uncounted> {
+    let Some(survey) = Survey::new(finder) else {
+        return before;
+    };
+    let Some(circle) = finder.around(SEEDS, Some(&survey.watch)).1 else {
+        return before;
+    };
+    let count = counted(curves, &survey, circle, rising);
+    match (before, count) {
+        (Ok(mut before), Ok(count)) => {
+            before.settle_those_missing_in(&count.open);
+            Ok(before)
+        }
+        (Err(_), Ok(count)) => Ok(count),
+        (before, Err(_)) => before,
+    }
+}
+
+/// The account of a column's branch points; curves that it leads to are followed.
+fn counted(curves: &mut Curves, survey: &Survey, circle: Circle, rising: usize) -> Result<Count, Uncounted> {
+    let (chain, column) = (survey.finder.chain, survey.finder.input);
     let known = known_zeros(curves, chain, survey, column);
     let mut far: Vec<f64> = Vec::new();
-    counting::count(survey, circle, known, &mut |pose| {
+    let mut count = counting::count(survey, circle, known, &mut |pose| {
         if follow::is_far(chain, pose) {
             // a curve is not followed so far, but may turn back there
             far.push(pose.values[column]);
@@ -206,7 +237,11 @@ fn counted(
         let mut known = known_zeros(curves, chain, survey, column);
         known.dead_centres.extend(&far);
         known
-    })
+    });
+    if let Ok(count) = &mut count {
+        look_into(curves, chain, survey.finder, count);
+    }
+    count
 }
 
 /// Searches ranges too narrow to be counted, where solutions meet: in an isolated pose they are real at one input only.

@@ -225,9 +225,9 @@ impl Building {
 /// The chain of a description: lengths relative to the size.
 pub(super) fn reduce(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose]) -> Reduced {
     let count = kinds.len();
-    let (idle, held) = idle_freedoms(kinds, links);
     let mut around = links.to_vec();
     around.push(ground.inverse().then(base));
+    let (idle, held) = idle_freedoms(kinds, &around);
     let described = Described { kinds, held, around };
     let holds: Vec<Hold> = idle.iter().filter_map(|i| described.hold(*i)).collect();
     let line_of = |ball: usize| {

@@ -38,7 +38,7 @@ const MOST_SPINNING_BALLS: usize = 3;
 /// Axes are parallel whose sine is below this, and screws depend on each other to this part of the greatest.
 const PARALLEL: f64 = 1e-9;
 
-/// All idle freedoms, and which joints are held at zero by them.
+/// All idle freedoms, and which joints are held at zero by them; the last link leads back to the first joint.
 pub(crate) fn idle_freedoms(kinds: &[Kind], links: &[Pose]) -> (Vec<Idle>, Vec<bool>) {
     let mut idle = beside_each_other(kinds, links);
     let mut held = vec![false; kinds.len()];
@@ -70,13 +70,15 @@ fn beside_each_other(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
     let count = kinds.len();
     let mut found: Vec<Idle> = Vec::new();
     let mut taken = vec![false; count];
-    // the ground cannot spin, so the last joint and the first are no such pair
     let neighbours = (0..count.saturating_sub(1)).map(|i| (i, i + 1));
     let across = (0..count.saturating_sub(2))
         .filter(|&i| passes_on(&kinds[i..i + 3], &links[i..i + 2]))
         .map(|i| (i, i + 2));
-    for (i, next) in neighbours.chain(across) {
-        let link = links[i + 1..next]
+    // beside the ground all other links move together; between two balls these are a chain
+    let around = (count > 2 && (kinds[count - 1], kinds[0]) != (Kind::Ball, Kind::Ball))
+        .then_some((count.saturating_sub(1), 0));
+    for (i, next) in neighbours.chain(across).chain(around) {
+        let link = links[(i + 1).min(next)..next]
             .iter()
             .fold(links[i], |way, link| way.then(link));
         if taken[i] || taken[next] || !dependent(kinds[i], kinds[next], &link) {
@@ -86,10 +88,10 @@ fn beside_each_other(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
             (Kind::Ball, Kind::Ball) => Idle::BetweenBalls(i),
             (Kind::Ball, _) => Idle::BallOnAxis(next, i),
             (_, Kind::Ball) => Idle::BallOnAxis(i, next),
-            // the last joint is read, so that it moves
-            (Kind::Slide, Kind::Slide) if next + 1 == count => Idle::OneDirection(i, next),
+            // the last joint is read, so that it moves; beside the ground it is held, and the input moves
+            (Kind::Slide, Kind::Slide) if next == 0 || next + 1 == count => Idle::OneDirection(i, next),
             (Kind::Slide, Kind::Slide) => Idle::OneDirection(next, i),
-            _ if next + 1 == count => Idle::OneAxis(i, next),
+            _ if next == 0 || next + 1 == count => Idle::OneAxis(i, next),
             _ => Idle::OneAxis(next, i),
         };
         taken[idle.held().unwrap_or(i)] = true;

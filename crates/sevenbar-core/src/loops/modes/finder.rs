@@ -16,7 +16,9 @@ use super::starts::{distinct, general_count};
 use super::straight::carried;
 use crate::loops::equation::chain::{BALLS, Chain, Configuration, Joint};
 use crate::loops::equation::closure::{JOINTS, Parameters, Slides, Solution, UNKNOWNS};
-use crate::loops::equation::rotations::{Rotation, Z_TO_X, ball_rotation, rotation, short_way, squared_up};
+use crate::loops::equation::rotations::{
+    Rotation, Z_TO_X, ball_rotation, product, rotation, short_way, squared_up, transposed,
+};
 use crate::random::Random;
 use crate::rigid::Pose;
 use num_complex::Complex64;
@@ -79,6 +81,8 @@ pub(crate) struct ModeFinder<'a> {
     pub slides: Slides,
     /// The fixed transforms: after the input, and after each unknown.
     pub transforms: Vec<Pose>,
+    /// The axes of the balls' turns, in the frame of each ball.
+    ball_axes: Rotation,
     /// The closure and the class of its geometry; `None` where there is no algebraic way.
     closure: Option<Closure>,
     /// Found when it is first asked for.
@@ -96,12 +100,23 @@ const Z_TO_Y: Rotation = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]];
 
 impl<'a> ModeFinder<'a> {
     pub fn new(chain: &'a Chain, input: usize) -> Self {
+        Self::with_axes(chain, input, Pose::STILL.rotation, 0x5eed)
+    }
+
+    /// With the turns of balls, and the added joints, about other axes: where those about one choice are singular, as in a gimbal, these
+    /// are not.
+    pub fn about_other_axes(chain: &'a Chain, input: usize) -> Self {
+        Self::with_axes(chain, input, random_pose(&mut Random(0x7117)).rotation, 0xadded)
+    }
+
+    fn with_axes(chain: &'a Chain, input: usize, ball_axes: Rotation, added: u64) -> Self {
         let mut finder = Self {
             chain,
             input,
             unknowns: Vec::new(),
             slides: [false; UNKNOWNS],
             transforms: Vec::new(),
+            ball_axes,
             closure: None,
             generic: OnceCell::new(),
         };
@@ -116,11 +131,12 @@ impl<'a> ModeFinder<'a> {
             match chain.joints[joint] {
                 Joint::Ball(b) => {
                     let (y, x) = (Pose::turning(Z_TO_Y), Pose::turning(Z_TO_X));
-                    before.push(lead);
+                    let axes = Pose::turning(ball_axes);
+                    before.push(lead.then(&axes));
                     before.push(y);
                     before.push(y.inverse().then(&x));
                     finder.unknowns.extend((0..3).map(|k| Unknown::BallTurn(b, k)));
-                    lead = x.inverse().then(&chain.links[joint]);
+                    lead = x.inverse().then(&axes.inverse()).then(&chain.links[joint]);
                 }
                 kind => {
                     algebraic &= !matches!(kind, Joint::Screw(_));
@@ -130,12 +146,12 @@ impl<'a> ModeFinder<'a> {
                 }
             }
         }
-        let mut random = Random(0x5eed);
+        let mut random = Random(added);
         while finder.unknowns.len() < UNKNOWNS {
-            let added = random_pose(&mut random);
-            before.push(lead.then(&added));
+            let pose = random_pose(&mut random);
+            before.push(lead.then(&pose));
             finder.unknowns.push(Unknown::Added);
-            lead = added.inverse();
+            lead = pose.inverse();
         }
         before.push(lead);
         for (slide, unknown) in finder.slides.iter_mut().zip(&finder.unknowns) {
@@ -150,6 +166,11 @@ impl<'a> ModeFinder<'a> {
             finder.closure = Some(Closure::of(transforms, &finder.slides, chain.joints[input_joint]));
         }
         finder
+    }
+
+    /// Whether the axes of some unknowns are of its own choice: those of a ball's turns, and of added joints.
+    pub fn has_free_axes(&self) -> bool {
+        self.unknowns.iter().any(|u| !matches!(u, Unknown::Column(_)))
     }
 
     pub fn completeness(&self) -> Completeness {
@@ -416,7 +437,8 @@ impl<'a> ModeFinder<'a> {
             }
         }
         for (ball, t) in out.balls.iter_mut().zip(&turns) {
-            *ball = ball_rotation(t);
+            let turned = product(&self.ball_axes, &ball_rotation(t));
+            *ball = product(&turned, &transposed(&self.ball_axes));
         }
         Some(out)
     }

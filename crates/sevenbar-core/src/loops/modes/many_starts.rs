@@ -55,7 +55,24 @@ fn anywhere(chain: &Chain, input: usize, value: f64, random: &mut Random) -> Con
 }
 
 impl Starts {
-    /// The first pose found that is `wanted`, with the input held at a value, or at any value and free where none is given.
+    /// The poses to which its places lead, one after the other and some of them again, with the input held at a value, or at any value and
+    /// free where none is given.
+    pub fn poses<'a>(
+        &self,
+        chain: &'a Chain,
+        input: usize,
+        value: Option<f64>,
+    ) -> impl Iterator<Item = Configuration> + 'a {
+        let mut random = Random(self.seed);
+        (0..self.most).filter_map(move |_| {
+            let start = value.unwrap_or_else(|| std::f64::consts::PI * (2.0 * random.uniform() - 1.0));
+            let rough = anywhere(chain, input, start, &mut random);
+            let found = polish_with_spare(chain, value.map(|_| input), &rough);
+            found.filter(|at| chain.counts(at))
+        })
+    }
+
+    /// The first pose found that is `wanted`.
     pub fn first(
         &self,
         chain: &Chain,
@@ -63,13 +80,7 @@ impl Starts {
         value: Option<f64>,
         wanted: impl Fn(&Configuration) -> bool,
     ) -> Option<Configuration> {
-        let mut random = Random(self.seed);
-        (0..self.most).find_map(|_| {
-            let start = value.unwrap_or_else(|| std::f64::consts::PI * (2.0 * random.uniform() - 1.0));
-            let rough = anywhere(chain, input, start, &mut random);
-            let found = polish_with_spare(chain, value.map(|_| input), &rough);
-            found.filter(|at| chain.counts(at) && wanted(at))
-        })
+        self.poses(chain, input, value).find(|at| wanted(at))
     }
 }
 

@@ -156,6 +156,11 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
                 ends.map(|[value, at]| [value / linkage.inward(follower.outer), at + shift[driver.inner]])
             })
         }),
+        output_unit: if linkage.is_slide(follower.outer) {
+            linkage.size
+        } else {
+            1.0
+        },
     };
     if let Some(law) = law {
         let inner_law: Vec<[f64; 4]> = law

@@ -23,7 +23,7 @@ from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Point
-from sevenbar.kinematics.numbers.dimensions import Dimension
+from sevenbar.kinematics.numbers.dimensions import Dimension, check_apart
 
 #: Bounds where none are given, relative to the greater of the linkage's longest dimension and the path's
 #: extent: of lengths that must be positive, and how far others may go from zero.
@@ -104,7 +104,7 @@ def path_task(
     RSSR whose file leaves it out is a dimension like the others; in `follow` it follows from them.
     """
     draft = linkage if isinstance(linkage, Draft) else Draft.of_linkage(linkage)
-    draft, own = _with_point(draft.holding(follow), point)
+    draft, own = _with_point(draft.giving(vary or ()).holding(follow), point)
     wanted, closed = wanted_places(points)
     inputs = wanted_inputs(timing, wanted, closed)
     if phase and inputs is None:
@@ -211,6 +211,7 @@ def _varied(draft: Draft, point: Point, vary: Sequence[str] | None) -> list[Dime
     if not chosen:
         raise RequestError(f"vary: no dimension may change; give some of {', '.join(names)}")
     varied = [d for d in every if d.name in chosen]
+    check_apart("vary", varied)
     motion = draft.linkage.motion(OPENINGS)
     loop = TaskLoop(draft, [d.name for d in varied])
     q = closed_poses(loop, motion.circuits)

@@ -33,6 +33,7 @@ from sevenbar.errors import (
     suggestion,
 )
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.numbers.dimensions import check_apart
 from sevenbar.text.paths import is_file, is_folder, is_there
 
 
@@ -77,7 +78,7 @@ def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskF
     form = check_form(raw, draft.linkage.length_unit, source)
     mistakes = _Mistakes()
     with mistakes.of("follow"):
-        draft = draft.holding(form.follow or ())
+        draft = draft.giving(form.free).holding(form.follow or ())
     free = _free(draft, form, mistakes)
     wants, exact = _wants(draft.linkage, form, folder, mistakes)
     # a want that is wrong moves the places of those behind it
@@ -192,6 +193,8 @@ def _free(draft: Draft, form: TaskForm, mistakes: _Mistakes) -> list[FreeNumber]
                     chosen[d.name] = name, FreeNumber(d.name, low, high)
                 elif _is_pattern(chosen[d.name][0]):
                     raise RequestError(f"{d.name} is matched by '{chosen[d.name][0]}', too; leave one out")
+    with mistakes.of("free"):
+        check_apart("free", [d for d in every if d.name in chosen])
     return [chosen[d.name][1] for d in every if d.name in chosen]
 
 

@@ -7,12 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.design.task.loop import TaskLoop
+from sevenbar.design.task.loop import SAMPLES, TaskLoop
 from sevenbar.design.task.task import FigureWant
 from sevenbar.design.task.transmitting import LeastAngle
+from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.kinematics.measures import gradient, mass_gradient, measures_named
+from sevenbar.kinematics.circuits.motion import Motion, Solvable
+from sevenbar.kinematics.measures import circuit_gradient, circuit_mass_gradient, measures_named
 
 #: Step of the differences that stand in for slopes where a measure has none of its own [of a unit].
 STEP = 1e-5
@@ -33,6 +34,8 @@ class Figures:
         self._angle = LeastAngle(loop) if self.names == ("transmission_lowest",) else None
         #: Whether a value takes a motion that is measured, and counts.
         self.measured = bool(self.names) and not (self._angle and self._angle.known)
+        #: Whether they are all of one circuit, which the general way follows.
+        self._alone = loop.linkage.form != "rssr" and all(one.per == "circuit" for one in self._measures)
         self._columns = [c for c, ball in enumerate(loop.numbers.is_ball) if not ball]
 
     def at(self, values: Floats, anchor: Floats, *, slopes: bool = True) -> tuple[Floats, Floats] | None:
@@ -44,19 +47,19 @@ class Figures:
         if quick is not None:
             return quick
         self.motions += 1 + slopes
-        found = self.circuit(values, anchor)
+        found = self._near(values, anchor)
         if found is None:
             return None
-        motion, circuit = found
+        linkage, circuit, motion = found
         read = list(self.read(motion, circuit).values())
         if not np.isfinite(read).all():
             return None
         by = np.zeros((len(read), len(values)))
         if slopes:
-            known = gradient(motion, circuit.index, only=self.names)
+            known = circuit_gradient(linkage, circuit, only=self.names)
             own = {name: self._loop.all_slopes(values, one.slopes) for name, one in known.items()}
             if self._loop.free_masses:
-                for name, one in mass_gradient(motion, circuit.index, only=self.names).items():
+                for name, one in circuit_mass_gradient(linkage, circuit, only=self.names).items():
                     own[name] = own[name] + self._loop.mass_slopes(one.slopes)
             rest = [i for i, name in enumerate(self.names) if not np.isfinite(own.get(name, np.nan)).all()]
             by = np.array([np.zeros(len(values)) if i in rest else own[n] for i, n in enumerate(self.names)])
@@ -74,11 +77,28 @@ class Figures:
             columns.append(none if up is None or down is None else (up[0] - down[0]) / (2 * step[k]))
         return np.stack(columns, axis=1)
 
-    def read(self, motion: Motion, circuit: Circuit) -> dict[str, float]:
+    def _near(self, values: Floats, anchor: Floats) -> tuple[Solvable, Circuit, Motion | None] | None:
+        """The linkage at numbers (k,), its circuit near a row (columns,), and the motion where that is asked.
+
+        The circuit through the pose that closes at the row's input, without a search for the others.
+        """
+        loop = self._loop
+        q = loop.near(values, anchor) if self._alone else None
+        if q is not None:
+            try:
+                linkage = loop.drawn(values).linkage
+                return linkage, linkage.circuit(q[0], SAMPLES), None
+            except (DescriptionError, RequestError, NotCoveredError):
+                # where it stands still others may be near
+                pass
+        found = self.circuit(values, anchor)
+        return None if found is None else (found[0].linkage, found[1], found[0])
+
+    def read(self, motion: Motion | None, circuit: Circuit) -> dict[str, float]:
         """The measures of a circuit; NaN where one has no value."""
         found = {}
         for measure in self._measures:
-            value = measure.value(motion if measure.per == "linkage" else circuit)
+            value = measure.value(motion if motion and measure.per == "linkage" else circuit)
             found[measure.name] = float(value) if isinstance(value, (int, float)) else np.nan
         return found
 
