@@ -74,7 +74,7 @@ fn beside_each_other(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
     let across = (0..count.saturating_sub(2))
         .filter(|&i| passes_on(&kinds[i..i + 3], &links[i..i + 2]))
         .map(|i| (i, i + 2));
-    // beside the ground all other links move together; between two balls these are a chain
+    // all links but the ground move together; between two balls these are a chain
     let around = (count > 2 && (kinds[count - 1], kinds[0]) != (Kind::Ball, Kind::Ball))
         .then_some((count.saturating_sub(1), 0));
     for (i, next) in neighbours.chain(across).chain(around) {
