@@ -47,6 +47,9 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "deep list of numbers": (lambda: sb.rssr(1, 2, 3, nested()), "a list or a mapping is nested without end"),
     "long name": (lambda: sb.load("rssr").motion(input=LONG), "input: no joint 'xxx"),
     "long path": (lambda: sb.load(LONG), "source: 'xxx"),
+    "long source": (lambda: sb.loads("format = 1", LONG), "source: 'xxx"),
+    "function without a torque": (
+        lambda: loaded().motion(36)[0].free_motion(1.0, torque=lambda _: None), "torque: at a speed: None is not a number"),
     "long unit": (lambda: sb.slider_crank("1 mm", 2, length_unit=LONG), "length_unit: 'xxx"),
     "huge index": (lambda: sb.load("rssr").unit_of(10**5000), "column: a number too large to print is not the number"),
     "column beyond": (lambda: sb.load("rssr").turns(8), "column: 8 is not the number of a column; give 0 to 7"),

@@ -253,12 +253,14 @@ def test_words_of_other_programs_name_a_format():
 
 
 def test_a_model_says_whose_masses_it_holds(tmp_path):
-    from sevenbar.export.mass import DENSITY
+    from sevenbar.forces.solids import DENSITIES
 
     run = sevenbar("export", "rssr", "--to", "adams", cwd=tmp_path)
     assert run.returncode == 0, run.stderr
     assert (tmp_path / "rssr.cmd").exists()
-    assert f"masses are assumed: those of the drawn bodies in steel, {DENSITY:g} kg/m^3" in run.stdout
+    assert (
+        f"masses are assumed: those of the drawn bodies in steel, {DENSITIES['steel']:g} kg/m^3" in run.stdout
+    )
     assert (
         "masses are assumed: 1 kg for every body"
         in sevenbar("export", "rssr", "--to", "mujoco", cwd=tmp_path).stdout

@@ -50,6 +50,50 @@ def test_poses_in_a_plane_are_taken_by_every_pair_of_dyads(table, tmp_path):
     assert min(far) < 1.0
 
 
+THREE_POSES = "x [mm],y [mm],turn_z [rad]\n0,0,0\n4,1,0.4\n7,4,0.9\n"
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ["--moving", "-1,0", "--moving", "2,1"],
+        ["--moving=-1,0", "--moving=0.2cm,1 mm"],
+        ["--moving", "-1, 0", "--moving", "2, 1"],
+    ],
+)
+def test_the_moving_pivots_of_three_poses_are_those_that_are_given(table, given):
+    done = sevenbar("design", "exact", table(THREE_POSES), *given, "--json")
+    assert done.returncode == 0, done.stderr
+    expected = sb.design.exact.planar_poses([(0, 0, 0), (4, 1, 0.4), (7, 4, 0.9)], moving=[(-1, 0), (2, 1)])
+    found = json.loads(done.stdout)["dyads"]
+    assert [dyad["link"]["at"][:2] for dyad in found] == [pytest.approx([-1, 0]), pytest.approx([2, 1])]
+    grounds = [one.ground.at for one in expected.dyads]
+    assert [dyad["ground"]["at"] for dyad in found] == [pytest.approx(at) for at in grounds]
+    assert "(-1, 0)" in sevenbar("design", "exact", table(THREE_POSES), *given).stdout
+
+
+def test_moving_pivots_that_do_not_fit_are_refused(table):
+    for given, says in (
+        (["-1,0"], "moving: [[-1.0, 0.0]] are no pivots; give two or more places x, y in the first pose"),
+        (["-1,0,0", "1,0"], "--moving: '-1,0,0' is not a pivot; give x and y, as in -1,0 or 5mm,2cm"),
+        (["a,b", "1,0"], "--moving: 'a,b' is not a pivot; give x and y, as in -1,0 or 5mm,2cm"),
+    ):
+        words = [word for pivot in given for word in ("--moving", pivot)]
+        assert mistake("design", "exact", table(THREE_POSES), *words) == says
+    five = mistake("design", "exact", table(ON_A_LINE), "--moving", "1,0", "--moving", "2,0")
+    assert five == "moving: with 5 poses the pivots are not free; leave them out"
+    pairs = mistake("design", "exact", table(PAIRS), "--moving", "1,0")
+    assert pairs == "--moving: is for poses in a plane or orientations; the table has pairs of angles"
+
+
+def test_the_moving_axes_of_three_orientations_are_those_that_are_given(table):
+    text = "turn_x [deg],turn_y [deg],turn_z [deg]\n0,0,0\n10,5,20\n25,5,40\n"
+    done = sevenbar("design", "exact", table(text), "--moving", "0,0,1", "--moving", "1,0,1")
+    assert done.returncode == 0, done.stderr
+    wrong = mistake("design", "exact", table(text), "--moving", "0,1", "--moving", "1,0,1")
+    assert wrong == "--moving: '0,1' is not an axis; give x,y,z, as in 0,0,1"
+
+
 @pytest.mark.parametrize(
     ("text", "rows", "options", "expected"),
     [

@@ -15,6 +15,7 @@ from sevenbar.errors import NotCoveredError, OutputError, RequestError
 from sevenbar.reporting.folder import write_columns
 from sevenbar.simulation import report as simulation_report
 from sevenbar.simulation.figures import joints_figure, output_figure, points_figure
+from sevenbar.simulation.prototype import prototype
 from sevenbar.simulation.run import simulate
 
 
@@ -156,11 +157,33 @@ def test_a_linkage_that_cannot_be_simulated_says_why():
         {"name": "second", "kind": "R", "at": (710, 300, 0), "axis": (1, 0, 0)},
     ]
     with pytest.raises(
-        NotCoveredError, match="turn of link 4 about the common axis of second and first: an idle"
+        NotCoveredError,
+        match=r"turn of link 4 about the common axis of second and first: an idle.*"
+        "describe the loop without it: R S U R moves alike, without first",
     ):
         simulate(sb.from_axes(joints), "mujoco", input="crank", output="second")
     with pytest.raises(RequestError, match=r"short does not move \(cannot-assemble\), so no engine"):
         simulate(sb.rssr(M=700, N=700, L1=250, L3=550, D=0, L2=2, name="short"), "mujoco")
+
+
+def test_the_loop_that_is_named_in_place_of_one_with_an_idle_freedom_has_its_motion():
+    ends = (
+        {"name": "crank", "kind": "R", "at": (0, 0, 0), "axis": (0, 0, 1)},
+        {"name": "ball", "kind": "S", "at": (60, 20, 30)},
+        {"name": "slider", "kind": "P", "at": (60, 20, 30), "axis": (1, 0.3, 0.2)},
+    )
+    plate = {"name": "plate", "kind": "E", "at": (60, 20, 30), "axis": (1, 0, 0)}
+    slides = [{"kind": "P", "at": (60, 20, 30), "axis": axis} for axis in ((0, 1, 0), (0, 0, 1))]
+    idle = sb.from_axes([ends[0], plate, *ends[1:]])
+    with pytest.raises(NotCoveredError, match=r"without it: R P P S P moves alike, P P in place of plate$"):
+        simulate(idle, "mujoco", input="crank", output="slider")
+    own = sb.from_axes([ends[0], *slides, *ends[1:]])
+    assert own.kind == "RPPSP"
+    one, other = (linkage.motion(72, output="slider") for linkage in (idle, own))
+    assert one.motion_type == other.motion_type
+    for first, second in zip(one, other, strict=True):
+        assert np.allclose(first["slider"], second["slider"], atol=1e-9)
+    assert len(prototype(own, other[0], 0, 1.0).bodies) == 4
 
 
 @pytest.mark.slow

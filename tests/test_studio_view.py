@@ -20,6 +20,7 @@ from sevenbar.drawing.skeleton import places_of
 from sevenbar.drawing.view import upright
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.poses import along, at_row
+from sevenbar.studio.panels.points import _speeds
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, modes_at, views_of
 from studio_sessions import DOUBLE_ROCKER, distance, drawn, opened, state
@@ -438,3 +439,13 @@ def test_a_corner_at_the_edge_of_rounding_is_a_place_of_one_pose_as_of_all(share
     frame = views_of(motion)[0].frame
     for row in range(0, 60, 7):
         assert places_of(motion.circuits[0].q[row : row + 1], frame).shape[1:] == frame.places.shape[1:]
+
+
+@pytest.mark.parametrize(("link", "held"), [(1, False), (2, True), (3, False)])
+def test_a_point_of_an_idle_link_is_shown_as_one_that_a_convention_holds(link: int, held: bool) -> None:
+    session = opened("rssr")
+    session.add_point("P", link, (1.0, 2.0, 3.0))
+    assert session.view is not None
+    line = _speeds(session.view, len(session.view.linkage.points) - 1)
+    assert f"P on link {link}: fastest" in line
+    assert ("held by convention" in line) is held

@@ -49,7 +49,7 @@ def _signature(_app: Sphinx, what: str, _name: str, obj: Any, *_: Any) -> tuple[
     if what not in ("function", "method"):
         return None
     signature = inspect.signature(obj)
-    known = vars(sb) | getattr(obj, "__globals__", {})
+    known = {name: getattr(sb, name) for name in sb.__all__} | getattr(obj, "__globals__", {})
     parameters = [
         parameter.replace(annotation=_linked(parameter.annotation, known))
         for name, parameter in signature.parameters.items()

@@ -71,7 +71,7 @@ def heed_signals() -> None:
         if signal.getsignal(number) is not signal.SIG_IGN:
             try:
                 signal.signal(number, _heed)
-            except ValueError:  # a thread beside the main one has no signals
+            except ValueError:  # a thread other than the main one has no signals
                 return
 
 

@@ -106,6 +106,7 @@ def loads(content: str, source: str = "text") -> Linkage:
     """
     check_kind("content", content, str, "a text; give that of a TOML file, or load(path)")
     check_kind("source", source, str, "a name; give a text")
+    given_path("source", source)
     return checked(toml_tables(content, source), source)
 
 

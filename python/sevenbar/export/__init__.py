@@ -67,7 +67,7 @@ class Bodies(_FileKind):
 
 Format = Table | Bodies
 
-#: Masses of bodies as they are drawn (`mass.DENSITY`).
+#: Masses of bodies as they are drawn (steel, `forces.solids.DENSITIES`).
 OF_STEEL = "those of the drawn bodies in steel, 7850 kg/m^3"
 
 #: All kinds of file, by the word that asks for them.

@@ -259,6 +259,28 @@ def _spin_rules(
     if len(idle) > len(rules):
         raise NotCoveredError(
             f"simulate: {'; '.join(idle)}: an idle freedom that is not the spin of a link between two "
-            "balls is not held in an engine; describe the loop without it"
+            f"balls is not held in an engine; describe the loop without it{_without_idle(linkage)}"
         )
     return tuple(rules)
+
+
+def _without_idle(linkage: Solvable) -> str:
+    """How a loop of the same motion is written, without freedoms that no engine holds."""
+    spun, held, chains = linkage.held
+    if chains:
+        return ""
+    letters, changes = [], []
+    for i, (joint, own) in enumerate(zip(linkage.joints, linkage.places, strict=True)):
+        freedoms = linkage.column_kinds[own]
+        kept = [
+            "R" if freedom == "turn" else "P"
+            for column, freedom in enumerate(freedoms, own.start)
+            if column not in held
+        ]
+        # of a link between two balls an engine holds the spin
+        if i in spun or len(kept) == len(freedoms):
+            letters.append(joint.kind)
+            continue
+        letters += kept
+        changes.append(f"{' '.join(kept)} in place of {joint.name}" if kept else f"without {joint.name}")
+    return f": {' '.join(letters)} moves alike, {', '.join(changes)}"

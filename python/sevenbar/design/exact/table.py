@@ -83,8 +83,8 @@ class ExactTask:
 
 _FUNCTIONS: Mapping[str, tuple[Callable[..., ExactAnswers], frozenset[str]]] = {
     "rssr": (function_pairs, frozenset({"twist", "zeros", "longest", "samples", "seed"})),
-    "planar": (planar_poses, frozenset({"samples", "seed"})),
-    "spherical": (spherical_orientations, frozenset({"samples", "seed", "radius"})),
+    "planar": (planar_poses, frozenset({"moving", "samples", "seed"})),
+    "spherical": (spherical_orientations, frozenset({"moving", "samples", "seed", "radius"})),
     "bennett": (bennett_poses, frozenset()),
     "rccc": (rccc_poses, frozenset({"samples", "seed"})),
     "cccc": (cc_dyads, frozenset()),

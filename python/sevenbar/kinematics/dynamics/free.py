@@ -283,7 +283,7 @@ def _motor(
         return 0.0, None
     if callable(torque):
         asked = torque
-        return 0.0, Motor(function=lambda speed: float(asked(speed * unit)))
+        return 0.0, Motor(function=lambda speed: finite_number("torque: at a speed", asked(speed * unit)))
     if isinstance(torque, (tuple, list)):
         speeds, torques = _curve("torque", torque, "speeds")
         return 0.0, Motor((speeds / unit, torques))

@@ -87,7 +87,12 @@ def _speeds(view: View, index: int) -> str:
     ]
     if not parts:
         return ""
-    line = escape(f"{point.name} on link {point.link}: {', '.join(parts)}")
+    held = (
+        "; its link's idle freedom is held by convention"
+        if point.link in view.motion.linkage.idle_links
+        else ""
+    )
+    line = escape(f"{point.name} on link {point.link}: {', '.join(parts)}{held}")
     return f'<div style="padding:2px 12px 6px;font-size:12.5px">{line}</div>'
 
 
