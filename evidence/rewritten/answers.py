@@ -134,8 +134,10 @@ def reason(way: Way, drawn: Answers, written: Answers) -> str:
         return "searched, screws and slides within bounds that count from how it is written"
     if drawn.runs_off and written.runs_off:
         return "slides run to infinity, and are followed to a distance from where they are written"
-    if not drawn.circuits and not written.circuits and drawn.words.get("motion type") == "rigid":
+    if not drawn.circuits and not written.circuits:
         return "of a structure that shakes, rank and redundant constraints are known to the root of rounding"
+    if way.rounding > 1 and drawn.is_change:
+        return "places far off are rounded as much more, and the root of that counts at change points"
     if not way.same_ground and {drawn.words.get("idle"), written.words.get("idle")} == {0, 1}:
         return "beside the ground the turn of a link is a motion of all others as one body"
     return ""

@@ -7,7 +7,7 @@ use super::on_curve::lies_on;
 use super::turnings::begun_at;
 use super::walked_again;
 use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, Columns, length, singular_values};
+use crate::loops::equation::dense::{COLUMNS, Columns, dot, length, singular_values};
 use std::f64::consts::TAU;
 
 /// Rounds of arcs that lead to further change points; the curves of a linkage pass a few.
@@ -39,6 +39,9 @@ const BLIND: f64 = 1e6;
 
 /// Norm of the screws' inverse from which a place may lie beside a change point.
 const NARROW: f64 = 1e4;
+
+/// A pose beside a change point lies on the way out whose tangent has a greater cosine with the direction to it.
+const ALONG: f64 = 0.99;
 
 /// A way out of a change point: which one, and which of its rays.
 type Ray = (usize, usize);
@@ -220,6 +223,7 @@ impl Arcs {
             let begin = self.at(chain, first).and_then(|p| {
                 (0..self.done[p].len())
                     .find(|&r| !self.done[p][r] && lies_on(chain, &curve, &self.points[p].rays[r].start.0))
+                    .or_else(|| self.ray_along(chain, p, first))
                     .map(|r| (p, r))
             });
             if let Some((p, r)) = begin {
@@ -227,6 +231,16 @@ impl Arcs {
             }
             self.arcs.push(Arc { curve, ends: [begin, end] });
         }
+    }
+
+    /// The one way out of a point, of those not followed, in whose direction a pose lies; `None` where several or none do.
+    fn ray_along(&self, chain: &Chain, point: usize, at: &Configuration) -> Option<usize> {
+        let off = chain.difference(&self.points[point].at, at);
+        let along = |r: &usize| dot(&self.points[point].rays[*r].tangent(), &off) > ALONG * length(&off);
+        let mut rays = (0..self.done[point].len())
+            .filter(|&r| !self.done[point][r])
+            .filter(along);
+        rays.next().filter(|_| rays.next().is_none())
     }
 
     /// Takes back arcs that run through points that were not known when they were followed.
