@@ -28,7 +28,7 @@ const MOST_ENDLESS: usize = 2;
 /// Nodes of all arcs after which the same holds, 130 MB: many arcs run ever more slowly into places where curves touch.
 const MOST_HELD: usize = 300_000;
 
-/// Places of a curve at which it nearly loses rank that are looked at: where it does all along, rounding makes thousands of them.
+/// Places of a curve at which it nearly loses rank that are searched: where it does all along, rounding makes thousands of them.
 const MOST_NARROW: usize = 64;
 
 /// Curves that near a place ever more slowly are followed farther until so many led to none.

@@ -127,7 +127,7 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
     // where nothing turns
     out.take(chain, &drawings, wished[0]);
     if out.search.found.is_none() && !out.search.columns.is_empty() {
-        look_beside_paths(&mut out, chain);
+        look_where_paths_were_lost(&mut out, chain);
         if out.search.found.is_none() {
             look_for_a_structure(&mut out, chain);
         }
@@ -141,7 +141,7 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
 }
 
 /// Searches where no mode is isolated but paths to others were lost.
-fn look_beside_paths(curves: &mut Curves, chain: &Chain) {
+fn look_where_paths_were_lost(curves: &mut Curves, chain: &Chain) {
     let finder = ModeFinder::new(chain, curves.search.columns[0]);
     if !finder.is_degenerate() {
         return;
