@@ -252,12 +252,12 @@ def _triangles(
         return np.asarray(np.any([region.holds(places) for region in regions], axis=0))
 
     chosen = np.concatenate([np.arange(len(part)) % DENSER == 0 for part in parts])
-    beside = np.concatenate(parts)
-    right = of.plane.kinds_at(beside) == kind
-    beside, chosen = beside[right], chosen[right]
+    samples = np.concatenate(parts)
+    right = of.plane.kinds_at(samples) == kind
+    samples, chosen = samples[right], chosen[right]
     own, corners = np.empty((0, 2)), np.empty((0, 3), dtype=np.int64)
     for _ in range(ROUNDS):
-        own = np.unique(np.concatenate([inner, beside[chosen]]), axis=0)
+        own = np.unique(np.concatenate([inner, samples[chosen]]), axis=0)
         if len(own) < 3 or np.linalg.matrix_rank(own - own[0], tol=of.tolerance) < 2:
             return np.empty((0, 2)), np.empty((0, 3), dtype=np.int64)
         corners = Triangulation(*own.T).triangles.astype(np.int64)
@@ -273,9 +273,9 @@ def _triangles(
         crossing = own[corners[np.any(tests, axis=0) & ~inside]]
         corners = corners[inside]
         low, high = crossing.min(axis=1, initial=1.0), crossing.max(axis=1, initial=0.0)
-        new = np.zeros(len(beside), dtype=bool)
+        new = np.zeros(len(samples), dtype=bool)
         for a, b in zip(low, high, strict=True):
-            new |= ((beside >= a) & (beside <= b)).all(axis=1)
+            new |= ((samples >= a) & (samples <= b)).all(axis=1)
         if not (new & ~chosen).any():
             break
         chosen |= new
