@@ -75,7 +75,7 @@ def grid_of_text(text: str, is_header: IsHeader) -> CellTable | None:
 
 def grid_of_sheet(sheet: WorkbookSheet, is_header: IsHeader) -> CellTable | None:
     """The table of a sheet; `None` where no row of it is a header."""
-    # a remark stands alone in its row: with more cells it is a name that begins as a remark does
+    # a remark has a row to itself: with more cells it is a name that begins as a remark does
     lines = ((line, list(row)) for line, row in enumerate(sheet.rows, 1))
     rows = [(line, cells) for line, cells in lines if any(cells[1:]) or not _is_remark(cells)]
     return _grid(rows, is_header, word="row", remarks=False)
