@@ -29,6 +29,17 @@ def motion(linkage):
     return linkage.motion()
 
 
+def test_a_name_that_is_longer_than_a_line_leaves_room_for_what_is_said_of_it():
+    long = "x" * 190
+    joints = [
+        {"name": f"{long} {i}", "kind": "RRRP"[i], "at": at, "axis": (1, 0, 0) if i == 3 else (0, 0, 1)}
+        for i, at in enumerate([(0, 0, 0), (40, 0, 0), (180, 0, 0), (180, 0, 0)])
+    ]
+    motion = sb.from_axes(joints, name=long).motion(36)
+    for result in (motion, motion.linkage, motion.circuits[0], motion.circuits[0].at(0.3)):
+        assert long in repr(result)
+
+
 def test_a_linkage_prints_its_loop_dimensions_and_drive(linkage):
     assert printed(linkage) == (
         "Linkage 'RSSR of Sun and Zhou'\n"

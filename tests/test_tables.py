@@ -419,3 +419,14 @@ def test_what_a_frame_has_is_not_given_beside_it_and_a_speed_that_is_given_count
         with pytest.raises(RequestError, match="is given in addition to a data frame; leave one out"):
             sb.from_dh(frame, **more)
     assert sb.from_dh(frame, speed="60 rpm").drive.speed == pytest.approx(math.tau, rel=1e-15)
+
+
+@pytest.mark.parametrize("name", ["%s%n", "# 1", "%"])
+def test_a_name_in_a_workbook_that_begins_as_a_remark_does_is_a_name(tmp_path, name):
+    joints = [
+        {"name": f"{name} {i}", "kind": "RRRP"[i], "at": at, "axis": (1, 0, 0) if i == 3 else (0, 0, 1)}
+        for i, at in enumerate([(0, 0, 0), (40, 0, 0), (180, 0, 0), (180, 0, 0)])
+    ]
+    linkage = sb.from_axes(joints)
+    export(linkage.motion(12), None, tmp_path / "named.xlsx")
+    assert sb.load(tmp_path / "named.xlsx").columns == linkage.columns

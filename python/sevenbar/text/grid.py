@@ -75,8 +75,10 @@ def grid_of_text(text: str, is_header: IsHeader) -> CellTable | None:
 
 def grid_of_sheet(sheet: WorkbookSheet, is_header: IsHeader) -> CellTable | None:
     """The table of a sheet; `None` where no row of it is a header."""
-    rows = [(line, list(row)) for line, row in enumerate(sheet.rows, 1)]
-    return _grid(rows, is_header, word="row")
+    # a remark has a row to itself: with more cells it is a name that begins as a remark does
+    lines = ((line, list(row)) for line, row in enumerate(sheet.rows, 1))
+    rows = [(line, cells) for line, cells in lines if any(cells[1:]) or not _is_remark(cells)]
+    return _grid(rows, is_header, word="row", remarks=False)
 
 
 def grid_of_frame(frame: Any) -> CellTable:
@@ -113,8 +115,9 @@ def _grid(
     *,
     word: str = "line",
     decimal_comma: bool = False,
+    remarks: bool = True,
 ) -> CellTable | None:
-    kept = [(n, cells) for n, cells in lines if any(cells) and not cells[0].startswith(("#", "%"))]
+    kept = [(n, cells) for n, cells in lines if any(cells) and not (remarks and _is_remark(cells))]
     heads = [[name_and_unit(cell)[0] for cell in cells] for _, cells in kept]
     first = next((i for i, head in enumerate(heads) if is_header(head)), None)
     if first is None:
@@ -134,6 +137,10 @@ def _grid(
     comma = decimal_comma and _has_decimal_commas(rows)
     lines_of = tuple(number for number, _ in body)
     return CellTable(tuple(names), tuple(units), lines_of, tuple(rows), title, word, comma)
+
+
+def _is_remark(cells: Sequence[str]) -> bool:
+    return bool(cells) and cells[0].startswith(("#", "%"))
 
 
 def _only_units(cells: Sequence[str]) -> bool:

@@ -23,6 +23,9 @@ from sevenbar.text.words import language
 #: Characters of a line.
 WIDTH = 100
 
+#: Characters that a text has at least, after a label that leaves no room: a name may be longer than a line.
+LEAST_WIDTH = 40
+
 #: Dots an inch of a picture in a notebook.
 DPI = 64
 
@@ -104,7 +107,7 @@ def lines(head: str, facts: Iterable[tuple[str, str]]) -> str:
     left = max((len(label) for label, _ in kept), default=0)
     printed = [head]
     for label, text in kept:
-        parts = wrap(text, WIDTH - left - 4, break_long_words=False) or [""]
+        parts = wrap(text, max(WIDTH - left - 4, LEAST_WIDTH), break_long_words=False) or [""]
         printed.append(f"  {label:{left}}  {parts[0]}")
         printed += [f"  {'':{left}}  {part}" for part in parts[1:]]
     return "\n".join(printed)
