@@ -464,7 +464,10 @@ class Linkage(Solvable):
 
     def _has_closed_form(self, method: str) -> bool:
         check_word("method", method, ("auto", "general"))
-        return method == "auto" and self.kind == "RSSR" and not self._closed_form.has_free_side
+        if method != "auto" or self.kind != "RSSR":
+            return False
+        # a crank of no length, within rounding, is no input of the general way
+        return not (self._closed_form.has_free_side and len(self.drivable()) > 1)
 
 
 def closure_tolerance(name: str, value: object) -> float:

@@ -51,7 +51,7 @@ class ClosedForm:
     def has_free_side(self) -> bool:
         """Whether crank or rocker is free at some angle of the other: (4) gives no angle there.
 
-        Source: docs/rssr.md, motion type.
+        Source: docs/rssr.md, (4).
         """
         return self._core.has_free_side
 
