@@ -466,8 +466,8 @@ class Linkage(Solvable):
         check_word("method", method, ("auto", "general"))
         if method != "auto" or self.kind != "RSSR":
             return False
-        # a crank of no length, within rounding, is no input of the general way
-        return not (self._closed_form.has_free_side and len(self.drivable()) > 1)
+        # the general way is not driven by a crank without length, which spins idly as the coupler does
+        return not self._closed_form.has_free_side or len(self._general.idle()) > 1
 
 
 def closure_tolerance(name: str, value: object) -> float:
