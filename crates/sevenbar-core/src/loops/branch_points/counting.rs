@@ -349,7 +349,8 @@ mod tests {
     use super::super::survey::Infinite;
     use super::*;
     use crate::loops::equation::chain::{Chain, Joint};
-    use crate::loops::modes::finder::{ModeFinder, random_pose};
+    use crate::loops::modes::finder::ModeFinder;
+    use crate::loops::modes::starts::random_pose;
     use crate::random::Random;
     use crate::rigid::Pose;
 

@@ -24,7 +24,7 @@ const CUT_TIMES: f64 = 30.0;
 
 /// Norm of the inverse of the screws' matrix at which curves are cut where it grows faster than usual, as where three curves touch. At a
 /// greater norm, rounding hides the curves from each other.
-const HIDDEN: f64 = 1e7;
+const HIDDEN: f64 = 2e6;
 
 /// The same where curves touch, which is sooner: on the way in there, steps are as short as the curves are near. No farther out than the
 /// second number times the sphere's radius.

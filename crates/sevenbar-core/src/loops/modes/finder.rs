@@ -12,13 +12,11 @@ use super::many_starts::{PATHS_LOST, SAME_MODE, same, searched};
 use super::phases::Watch;
 use super::poles::{poles, unwatched_three};
 use super::polish::{Settled, polish};
-use super::starts::{distinct, general_count};
+use super::starts::{distinct, general_count, random_pose};
 use super::straight::carried;
 use crate::loops::equation::chain::{BALLS, Chain, Configuration, Joint};
 use crate::loops::equation::closure::{JOINTS, Parameters, Slides, Solution, UNKNOWNS};
-use crate::loops::equation::rotations::{
-    Rotation, Z_TO_X, ball_rotation, product, rotation, short_way, squared_up, transposed,
-};
+use crate::loops::equation::rotations::{Rotation, Z_TO_X, ball_rotation, product, short_way, transposed};
 use crate::random::Random;
 use crate::rigid::Pose;
 use num_complex::Complex64;
@@ -495,13 +493,5 @@ impl<'a> Algebraic<'a> {
         };
         let solutions = &self.generic.solutions;
         (0..solutions.len()).filter(|&k| own(&solutions[k])).collect()
-    }
-}
-
-pub(crate) fn random_pose(random: &mut Random) -> Pose {
-    let v = std::array::from_fn(|_| 2.0 * random.uniform() - 1.0);
-    Pose {
-        rotation: squared_up(&rotation(crate::rigid::scale(v, 2.0))),
-        translation: std::array::from_fn(|_| 1.2 * random.uniform() - 0.6),
     }
 }

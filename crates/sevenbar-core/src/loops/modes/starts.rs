@@ -10,7 +10,9 @@ use super::geometry::Pattern;
 use super::straight::carried;
 use crate::loops::equation::closure::{JOINTS, Parameters, Slides, Solution, UNKNOWNS};
 use crate::loops::equation::complex_frame::Frame;
+use crate::loops::equation::rotations::{rotation, squared_up};
 use crate::random::Random;
+use crate::rigid::Pose;
 use num_complex::Complex64;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
@@ -257,4 +259,13 @@ fn closed(random: &mut Random, slides: &Slides) -> (Parameters, Solution) {
         solution[0] *= normal.after;
     }
     (parameters, solution)
+}
+
+/// A pose in general position.
+pub(crate) fn random_pose(random: &mut Random) -> Pose {
+    let v = std::array::from_fn(|_| 2.0 * random.uniform() - 1.0);
+    Pose {
+        rotation: squared_up(&rotation(crate::rigid::scale(v, 2.0))),
+        translation: std::array::from_fn(|_| 1.2 * random.uniform() - 0.6),
+    }
 }
