@@ -191,13 +191,13 @@ def test_a_narrow_circuit_that_begins_in_its_own_dead_centre_is_counted() -> Non
     np.testing.assert_allclose(motion.limits, sorted((limit % math.tau, -limit % math.tau)), atol=1e-10)
 
 
-def test_a_circuit_too_narrow_for_one_joint_s_count_is_counted_by_another_joint() -> None:
+def test_a_circuit_too_narrow_for_one_count_is_counted_about_other_axes_or_by_another_joint() -> None:
     """A spherical four-bar nearly stretched: its input swings 2e-5 rad, its dead centres are lost in the rounding of the phases."""
     side = [0.6999182565023351, 0.6394474344764746, 0.27152321780334704, 1.6108889087374223]
     motion = sb.from_dh("RRRR", length=[0] * 4, twist=side, offset=[0] * 4).motion(24)
     assert (motion.completeness, len(motion.circuits)) == ("counted", 1)
     assert motion.search.count is not None
-    assert motion.search.count.joint == "theta_4"
+    assert motion.search.count.joint in ("theta_1", "theta_4")
 
 
 def test_the_paper_s_loop_has_no_branch_point() -> None:
