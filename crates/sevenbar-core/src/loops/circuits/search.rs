@@ -114,7 +114,7 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
                 let other = ModeFinder::about_other_axes(chain, seed);
                 count = counted_again(&mut out, &other, wished[0], count);
             }
-            if seed == out.search.columns[0] || count.as_ref().is_ok_and(|c| c.open.is_empty()) {
+            if seed == out.search.columns[0] || !is_open(&count) {
                 out.search.count = count;
             }
             // a joint that stands still on some is told of, so that another need not be asked
