@@ -21,6 +21,7 @@ mod tests;
 pub use branch_points::counting::{Count, Open, Uncounted};
 pub use circuits::found::{Found, Search};
 pub use description::described_loop::{Loop, NO_SIZE};
+pub use description::joint_values::drawn_at;
 pub use equation::chain::AGREE;
 pub use equation::kinds::Kind;
 pub use forces::acting::{Acting, Body, JointSpring, Load, Place, PointSpring};

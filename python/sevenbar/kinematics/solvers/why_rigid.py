@@ -89,8 +89,8 @@ def reason_of(motion: Motion) -> Reason | None:
 
 
 def _drawn(loop: Solvable) -> _Drawn:
-    """The loop in the drawn pose, all joints at zero."""
-    q = np.zeros((1, len(loop.columns)))
+    """The loop in the drawn pose."""
+    q = loop.drawn_pose[None]
     before, behind = [], []
     now = loop.base
     for i, (joint, own) in enumerate(zip(loop.joints, loop.places, strict=True)):

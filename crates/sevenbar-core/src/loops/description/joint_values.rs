@@ -29,6 +29,15 @@ pub(crate) fn joint_values(linkage: &Loop, at: &Configuration) -> Vec<f64> {
         .collect()
 }
 
+/// The same loop whose joints have these values in the pose of its drawing; without, all are zero there.
+pub fn drawn_at(mut linkage: Loop, values: &[f64]) -> Loop {
+    let drawn = configuration(&linkage, values);
+    if let Some(chain) = &mut linkage.reduced.chain {
+        chain.drawn = drawn;
+    }
+    linkage
+}
+
 /// The configuration with these joint values; the idle spin of links is left out.
 pub(crate) fn configuration(linkage: &Loop, values: &[f64]) -> Configuration {
     let mut out = Configuration::ZERO;
