@@ -133,6 +133,13 @@ def reason(way: Way, drawn: Answers, written: Answers) -> str:
     """Why answers may differ, as docs/not-covered.md has it; empty where they may not."""
     if "searched" in (drawn.words.get("completeness"), written.words.get("completeness")):
         return "searched, screws and slides within bounds that count from how it is written"
+    unfollowed = "some not followed"
+    if drawn.words.get(unfollowed) and written.words.get(unfollowed) and drawn.is_change:
+        return "both say that not all was followed: curves that touch or coincide are joined in part"
+    if all(line.startswith(unfollowed) for line in differences(way, drawn, written)) and (
+        drawn.words.get("completeness") == written.words.get("completeness") == "algebraic"
+    ):
+        return "of circuits that are not counted, whether modes on curves that coincide are met is chance"
     if drawn.runs_off and written.runs_off:
         return "slides run to infinity, and are followed to a distance from where they are written"
     if not drawn.circuits and not written.circuits:
