@@ -41,7 +41,7 @@ class ReadOnly:
 
     def __post_init__(self) -> None:
         for value in vars(self).values():
-            # an abstract Mapping is slow to be told apart, and some results take no longer than that
+            # an abstract Mapping is slow to recognise, and some results take no longer than that
             if type(value) is np.ndarray:
                 value.setflags(write=False)
             elif type(value) in _MAPPINGS:
@@ -80,6 +80,17 @@ def triple(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
     if array.size != 3:
         raise RequestError(f"{name}: {array.size} numbers; give three")
     return float(array[0]), float(array[1]), float(array[2])
+
+
+def place_of_link(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
+    """Three finite numbers that are a place on a link as its points are written, or `RequestError`."""
+    array = finite_array(name, values)
+    if array.size == 2:
+        raise RequestError(
+            f"{name}: 2 numbers; give three, as points are written in files: places of the drawing where "
+            "joints are drawn, as by slider_crank; (0, u, v) in rows, as of four_bar"
+        )
+    return triple(name, array)
 
 
 def finite_number(name: str, value: npt.ArrayLike) -> float:
