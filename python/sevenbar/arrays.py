@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sized
+from collections.abc import Sized
 from decimal import Decimal
 from numbers import Real
+from types import MappingProxyType
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -31,14 +32,22 @@ Words = npt.NDArray[np.str_]
 ROUNDING = 1e-12
 
 
+#: What a result keeps arrays by name in.
+_MAPPINGS = (dict, MappingProxyType)
+
+
 class ReadOnly:
     """A result whose arrays cannot be written, nor those of its copies: they are what was computed."""
 
     def __post_init__(self) -> None:
-        for value in list(vars(self).values()):
-            for array in value.values() if isinstance(value, Mapping) else (value,):
-                if isinstance(array, np.ndarray):
-                    array.setflags(write=False)
+        for value in vars(self).values():
+            # an abstract Mapping is slow to be told apart, and some results take no longer than that
+            if type(value) is np.ndarray:
+                value.setflags(write=False)
+            elif type(value) in _MAPPINGS:
+                for array in value.values():
+                    if type(array) is np.ndarray:
+                        array.setflags(write=False)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         # arrays come out of a pickle, and out of a deep copy, as writable ones

@@ -14,7 +14,6 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.reporting.extents import usable_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
-from sevenbar.reporting.reason_text import reason_text
 from sevenbar.reporting.shown import Shown, drive_text
 from sevenbar.text.words import retold, say
 
@@ -96,8 +95,11 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     facts.append(("motion type", say(motion.motion_type)))
     if sentence := meaning(motion):
         facts.append(("", sentence))
-    if sentence := reason_text(motion):
-        facts.append(("", sentence))
+    if motion.reason is not None:
+        # most loops have none
+        from sevenbar.reporting.reason_text import reason_text
+
+        facts.append(("", reason_text(motion)))
     if near := nearly_moves(motion):
         facts.append(("nearly moves", near))
     facts.append(("circuits", _circuit_count(motion)))

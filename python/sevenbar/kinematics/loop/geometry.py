@@ -196,14 +196,18 @@ class Loop(Drawable):
         check_name("name", self.name)
         check_word("form", self.form, get_args(Form))
         check_word("length_unit", self.length_unit, LENGTHS, "a length unit")
+        # a message is made only where it is needed: each load comes this way
         for name, (kind, what) in _PARTS.items():
-            check_kind(name, getattr(self, name), kind, f"{what}; {_MADE_WITH}")
+            if not isinstance(value := getattr(self, name), kind):
+                check_kind(name, value, kind, f"{what}; {_MADE_WITH}")
         for name, one in (("joints", Joint), ("points", Point)):
             for i, part in enumerate(getattr(self, name)):
-                check_kind(f"{name}[{i}]", part, one, f"a {one.__name__.lower()}; {_MADE_WITH}")
-        for name, many in (("base", ()), ("ground", ()), ("links", (-1,)), ("point_frames", (0,))):
+                if not isinstance(part, one):
+                    check_kind(f"{name}[{i}]", part, one, f"a {one.__name__.lower()}; {_MADE_WITH}")
+        n = len(self.joints)
+        shapes = {"base": (4, 4), "ground": (4, 4), "links": (n - 1, 4, 4), "point_frames": (n, 4, 4)}
+        for name, shape in shapes.items():
             array = getattr(self, name)
-            shape = (*(len(self.joints) + more for more in many), 4, 4)
             if array.shape != shape:
                 raise RequestError(f"{name}: an array of shape {array.shape}, not {shape}; {_MADE_WITH}")
             array.setflags(write=False)

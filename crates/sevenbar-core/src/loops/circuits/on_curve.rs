@@ -9,7 +9,7 @@ pub(crate) fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration)
 }
 
 /// Whether a mode is a place of a curve.
-pub(super) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
+pub(crate) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
     place_on(chain, curve, mode).is_some()
 }
 

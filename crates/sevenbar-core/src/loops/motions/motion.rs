@@ -7,9 +7,11 @@ use crate::loops::branch_points::counting::Uncounted;
 use crate::loops::circuits::curve::Curve;
 use crate::loops::circuits::found::{Found, Search};
 use crate::loops::circuits::known_curves::Curves;
+use crate::loops::circuits::on_curve::lies_on;
 use crate::loops::circuits::search::curves;
 use crate::loops::description::described_loop::Loop;
 use crate::loops::description::joint_values::{configuration, joint_values};
+use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::rotations::short_way;
 use crate::loops::mobility::singular_place::SAME_LIMIT;
 use crate::loops::modes::finder::Completeness;
@@ -304,15 +306,15 @@ pub fn circuit_through(
     let mut curves = Curves::new(&wished);
     curves.take(chain, &[pose], driver.inner);
     curves.finish(chain);
-    let Some(curve) = curves.curves.pop() else {
+    let Some(curve) = through(chain, curves.curves, &pose, driver.inner) else {
         let Some(Held { still, linkage, curves }) = held_at(linkage, &pose) else {
             return Some(Through::Still);
         };
         if linkage.inner(input).is_none() {
             return Some(Through::InputRests(moving(&linkage, &curves.curves)));
         }
-        let through = circuit_through(&linkage, values, input, output, samples, speed, law)?;
-        return Some(match through {
+        let found = circuit_through(&linkage, values, input, output, samples, speed, law)?;
+        return Some(match found {
             Through::Circuit(circuit) => Through::Circuit(Box::new(circuit.holding(still, &linkage, output))),
             other => other,
         });
@@ -327,6 +329,13 @@ pub fn circuit_through(
     let wanted = Wanted { driver, follower, grid, speed, law, keep: true };
     let circuit = circuit(linkage, &passes, &wanted);
     Some(Through::Circuit(Box::new(circuit)))
+}
+
+/// Of the curves that were found from a pose the one it lies on, not one beyond a change point; where several meet there one on which
+/// the input moves.
+fn through(chain: &Chain, curves: Vec<Curve>, pose: &Configuration, input: usize) -> Option<Curve> {
+    let fits = |curve: &Curve| (lies_on(chain, curve, pose), !curve.rests(input));
+    curves.into_iter().max_by_key(fits)
 }
 
 /// The columns that move along some of the curves.
