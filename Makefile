@@ -123,6 +123,10 @@ tutorial: $(VENV)/.installed-dev  ## Write the tutorial's outputs and pictures a
 pages: $(VENV)/.installed-dev  ## Write the tables of keys, commands, modules and the gallery into the pages
 	$(BIN)/python docs/_extensions/written_parts.py
 
+.PHONY: golden
+golden: $(VENV)/.installed-dev  ## Write anew what commands and figures say of the gallery, after a change that is meant
+	$(BIN)/python tests/golden.py
+
 .PHONY: docs
 docs: $(VENV)/.installed-docs  ## The documentation site, into build/site; a warning fails it
 	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet --doctree-dir build/site-pages docs build/site
