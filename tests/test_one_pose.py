@@ -284,3 +284,33 @@ def test_the_middle_of_a_range_lies_in_one_turn(low, high, turn):
     from sevenbar.reporting.shown import turned
 
     assert math.degrees(turned(math.radians(low), math.radians(high))) == pytest.approx(turn)
+
+
+def test_a_textbook_crank_rocker_at_60_degrees_has_the_rates_of_its_loop_equation():
+    # links 40, 120, 80 on a ground of 100, 10 rad/s; rates by the loop equation r2 + r3 = r1 + r4 and its derivatives
+    a, b, c, d, theta, speed = 40.0, 120.0, 80.0, 100.0, math.pi / 3, 10.0
+    linkage = sb.four_bar(a, b, c, d, speed="10 rad/s", points={"C": (2, (50, 30))})
+    for circuit in linkage.loaded(loads=[sb.Load(3, torque=(0, 0, -5))]).motion():
+        pose = circuit.at("60 deg")
+        pin, seat = a * np.exp(1j * theta), d + c * np.exp(1j * pose["theta_4"])
+        along = (seat - pin) / b
+        assert abs(along) == pytest.approx(1, abs=1e-12)
+        rods = np.array([1j * (seat - pin), -1j * (seat - d)])
+        matrix = np.array([rods.real, rods.imag])
+        right = -1j * speed * pin
+        spins = np.linalg.solve(matrix, [right.real, right.imag])
+        right = speed**2 * pin + spins[0] ** 2 * (seat - pin) - spins[1] ** 2 * (seat - d)
+        rates = np.linalg.solve(matrix, [right.real, right.imag])
+        arm = (50 + 30j) * along
+        point = pose.points["C"]
+        velocity = 1j * speed * pin + 1j * spins[0] * arm
+        acceleration = -(speed**2) * pin + (1j * rates[0] - spins[0] ** 2) * arm
+        for link, spin, rate in zip((2, 3), spins, rates, strict=True):
+            assert pose.links[link].velocity[0, 2] == pytest.approx(spin, abs=1e-9)
+            assert pose.links[link].acceleration[0, 2] == pytest.approx(rate, abs=1e-9)
+        assert point.velocity[0, :2] == pytest.approx([velocity.real, velocity.imag], abs=1e-9)
+        assert point.acceleration[0, :2] == pytest.approx([acceleration.real, acceleration.imag], abs=1e-9)
+        # what goes in goes out: the torque of the input has the power of the load
+        assert pose.torque == pytest.approx(5 * spins[1] / speed, abs=1e-9)
+        for rate in rates:
+            assert f"acceleration (0, 0, {rate:.6g}) rad/s^2" in " ".join(str(pose).split())
