@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -314,3 +316,22 @@ def test_a_textbook_crank_rocker_at_60_degrees_has_the_rates_of_its_loop_equatio
         assert pose.torque == pytest.approx(5 * spins[1] / speed, abs=1e-9)
         for rate in rates:
             assert f"acceleration (0, 0, {rate:.6g}) rad/s^2" in " ".join(str(pose).split())
+
+
+def test_the_modes_of_an_arm_closed_by_its_tool_reach_the_wanted_pose():
+    page = (Path(__file__).parent.parent / "docs" / "coming-from.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page.partition("## The poses of a robot arm")[2], re.DOTALL)[
+        :1
+    ]
+    shown = {}
+    exec(code, shown)
+    assert (len(shown["modes"]), shown["modes"].completeness) == (8, "algebraic")
+    for q in shown["modes"].q:
+        place, rotation = shown["home"].astype(float), np.eye(3)
+        for (at, axis), value in zip(shown["arm"][::-1], q[5::-1], strict=True):
+            x, y, z = axis
+            cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+            turn = np.eye(3) + math.sin(value) * cross + (1 - math.cos(value)) * cross @ cross
+            place, rotation = at + turn @ (place - at), turn @ rotation
+        assert place == pytest.approx(shown["wanted"], abs=1e-9)
+        assert rotation == pytest.approx(shown["turn"].as_matrix(), abs=1e-12)
