@@ -251,8 +251,12 @@ def reactions(
 class Rows:
     """Rows of a circuit, of which their loop tells the points of any link; pickled as their numbers."""
 
-    def __new__(cls, numbers: _Floats, offsets: _Floats, speed: float) -> Rows: ...
-    def __reduce__(self) -> tuple[type[Rows], tuple[_Floats, _Floats, float]]: ...
+    def __new__(
+        cls, numbers: _Floats, offsets: _Floats, speed: float, still: tuple[int, float] | None = None
+    ) -> Rows: ...
+    def __reduce__(
+        self,
+    ) -> tuple[type[Rows], tuple[_Floats, _Floats, float, tuple[int, float] | None]]: ...
 
 @final
 class Course:

@@ -216,7 +216,12 @@ def nearly_moves(motion: Motion) -> str:
 
 
 def meaning(motion: Motion) -> str:
-    """A sentence on a motion type that is not a pair of words for input and output."""
+    """A sentence on a type that is not a pair of words for input and output, or met twice over."""
+    if motion.circuits and motion.mobility.met_twice > 0:
+        return say(
+            "a constraint is met twice over along the circuits: the least change of a dimension parts each "
+            "in two, or leaves none"
+        )
     match motion.motion_type:
         case "two-inputs":
             return say(

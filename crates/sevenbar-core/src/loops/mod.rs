@@ -26,6 +26,7 @@ pub use equation::chain::AGREE;
 pub use equation::kinds::Kind;
 pub use forces::acting::{Acting, Body, JointSpring, Load, Place, PointSpring};
 pub use forces::reactions::{Reactions, Seat, reactions};
+pub use mobility::at_rest::Still;
 pub use mobility::idle::Idle;
 pub use modes::assembly::{Modes, modes};
 pub use modes::finder::Completeness;
