@@ -2,9 +2,11 @@
 
 import copy
 import math
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from pyarrow.parquet import read_table
 
 import sevenbar as sb
 from commands import sevenbar
@@ -13,6 +15,7 @@ from sevenbar.description.forms import from_description
 from sevenbar.description.table_writer import linkage_table
 from sevenbar.description.toml_text import toml_text
 from sevenbar.errors import DescriptionError, RequestError
+from sevenbar.export import export
 from sevenbar.kinematics.loop.geometry import Joint
 from sevenbar.studio.state.session import Session
 
@@ -228,3 +231,39 @@ def test_two_numbers_on_the_ground_of_a_drawing_go_from_its_last_joint_to_its_fi
         joints = [{"kind": "R", "at": (off + x, off + y, 0), "axis": (0, 0, 1)} for x, y in bar]
         place = sb.from_axes(joints).motion(12).circuits[0].point(4, (10, 5)).position[0]
         assert place == pytest.approx([off + 80, off - 5, 0])
+
+
+def test_sweeps_pictures_and_models_are_those_of_the_same_linkage(tmp_path):
+    files = {"plain": INVERTED, "reading": reading(INVERTED, READINGS)}
+    swings, pictures, values = [], [], []
+    for name, raw in files.items():
+        file = tmp_path / f"{name}.toml"
+        file.write_text(toml_text(raw))
+        run = sevenbar(
+            "sweep",
+            file,
+            "--over",
+            "pin.x=28:32:3",
+            "--measure",
+            "swing",
+            "--out",
+            tmp_path / f"{name}_sweep",
+        )
+        assert run.returncode == 0, run.stderr
+        table = read_table(tmp_path / f"{name}_sweep" / "part-000000.parquet")
+        swings.append(table["swing_deg"].to_numpy())
+        run = sevenbar("plot", file, "--kind", "skeleton", "--figures", "png", "--out", tmp_path / name)
+        assert run.returncode == 0, run.stderr
+        pictures.append((tmp_path / name / "skeleton.png").read_bytes())
+        linkage = sb.load(file)
+        start = math.radians(READINGS["crank"]) * (name == "reading")
+        (path,) = export(linkage.motion(72), "mjcf", tmp_path / f"{name}.xml", at=start)[:1]
+        joints = {
+            joint.get("name"): float(joint.get("ref")) for joint in ElementTree.parse(path).iter("joint")
+        }
+        values.append([joints[joint.name] for joint in linkage.joints])
+    assert swings[0] == pytest.approx(swings[1])
+    assert pictures[0] == pictures[1]
+    # metres in MuJoCo
+    off = (np.array(values[1]) - values[0] - linkage.drawn_pose * [1, 1, 1e-3, 1]) * [1, 1, 1e3, 1]
+    assert np.abs(off - math.tau * np.round(off / math.tau) * linkage.turning).max() < 1e-6

@@ -30,8 +30,7 @@ def gap(data):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_the_model_starts_closed_in_the_pose_asked_for_and_runs(name, tmp_path):
-    # a step of the model is a millisecond, in which the engine at its own speed turns by 18 degrees
-    motion = sb.load(name).motion(90, speed="60 rpm" if name == "engine" else None)
+    motion = sb.load(name).motion(90)
     circuit = motion.circuits[-1]
     row = np.flatnonzero(circuit.status == "ok")[len(circuit.q) // 5]
     (path,) = export(
@@ -114,3 +113,15 @@ def test_a_dead_centre_has_no_velocities_to_start_with(tmp_path):
     with pytest.raises(RequestError, match="dead centre"):
         export(motion, "mjcf", tmp_path / "model.xml", at=motion.circuits[0].dead_centres[0].input)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_fast_input_has_steps_in_which_the_loop_stays_closed(tmp_path):
+    # at 3000 rpm a millisecond is 18 degrees, and the loop would open by 4 mm of 180
+    (path,) = export(sb.load("engine").motion(90), "mjcf", tmp_path / "engine.xml")[:1]
+    model, data = opened(path)
+    assert model.opt.timestep == pytest.approx(60 / 3000 / 360)
+    for _ in range(720):
+        mujoco.mj_step(model, data)
+    assert gap(data) < 1e-4
+    (path,) = export(sb.load("planar_4r").motion(90), "mjcf", tmp_path / "slow.xml")[:1]
+    assert opened(path)[0].opt.timestep == 1e-3

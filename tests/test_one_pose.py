@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -284,3 +286,52 @@ def test_the_middle_of_a_range_lies_in_one_turn(low, high, turn):
     from sevenbar.reporting.shown import turned
 
     assert math.degrees(turned(math.radians(low), math.radians(high))) == pytest.approx(turn)
+
+
+def test_a_textbook_crank_rocker_at_60_degrees_has_the_rates_of_its_loop_equation():
+    # links 40, 120, 80 on a ground of 100, 10 rad/s; rates by the loop equation r2 + r3 = r1 + r4 and its derivatives
+    a, b, c, d, theta, speed = 40.0, 120.0, 80.0, 100.0, math.pi / 3, 10.0
+    linkage = sb.four_bar(a, b, c, d, speed="10 rad/s", points={"C": (2, (50, 30))})
+    for circuit in linkage.loaded(loads=[sb.Load(3, torque=(0, 0, -5))]).motion():
+        pose = circuit.at("60 deg")
+        pin, seat = a * np.exp(1j * theta), d + c * np.exp(1j * pose["theta_4"])
+        along = (seat - pin) / b
+        assert abs(along) == pytest.approx(1, abs=1e-12)
+        rods = np.array([1j * (seat - pin), -1j * (seat - d)])
+        matrix = np.array([rods.real, rods.imag])
+        right = -1j * speed * pin
+        spins = np.linalg.solve(matrix, [right.real, right.imag])
+        right = speed**2 * pin + spins[0] ** 2 * (seat - pin) - spins[1] ** 2 * (seat - d)
+        rates = np.linalg.solve(matrix, [right.real, right.imag])
+        arm = (50 + 30j) * along
+        point = pose.points["C"]
+        velocity = 1j * speed * pin + 1j * spins[0] * arm
+        acceleration = -(speed**2) * pin + (1j * rates[0] - spins[0] ** 2) * arm
+        for link, spin, rate in zip((2, 3), spins, rates, strict=True):
+            assert pose.links[link].velocity[0, 2] == pytest.approx(spin, abs=1e-9)
+            assert pose.links[link].acceleration[0, 2] == pytest.approx(rate, abs=1e-9)
+        assert point.velocity[0, :2] == pytest.approx([velocity.real, velocity.imag], abs=1e-9)
+        assert point.acceleration[0, :2] == pytest.approx([acceleration.real, acceleration.imag], abs=1e-9)
+        # what goes in goes out: the torque of the input has the power of the load
+        assert pose.torque == pytest.approx(5 * spins[1] / speed, abs=1e-9)
+        for rate in rates:
+            assert f"acceleration (0, 0, {rate:.6g}) rad/s^2" in " ".join(str(pose).split())
+
+
+def test_the_modes_of_an_arm_closed_by_its_tool_reach_the_wanted_pose():
+    page = (Path(__file__).parent.parent / "docs" / "coming-from.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page.partition("## The poses of a robot arm")[2], re.DOTALL)[
+        :1
+    ]
+    shown = {}
+    exec(code, shown)
+    assert (len(shown["modes"]), shown["modes"].completeness) == (8, "algebraic")
+    for q in shown["modes"].q:
+        place, rotation = shown["home"].astype(float), np.eye(3)
+        for (at, axis), value in zip(shown["arm"][::-1], q[5::-1], strict=True):
+            x, y, z = axis
+            cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+            turn = np.eye(3) + math.sin(value) * cross + (1 - math.cos(value)) * cross @ cross
+            place, rotation = at + turn @ (place - at), turn @ rotation
+        assert place == pytest.approx(shown["wanted"], abs=1e-9)
+        assert rotation == pytest.approx(shown["turn"].as_matrix(), abs=1e-12)

@@ -12,6 +12,8 @@ import pytest
 import sevenbar as sb
 from commands import mistake, sevenbar
 from sevenbar.commands.given import numbers
+from sevenbar.design.synthesis.function.generation import USUAL, Synthesis
+from sevenbar.design.wish import wish_of_pairs
 from sevenbar.errors import RequestError
 
 PAIRS = "input_deg,output_deg\n0,0\n20,31\n40,50\n60,64\n"
@@ -174,6 +176,15 @@ def test_a_sine_of_degrees_taken_for_radians_is_hinted_at():
     assert told.index("sin takes radians") < told.index("searching RSSRs")
     for way in ("a smaller least transmission angle", "a greater tolerance", "a narrower range of the input"):
         assert way in told
+
+
+def test_a_search_in_which_nothing_closes_says_that_its_limit_led_it():
+    wish = wish_of_pairs(np.radians([0, 10, 20, 30, 40]), np.radians([0, 3, 9, 20, 35]), title="pairs")
+    nothing = Synthesis("pairs", USUAL, (), (), 16384, 16, 0, wish)
+    with pytest.raises(
+        RequestError, match=r"none closes .* try a smaller least transmission angle \(0 for none\)"
+    ):
+        nothing.required()
 
 
 STOPPED = """

@@ -162,18 +162,20 @@ def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
             ]
             for place in places
         ]
-        head = ["equilibrium", fall.columns[fall.input_column], "vibration [rad/s]", "potential [J]"]
+        unit = "deg" if fall.input_turns else fall.length_unit
+        name = f"{fall.columns[fall.input_column]} [{unit}]"
+        head = ["equilibrium", name, "vibration [rad/s]", "potential [J]"]
         head += ["held by its stop"] * stops
         tables.append(number_table(head, rows, words=[0]))
     return page(say("free motion of {linkage}", linkage=fall.heading), facts, *tables)
 
 
 def _place_text(place: Equilibrium, fall: FreeMotion) -> str:
-    """The input of an equilibrium, of a range of rest both ends."""
+    """The input of an equilibrium, of a range of rest both ends, in the unit of the column's head."""
     ends = [place.input, place.until] if math.isfinite(place.until) else [place.input]
     scale = float(fall.input_turns)
     shown = [_angle(x, turns=fall.input_turns, unit=fall.length_unit, scale=scale) for x in ends]
-    return say(" to ").join(shown)
+    return say(" to ").join(text.rpartition(" ")[0] for text in shown)
 
 
 def _vibration(place: Equilibrium) -> str:

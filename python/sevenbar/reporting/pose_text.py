@@ -248,8 +248,12 @@ def _(pose: OnePose) -> str:
         text = f"at {vector(own[0])} {unit}, velocity {vector(own[1])} {unit}/s"
         facts.append((name, f"{text}, acceleration {vector(own[2])} {unit}/s^2"))
     for link, turning in pose.links.items():
-        spin = settled(linkage, pose, turning.velocity[0], 1, length=False)
-        facts.append((f"link {link}", f"angular velocity {vector(spin)} rad/s"))
+        spin, rate = (
+            settled(linkage, pose, values[0], order, length=False)
+            for order, values in ((1, turning.velocity), (2, turning.acceleration))
+        )
+        text = f"angular velocity {vector(spin)} rad/s, acceleration {vector(rate)} rad/s^2"
+        facts.append((f"link {link}", text))
     if pose.transmission_angle is not None:
         facts.append(("transmission", degrees(pose.transmission_angle)))
     facts.append(("advantage", six_digits(pose.mechanical_advantage)))

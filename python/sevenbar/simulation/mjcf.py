@@ -17,6 +17,7 @@ The input is driven in one of these ways:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
@@ -50,6 +51,10 @@ TIME_CONSTANT = 2.0
 #: How much of a constraint's error MuJoCo answers for: its greatest, so that the loop is as hard as can be.
 IMPEDANCE = 0.9999
 
+#: The longest time step [s] of a file, and how many steps a turn of the input has at least: with fewer a
+#: fast loop opens, by 2 % of its size with 20.
+LONGEST_STEP, STEPS_OF_A_TURN = 1e-3, 360
+
 #: Radius of the drawn bars, as a part of the linkage's size.
 BAR = 0.008
 
@@ -71,18 +76,27 @@ def cut(model: Prototype) -> Cut:
     return Cut(chosen[0], False) if chosen else Cut(len(model.connections) - 1, True)
 
 
-def mjcf(model: Prototype, *, time_step: float = 1e-3, drive: Drive = "flywheel") -> str:
+def _time_step(model: Prototype) -> float:
+    """A step [s] that closes the loop at the speed of the drive: `LONGEST_STEP`, shorter for a fast one."""
+    drive = model.drive
+    turn = math.tau * (1.0 if drive.turns else model.size)
+    return min(LONGEST_STEP, turn / (STEPS_OF_A_TURN * abs(drive.speed))) if drive.speed else LONGEST_STEP
+
+
+def mjcf(model: Prototype, *, time_step: float | None = None, drive: Drive = "flywheel") -> str:
     """The MJCF of a prototype: a text that MuJoCo loads.
 
     Bodies are `link_1` .. and the crosses of universal joints; joints are named as Sevenbar's columns, a
     ball by its own name, the slide of a screw `<joint>.slide`. `loop` is the equality that closes the loop
-    between two sites, `time_step` [s] also sets how fast it comes back. The actuator of a `drive` is `drive`.
+    between two sites, `time_step` [s] also sets how fast it comes back: without one a millisecond, or less
+    for a fast drive. The actuator of a `drive` is `drive`.
 
         >>> import sevenbar as sb
         >>> course, model = sb.simulation.prepared(sb.load("rssr"))
         >>> mjcf(model).splitlines()[0]
         '<mujoco model="RSSR of Sun and Zhou">'
     """
+    time_step = _time_step(model) if time_step is None else time_step
     metre = LENGTHS[model.length_unit]
     root = Element("mujoco", model=model.name)
     root.append(ElementTree.Comment(" made by Sevenbar; lengths in metres, angles in radians "))

@@ -99,7 +99,9 @@ class Synthesis(Printed):
         """What may be given up so that a design is found, and what may be a mistake."""
         faults = {refusal.fault for refusal in self.refusals}
         ways = []
-        if "transmission" in faults or ("error" in faults and self.limits.transmission_lowest):
+        # where nothing closes, the limit has led the search
+        led = not faults or "error" in faults
+        if "transmission" in faults or (led and self.limits.transmission_lowest):
             ways.append("a smaller least transmission angle (0 for none)")
         if "size" in faults or ("error" in faults and self.limits.size is not None):
             ways.append("a wider range of sizes")
