@@ -1,7 +1,9 @@
 """`python -m evidence.rewritten`: one linkage in many ways, every answer compared; writes docs/rewritten.md.
 
-With `--share 0.1` a tenth of the lattice, and no page except where `--out` says; `--only NAME` takes the
-families whose names hold it, and prints every difference.
+With `--record FILE` each linkage is kept in the file once it is compared, and what the file holds is not
+compared again: `--loops 300` compares so many more of the lattice, the same command once more the next, and
+the page is written of all that is kept. `--only NAME` takes the families whose names hold it, and prints
+every difference and no page, except where `--out` says.
 """
 
 from __future__ import annotations
@@ -22,12 +24,12 @@ from evidence.circumstances import circumstances
 from evidence.rewritten.answers import Answers, answers_of, differences, reason
 from evidence.rewritten.drawing import Drawing
 from evidence.rewritten.families import families, lattice
-from evidence.rewritten.page import Compared, written
+from evidence.rewritten.page import Compared, keep, recorded, written
 from evidence.rewritten.ways import ways
 from sevenbar.errors import SevenbarError
 
 #: Loops of the lattice in a whole run, and how many a process takes at once.
-LATTICE, AT_ONCE = 3000, 10
+LATTICE, AT_ONCE = 3000, 5
 
 
 def compared(one: Drawing, seed: int) -> Compared:
@@ -56,30 +58,38 @@ def _family(name: str, seed: int) -> list[Compared]:
     return [compared(families()[name](), seed)]
 
 
-def _lattice(first: int, last: int, seed: int) -> list[Compared]:
-    return [compared(lattice(index, seed), seed) for index in range(first, last)]
+def _lattice(indices: Sequence[int], seed: int) -> list[Compared]:
+    return [compared(lattice(index, seed), seed) for index in indices]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command; 1 where answers differ without a reason."""
     parser = argparse.ArgumentParser(prog="python -m evidence.rewritten", description=__doc__)
-    parser.add_argument("--share", type=float, default=1.0, help="part of the loops on the lattice")
+    parser.add_argument("--loops", type=int, default=LATTICE, help="most loops of the lattice in this run")
+    parser.add_argument("--first", type=int, default=0, help="number of the lattice's first loop")
     parser.add_argument("--only", default="", help="families whose names hold this, and no lattice")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--processes", type=int, default=2)
-    parser.add_argument("--out", type=Path, metavar="FILE", help="the page; docs/rewritten.md of a whole run")
+    parser.add_argument("--record", type=Path, metavar="FILE", help="keeps what is compared, JSON lines")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help="the page; docs/rewritten.md of all families"
+    )
     given = parser.parse_args(arguments)
     made = circumstances("scipy") | {"seed": given.seed}
-    names = [name for name in families() if given.only in name]
-    count = 0 if given.only else round(given.share * LATTICE)
-    rows: dict[str, list[Compared]] = {}
+    rows = recorded(given.record)
+    names = [name for name in families() if given.only in name and name not in rows]
+    known = {one.name for one in rows.get("lattice", ())}
+    left = [index for index in range(given.first, LATTICE) if f"lattice {index}" not in known]
+    indices = [] if given.only else left[: given.loops]
     with ProcessPoolExecutor(given.processes) as pool:
-        for name, found in _in_order(pool, names, count, given.seed):
+        for name, found in _in_order(pool, names, indices, given.seed):
             rows.setdefault(name, []).extend(found)
             for one in found:
+                if given.record:
+                    keep(given.record, name, one)
                 for line in [*one.differences, *(one.explained if given.only else ())]:
                     print(f"{one.name if name == 'lattice' else name}: {line}", flush=True)
-    out = given.out or (ROOT / "docs/rewritten.md" if given.share == 1.0 and not given.only else None)
+    out = given.out or (None if given.only else ROOT / "docs/rewritten.md")
     page = written(rows, made)
     if out is None:
         print(page)
@@ -89,14 +99,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _in_order(
-    pool: ProcessPoolExecutor, names: Sequence[str], count: int, seed: int
+    pool: ProcessPoolExecutor, names: Sequence[str], indices: Sequence[int], seed: int
 ) -> Iterator[tuple[str, list[Compared]]]:
-    firsts = range(0, count, AT_ONCE)
     yield from zip(names, pool.map(partial(_family, seed=seed), names), strict=True)
-    pieces = pool.map(
-        _lattice, firsts, [min(first + AT_ONCE, count) for first in firsts], [seed] * len(firsts)
-    )
-    yield from (("lattice", found) for found in pieces)
+    pieces = [indices[k : k + AT_ONCE] for k in range(0, len(indices), AT_ONCE)]
+    yield from (("lattice", found) for found in pool.map(partial(_lattice, seed=seed), pieces))
 
 
 if __name__ == "__main__":

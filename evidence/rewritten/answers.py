@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from scipy.optimize import linear_sum_assignment
+
 from evidence.rewritten.ways import Way
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
@@ -120,18 +122,24 @@ def differences(way: Way, drawn: Answers, written: Answers) -> Iterator[str]:
     else:
         yield from _apart("limits", drawn.limits, written.limits, near, way)
     yield from _numbers("four-bar", drawn.four_bar, written.four_bar, near, way)
-    if len(drawn.circuits) == len(written.circuits):
-        rest = list(written.circuits)
-        for one in drawn.circuits:
-            best = min(rest, key=lambda other: _distance(one, other))
-            rest.remove(best)
-            yield from _numbers("circuit", one, best, near, way)
+    if drawn.circuits and len(drawn.circuits) == len(written.circuits):
+        apart = [[_distance(one, other) for other in written.circuits] for one in drawn.circuits]
+        # all pairs at once: of circuits with equal ranges the nearest may be another's
+        for i, k in zip(*linear_sum_assignment(apart), strict=True):
+            yield from _numbers("circuit", drawn.circuits[i], written.circuits[k], near, way)
 
 
 def reason(way: Way, drawn: Answers, written: Answers) -> str:
     """Why answers may differ, as docs/not-covered.md has it; empty where they may not."""
     if "searched" in (drawn.words.get("completeness"), written.words.get("completeness")):
         return "searched, screws and slides within bounds that count from how it is written"
+    unfollowed = "some not followed"
+    if drawn.words.get(unfollowed) and written.words.get(unfollowed) and drawn.is_change:
+        return "both say that not all was followed: curves that touch or coincide are joined in part"
+    if all(line.startswith(unfollowed) for line in differences(way, drawn, written)) and (
+        drawn.words.get("completeness") == written.words.get("completeness") == "algebraic"
+    ):
+        return "of circuits that are not counted, whether modes on curves that coincide are met is chance"
     if drawn.runs_off and written.runs_off:
         return "slides run to infinity, and are followed to a distance from where they are written"
     if not drawn.circuits and not written.circuits:
@@ -167,8 +175,12 @@ def _numbers(name: str, one: Numbers, other: Numbers, near: float, way: Way) -> 
 
 
 def _distance(one: Numbers, other: Numbers) -> float:
+    """How unlike two circuits are: of each number the relative gap, at most 1."""
     found = 0.0
     for key in one.keys() & other.keys():
         a, b = one[key], other[key]
-        found += 10.0 if (a is None) != (b is None) else 0.0 if a is None or b is None else abs(a - b)
+        if a is None or b is None:
+            found += a is not b
+        else:
+            found += min(abs(a - b) / max(1.0, abs(a)), 1.0)
     return found

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import Any
 
 from evidence.circumstances import in_words
@@ -25,12 +27,29 @@ class Compared:
     seconds: float = 0.0
 
 
+def recorded(record: Path | None) -> dict[str, list[Compared]]:
+    """What a record holds, by the name of the family; nothing where there is no file yet."""
+    rows: dict[str, list[Compared]] = {}
+    if record is not None and record.exists():
+        for line in record.read_text(encoding="utf-8").splitlines():
+            kept = json.loads(line)
+            rows.setdefault(kept.pop("family"), []).append(Compared(**kept))
+    return rows
+
+
+def keep(record: Path, family: str, one: Compared) -> None:
+    """Writes a line to a record."""
+    with record.open("a", encoding="utf-8") as file:
+        file.write(json.dumps({"family": family, **asdict(one)}) + "\n")
+
+
 def written(rows: Mapping[str, Sequence[Compared]], made: Mapping[str, Any]) -> str:
     """The page as Markdown."""
     parts: dict[str, list[Compared]] = {}
     for name, found in rows.items():
         parts.setdefault(name.split()[0].rstrip(",") if name != "lattice" else name, []).extend(found)
     every = [one for found in rows.values() for one in found]
+    least = min((one.ways for one in every), default=0)
     lines = [
         "# One linkage, written in many ways",
         "",
@@ -43,7 +62,7 @@ def written(rows: Mapping[str, Sequence[Compared]], made: Mapping[str, Any]) -> 
         f"`python -m evidence.rewritten` writes this page ({in_words(made)}; seed {made['seed']}).",
         "",
         f"{len(rows) - ('lattice' in rows)} named linkages, {len(rows.get('lattice', ()))} random loops with "
-        f"places and axes in whole numbers; {sum(one.ways for one in every):,} ways, "
+        f"places and axes in whole numbers; {sum(one.ways for one in every):,} ways, at least {least} each, "
         f"{sum(one.seconds for one in every) / 60:.0f} min of processor time. "
         f"{sum(bool(one.differences) for one in every)} linkages differ without a known reason.",
         "",

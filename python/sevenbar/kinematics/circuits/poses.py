@@ -108,10 +108,22 @@ def frames_of(linkage: Loop, q: Floats) -> Floats:
     return np.stack(found, axis=1)
 
 
+def _frames_back(linkage: Loop, q: Floats) -> Floats:
+    """The same by the joints after each link, from the ground back."""
+    now = linkage.ground @ inverse(linkage.joints[-1].motion(q[:, linkage.places[-1]]))
+    found = []
+    last = len(linkage.links) - 1
+    for i in range(last, -1, -1):
+        found.append(now @ inverse(linkage.links[i]))
+        now = found[-1] @ inverse(linkage.joints[i].motion(q[:, linkage.places[i]]))
+    return np.stack(found[::-1], axis=1)
+
+
 def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
     """The frames (n, joints, 4, 4) of each joint on the link before it and on the link after it.
 
-    `frames` (n, moving links, 4, 4) are those of the links, as `frames_of` gives them.
+    `frames` (n, moving links, 4, 4) are those of the links, as `frames_of` gives them. A joint that slides is
+    where it is drawn on both, whatever it reads there.
     """
     rows, links = frames.shape[:2]
     before, after = np.empty((2, rows, links + 1, 4, 4))
@@ -119,14 +131,22 @@ def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
     after[:, :-1] = frames
     for i, link in enumerate(linkage.links):
         before[:, i + 1] = product(frames[:, i], link)
+    for i, joint in enumerate(linkage.joints):
+        if joint.value:
+            side = after if joint.backwards else before
+            side[:, i] = side[:, i] @ joint.to_drawn
     return before, after
 
 
 def frames_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:
     """The frames (n, moving links, 4, 4) of the links along rows of a circuit; NaN where it has no pose."""
-    frames = frames_of(linkage, circuit.q[rows])
-    # where a ball's turns have no value, the links still have a place
-    lost = np.flatnonzero(np.isnan(frames).any(axis=(1, 2, 3)))
+    q = circuit.q[rows]
+    frames = frames_of(linkage, q)
+    # where a ball's turns have no value, the links still have a place: those beyond it by the ground
+    has_pose = ~np.isnan(q).all(axis=1)
+    part = np.flatnonzero(has_pose & np.isnan(frames).any(axis=(1, 2, 3)))
+    frames[part] = np.where(np.isnan(frames[part]), _frames_back(linkage, q[part]), frames[part])
+    lost = np.flatnonzero(has_pose & np.isnan(frames).any(axis=(1, 2, 3)))
     for i in range(len(linkage.links) if lost.size else 0):
         x, y, z = (float(value) for value in inverse(linkage.point_frames[i])[:3, 3])
         frames[lost, i] = pose(

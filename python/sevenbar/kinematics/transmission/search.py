@@ -28,6 +28,9 @@ from sevenbar.kinematics.transmission.angle import ALIKE, Angles, Coupling, angl
 from sevenbar.kinematics.transmission.axes import axes_along, best_row, ratios_at_rest
 from sevenbar.kinematics.transmission.closed import closed_extremes
 
+#: Values that differ from their neighbours by less than this part of the greatest are alike up to rounding.
+FLAT = 1e-12
+
 #: Rows in a turn between which extremes are searched, whatever the motion's samples; on a pass; and most.
 SAMPLES, ON_A_PASS, MANY = 360, 72, 19_440
 
@@ -112,7 +115,10 @@ class _Search:
                 # once more over the start, which may be an extreme itself
                 x, s = np.append(x, x[-1] + x[1] - x[0]), np.append(s, s[1])
             u = stretch.place(x)
-            peaks = (s[1:-1] - s[:-2]) * (s[1:-1] - s[2:]) >= 0
+            before, after = s[1:-1] - s[:-2], s[1:-1] - s[2:]
+            # where it is alike up to rounding a row itself has the extreme
+            flat = np.maximum(np.abs(before), np.abs(after)) < FLAT * np.nanmax(np.abs(s))
+            peaks = (before * after >= 0) & ~flat
             if not stretch.round:
                 peaks[[0, -1]] = True
             found += [(number, stretch, u[i], u[i + 2]) for i in np.flatnonzero(peaks)]
@@ -126,8 +132,9 @@ class _Search:
         rows = self.rows(Law.of(np.arange(float(every.size)), every, 1.0, 0.0))
         known = values(rows)
         found, start = [], 0
+        on_pass = {number: np.flatnonzero(rows.branch == number) for number in set(passes)}
         for number, own in zip(passes, inputs, strict=True):
-            here = np.flatnonzero(rows.branch == number)
+            here = on_pass[number]
             place = here[start : start + own.size] if here.size == every.size else np.array([], dtype=int)
             start += own.size
             found.append(known[place] if place.size else np.full((own.size, *known.shape[1:]), np.nan))

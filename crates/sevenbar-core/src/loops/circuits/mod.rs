@@ -8,7 +8,7 @@ pub(super) mod found;
 pub(super) mod join;
 pub(super) mod known_curves;
 mod meetings;
-mod on_curve;
+pub(super) mod on_curve;
 pub(super) mod search;
 mod sphere;
 pub(super) mod turnings;

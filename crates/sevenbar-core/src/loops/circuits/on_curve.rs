@@ -4,12 +4,12 @@ use super::curve::{self, Curve, Node, REACH};
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::stopping;
 
-pub(super) fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
+pub(crate) fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
     curves.iter().any(|c| lies_on(chain, c, mode))
 }
 
 /// Whether a mode is a place of a curve.
-pub(super) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
+pub(crate) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
     place_on(chain, curve, mode).is_some()
 }
 
