@@ -102,6 +102,26 @@ def test_a_front_of_a_spherical_four_bar_is_that_of_brute_force():
     assert max(point.design.optimality for point in front.points) < 1e-9
 
 
+@pytest.mark.slow
+def test_a_front_over_lengths_of_a_drawing_is_that_of_the_law_of_cosines():
+    # input link 40, coupler 98.5, output link 80, ground 90 as drawn
+    places = {"a": (0, 0, 0), "b": (0, 40, 0), "c": (90, 80, 0), "d": (90, 0, 0)}
+    joints = [{"name": name, "kind": "R", "at": at, "axis": (0, 0, 1)} for name, at in places.items()]
+    free = (FreeNumber("input_link", 25, 60), FreeNumber("coupler", 70, 140))
+    wants = FigureWant("swing", 70.0), FigureWant("transmission_lowest", "great")
+    front = pareto(DesignTask(Draft.of_linkage(sb.from_axes(joints)), free, wants), 1, 2, points=3, starts=2)
+    crank, coupler = np.meshgrid(np.linspace(25, 60, 701), np.linspace(70, 140, 1401), indexing="ij")
+    with np.errstate(invalid="ignore"):
+        swing, lowest = planar(crank, 80.0, coupler, 90.0)
+    # those whose crank turns
+    turns = 2 * (np.minimum(crank, 80) + np.maximum(coupler, 90)) <= crank + 80 + coupler + 90
+    lowest = np.where(turns & (crank <= np.minimum(coupler, 80)), lowest, -1.0)
+    assert len(front.points) == 3
+    assert front.values[0][0] == pytest.approx(0, abs=1e-6)
+    for off, angle in front.values:
+        assert angle == pytest.approx(best(swing, lowest, 70, off), abs=0.1)
+
+
 @pytest.mark.parametrize("slope", [1.0, 1e2, 1e4])
 def test_no_room_is_missed_for_a_lower_height_however_steep(slope):
     # least t - z with z <= 1 - curve: the room's multiplier is the slope

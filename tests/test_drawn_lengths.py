@@ -12,6 +12,7 @@ import sevenbar as sb
 from sevenbar.commands.cli import app
 from sevenbar.description.draft import Draft
 from sevenbar.description.forms import from_description
+from sevenbar.design.task import DesignTask, FigureWant, FreeNumber
 from sevenbar.design.task.file.reader import task_file
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.tolerance.sensitivities import sensitivities
@@ -262,6 +263,14 @@ def test_a_design_task_frees_a_length_of_a_drawing(tmp_path) -> None:
     assert changed.lengths == pytest.approx((INPUT + 5, COUPLER, OUTPUT))
 
 
+def test_a_task_in_python_frees_a_length_and_refuses_what_is_no_dimension() -> None:
+    want = FigureWant("swing", 70.0)
+    task = DesignTask(Draft.of_linkage(planar()), (FreeNumber("input_link", 30, 60),), (want,))
+    assert "input_link" in {one.name for one in task.draft.dimensions}
+    with pytest.raises(RequestError, match="dimension: 'inputlink' is not a dimension"):
+        DesignTask(Draft.of_linkage(planar()), (FreeNumber("inputlink", 30, 60),), (want,))
+
+
 STOP = '\n[[stop]]\njoint = "{joint}"\nrange = ["-40deg", "60deg"]\n'
 
 
@@ -286,3 +295,51 @@ def test_a_stop_that_nothing_holds_is_refused_until_a_must_holds_it(tmp_path) ->
         task_file(written(tmp_path, text, STOP.format(joint="d")))
     held = text + '[[must]]\nkind = "range"\njoint = "d"\nrange = "-40:60deg"\n'
     assert task_file(written(tmp_path, held, STOP.format(joint="d"))).task.musts
+
+
+def test_stops_of_a_longer_link_end_the_motion_where_the_four_bar_of_these_lengths_meets_them(
+    tmp_path,
+) -> None:
+    # joints count from the drawn pose, whatever the lengths
+    draft = Draft.of_linkage(with_lengths(planar(), input_link=45.0))
+    (tmp_path / "four.toml").write_text(
+        draft.toml() + '\n[[stop]]\njoint = "d"\nrange = ["-12deg", "15deg"]\n'
+    )
+    b, c, d = np.array([0.0, INPUT]), planar_place_c(0.0, INPUT), np.array([GROUND, 0.0])
+    drawn = np.arctan2(*(c - d)[::-1])
+    assert np.hypot(*(c - b)) == pytest.approx(COUPLER)
+    ends = []
+    for circuit in sb.load(str(tmp_path / "four.toml")).motion().circuits:
+        for span in circuit.allowed.spans:
+            ends += [span.start, span.end]
+    assert ends
+    for value in ends:
+        off = np.arctan2(*(planar_place_c(value, 45.0) - d)[::-1]) - drawn
+        off = np.degrees((off + np.pi) % (2 * np.pi) - np.pi)
+        assert min(abs(off + 12), abs(off - 15)) < 1e-7
+
+
+def planar_place_c(angle, first):
+    """Where joint c is, the input link turned so far from straight up, on the drawn side of the diagonal."""
+    b, d = first * np.array([-np.sin(angle), np.cos(angle)]), np.array([GROUND, 0.0])
+    apart = d - b
+    r = np.hypot(*apart)
+    along = (COUPLER**2 - OUTPUT**2 + r**2) / (2 * r)
+    across = np.sqrt(COUPLER**2 - along**2)
+    return b + (along * apart + across * np.array([-apart[1], apart[0]])) / r
+
+
+def test_a_path_varies_the_lengths_of_a_drawing(tmp_path) -> None:
+    (tmp_path / "four.toml").write_text(Draft.of_linkage(planar()).toml())
+    there = with_lengths(planar(), input_link=44.0, coupler=103.0).motion().circuits
+    places = there[0].point("P").position[:180:30]
+    rows = "\n".join(",".join(f"{x:.9f}" for x in place) for place in places)
+    (tmp_path / "points.csv").write_text(f"x [mm],y [mm],z [mm]\n{rows}\n")
+    words = ["--point", "P", "--vary", "input_link", "--vary", "coupler", "--starts", "2", "--json"]
+    code, output = run(
+        "design", "path", str(tmp_path / "four.toml"), "--path", str(tmp_path / "points.csv"), *words
+    )
+    assert code == 0
+    best = json.loads(output[output.index("{") :])["designs"][0]
+    assert best["input_link_mm"] == pytest.approx(44.0, abs=1e-4)
+    assert best["coupler_mm"] == pytest.approx(103.0, abs=1e-4)

@@ -109,6 +109,14 @@ class CycleSeries:
         most = len(self.spectrum)
         return min(1.0, last * (min(most, 1 / (1 - fall)) if fall < 1 else most))
 
+    def rows_to(self, tail: float) -> float:
+        """How many rows leave such a tail where the waves fall on as they do; infinity where they do not."""
+        last, before = self._waves_in(1), self._waves_in(2)
+        if last >= before:
+            return math.inf
+        more = self._share * math.log(min(1.0, tail / last)) / math.log(last / before) if last else 0.0
+        return 2.0 * (len(self.spectrum) + more)
+
     @property
     def _share(self) -> int:
         """How many waves the last eighth has."""

@@ -332,8 +332,25 @@ class Forces(ReadOnly, Drawable):
             return 0.0
         return max(self.balance or 0.0, self.work or 0.0)
 
+    @property
+    def closes(self) -> bool:
+        """Whether power closes along the cycle as far as figures need, as `unclosed` says it.
+
+        Pieces are made only where the series of the rows do not say so: they never close worse.
+        """
+        if float(np.abs(self.torque).max(initial=0.0)) < LITTLE * self.pull:
+            return True
+        rows = self._closed(None)
+        if rows is None or max(rows.power, 0.0 if self.at_rest else rows.work) <= WITHHELD:
+            return True
+        return self.unclosed <= WITHHELD
+
     @cached_property
     def _closing(self) -> Closing | None:
+        return self._closed(None if self.through_change_points else self.between)
+
+    def _closed(self, between: Callable[[Floats], Forces] | None) -> Closing | None:
+        """How power closes along the rows, and where these are too few between them, too."""
         if self.at_rest and self.loading.loads:
             return None
         period = self.period
@@ -347,7 +364,6 @@ class Forces(ReadOnly, Drawable):
             total = own.torque if own.at_rest else own.power + own.supplied
             return np.stack([own.kinetic + own.potential, total / rate], axis=1)
 
-        between = None if self.through_change_points else self.between
         drive = float(np.abs(self.torque if self.at_rest else self.power).max())
         energy, total = rows(self).T
         return closing(
@@ -429,7 +445,7 @@ def loads_of(forces: Forces) -> CycleLoads | None:
         breaks=breaks,
         gaps=own.status == "change-point" if own.through_change_points else None,
     )
-    if found is None or max(found.tail, own.unclosed) > WITHHELD:
+    if found is None or found.tail > WITHHELD or not own.closes:
         return None
     # between stops force by length unit, in joule
     return found if own.part is None else replace(found, work=own.metre)

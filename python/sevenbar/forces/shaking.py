@@ -109,7 +109,7 @@ def shaking_along(forces: Forces) -> Shaking | None:
     ends = None if forces.part is None or between is None else (forces.part.start, forces.part.end)
     period, time = forces.period, forces.time
     found = shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate, ends=ends)
-    if max(found.tail, forces.unclosed) > WITHHELD:
+    if found.tail > WITHHELD or not forces.closes:
         return None
     return replace(found, input_unit=forces.length_unit if forces.slides else "rad")
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Loading
     from sevenbar.forces.result import Forces
+    from sevenbar.forces.waves import ForceWaves
     from sevenbar.kinematics.circuits.circuit_values import Sensitivity
     from sevenbar.kinematics.circuits.extents import Allowed, BallCone, Clearance, JointRange
     from sevenbar.kinematics.circuits.one_pose import OnePose
@@ -153,16 +154,29 @@ class LinkageAnswers:
 
         if given:
             solver = ForceSolver(self.linkage, self.loading(circuit, given), circuit.input_column)
-        elif (kept := self._solvers.get(circuit.input_column)) is not None:
-            solver = kept
         else:
-            solver = ForceSolver(self.linkage, self.loading(circuit, given), circuit.input_column)
-            self._solvers[circuit.input_column] = solver
+            solver = self._solver(circuit)
         found = forces_of(solver, circuit, at_rest=at_rest)
         if not self.linkage.stops.stops or math.isnan(circuit.speed):
             # a law, and a free motion, have their own rows
             return found
         return replace(found, _parts=cache(partial(self._parts, solver, circuit, found, at_rest)))
+
+    def _solver(self, circuit: Circuit) -> ForceSolver:
+        """What solves for the forces of a circuit under what acts on its linkage."""
+        from sevenbar.kinematics.dynamics.forces import ForceSolver
+
+        kept = self._solvers.get(circuit.input_column)
+        if kept is None:
+            kept = ForceSolver(self.linkage, self.loading(circuit, {}), circuit.input_column)
+            self._solvers[circuit.input_column] = kept
+        return kept
+
+    def force_waves(self, circuit: Circuit) -> ForceWaves | None:
+        """Torque and shaking of a circuit as series, where these are enough for measures."""
+        from sevenbar.kinematics.dynamics.force_waves import force_waves
+
+        return force_waves(self._solver(circuit), circuit)
 
     def _parts(
         self, solver: ForceSolver, circuit: Circuit, whole: Forces, at_rest: bool

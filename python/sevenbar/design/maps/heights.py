@@ -31,7 +31,11 @@ CUT = (2.0, 96.0)
 EXACT = 1e-3
 
 #: Most values taken for one point of a contour: false position gains a digit or two with each.
-MOST_TRIES = 6
+MOST_TRIES = 8
+
+#: Between ends of one sign that differ by more than this factor a value grows as towards a boundary without
+#: bound, and one over it is more even.
+STEEP = 2.0
 
 #: Boundaries are sampled so many times in a cell of the grid, and so many times more in narrow places.
 ALONG, DENSER = 2, 8
@@ -346,22 +350,36 @@ def _crossed(
     values: Floats,
     edges: Sequence[tuple[int, int]],
 ) -> Floats:
-    """Where edges between nodes cross a level (n, 2): false position with the Illinois rule."""
+    """Where edges between nodes cross a level (n, 2): false position with the Illinois rule.
+
+    On steep edges it is that of 1 / level - 1 / value, times the level squared.
+    """
     if not edges:
         return np.empty((0, 2))
     ends = np.array(edges)
     start, along = nodes[ends[:, 0]], nodes[ends[:, 1]] - nodes[ends[:, 0]]
     low, high = np.zeros(len(ends)), np.ones(len(ends))
-    below, above = values[ends[:, 0]] - level, values[ends[:, 1]] - level
+    both = values[ends]
+    least, most = np.abs(both).min(axis=1), np.abs(both).max(axis=1)
+    steep = (both[:, 0] * both[:, 1] > 0) & (most > STEEP * least)
+
+    def rest_of(found: Floats, own: Integers) -> Floats:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(
+                np.where(steep[own] & (found * level > 0), level - level**2 / found, found - level)
+            )
+
+    below, above = (rest_of(both[:, end], np.arange(len(ends))) for end in (0, 1))
     part = low - below * (high - low) / (above - below)
     open_ = np.arange(len(ends))
     before = np.zeros(len(ends), dtype=np.int64)
     for _ in range(MOST_TRIES):
         if not open_.size:
             break
-        rest = read(start[open_] + part[open_, None] * along[open_]) - level
+        found = read(start[open_] + part[open_, None] * along[open_])
         # without a value there is nothing to gain
-        open_, rest = open_[np.abs(rest) > exact], rest[np.abs(rest) > exact]
+        far = np.abs(found - level) > exact
+        open_, rest = open_[far], rest_of(found[far], open_[far])
         same = (rest > 0) == (below[open_] > 0)
         low[open_] = np.where(same, part[open_], low[open_])
         high[open_] = np.where(same, high[open_], part[open_])

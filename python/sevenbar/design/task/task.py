@@ -23,6 +23,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.limits import Limits
+from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 
@@ -218,7 +219,8 @@ class DesignTask:
     That all poses of a want lie on one circuit without a dead centre of the input between them, in their
     order, is always required. `limits` hold motion type, size, and the least transmission angle. With a
     placement that is not "fixed" the linkage may stand anywhere, which paths and poses alone see.
-    Dimensions in `follow` (L2 of an RSSR whose file leaves it out) follow from the others.
+    Dimensions in `follow` (L2 of an RSSR whose file leaves it out) follow from the others. Free lengths of a
+    drawing become dimensions of the draft. Raises `RequestError` for a free number that the draft has not.
 
     >>> import sevenbar as sb
     >>> linkage = sb.load("rssr")
@@ -237,6 +239,16 @@ class DesignTask:
     goal: Goal = "least squares"
     limits: Limits = field(default_factory=Limits)
     follow: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        draft = self.draft.giving(self.names)
+        for name in self.names:
+            if not any(name == one.name for one in (*draft.dimensions, *draft.masses)):
+                # says which there are
+                raise RequestError(
+                    f"free: {draft.dimension(name).name} is the name of {shown(name)}; give that"
+                )
+        object.__setattr__(self, "draft", draft)
 
     @property
     def low(self) -> Floats:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Loading
     from sevenbar.forces.result import Forces
+    from sevenbar.forces.waves import ForceWaves
     from sevenbar.kinematics.circuits.instant_centres import InstantCentres
     from sevenbar.kinematics.circuits.link_motion import LinkMotion
     from sevenbar.kinematics.circuits.one_pose import OnePose
@@ -78,6 +79,9 @@ class Answers(ExtentAnswers, Protocol):
 
     def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """On its rows, with what is given in place of what the linkage has."""
+
+    def force_waves(self, circuit: Circuit) -> ForceWaves | None:
+        """Torque and shaking as series, where these are enough for measures."""
 
     def counterweights(
         self, circuit: Circuit, forces: Forces, links: Sequence[int], how: Mapping[str, Any]
@@ -419,6 +423,11 @@ class Circuit(ReadOnly, Printed, WithExtents):
         """
         given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
         return self._answers.forces(self, given, at_rest=at_rest)
+
+    @cached_property
+    def force_waves(self) -> ForceWaves | None:
+        """Torque and shaking as series, as measures take them; `None` where they need all of `forces`."""
+        return self._answers.force_waves(self)
 
     @ends_here
     def counterweights(

@@ -36,6 +36,8 @@ def sized(circuit: Circuit, joints: Sequence[str] = ()) -> CycleLoads | None:
     `None` for a circuit that rocks: its measures are of constant speed. Between stops those of the part on
     which the linkage is used.
     """
+    if not joints and (waves := circuit.force_waves) is not None:
+        return waves.loads
     found = circuit.forces()
     for name in joints:
         if name not in found.reactions:
@@ -48,6 +50,8 @@ def sized(circuit: Circuit, joints: Sequence[str] = ()) -> CycleLoads | None:
 
 def peak_shaking(circuit: Circuit) -> float | None:
     """The greatest shaking force [N], between the rows, too; `None` where a row has none, or it rocks."""
+    if (waves := circuit.force_waves) is not None:
+        return waves.peak_shaking
     own = circuit.forces().within_stops
     if own is None or (own.part is None and not circuit.goes_round):
         return None

@@ -156,21 +156,32 @@ class ForceSolver:
             step += len(word.freedoms[i])
         return steps, np.array(frames)
 
-    def solved(self, inputs: Floats, poses: Floats, speeds: Floats, *, by: int | None = None) -> list[Floats]:
+    def solved(
+        self,
+        inputs: Floats,
+        poses: Floats,
+        speeds: Floats,
+        *,
+        by: int | None = None,
+        factors: Floats | None = None,
+    ) -> list[Floats]:
         """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2).
 
-        Loads go by the values `inputs` (n,) of the column `by`, the input if it is not given.
+        Loads go by the values `inputs` (n,) of the column `by`, the input if it is not given, or act by
+        `factors` (n, loads).
         """
         scales = self.numbers.scales
-        turns = self.linkage.turns(self.input if by is None else by)
-        factors = [load.factors(inputs, turns=turns) for load in self.loading.loads]
+        if factors is None:
+            turns = self.linkage.turns(self.input if by is None else by)
+            own = [load.factors(inputs, turns=turns) for load in self.loading.loads]
+            factors = np.reshape(own, (-1, len(inputs))).T
         steps, frames = self.seats
         return _core.reactions(
             self.loop.core,
             self.acting,
             poses / scales,
             speeds / scales[self.input],
-            np.reshape(factors, (-1, len(inputs))).T,
+            factors,
             steps,
             frames,
             self.by_numbers,
@@ -200,9 +211,7 @@ def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -
     rows = PosedRows(circuit.input, circuit.time, circuit.status, circuit.branch, poses, rates)
     return replace(
         forces_on(solver, circuit, rows, at_rest=at_rest),
-        periodic=circuit.goes_round
-        and not np.isnan(circuit.speed)
-        and not _winds_up(circuit, solver.loading),
+        periodic=circuit.goes_round and not np.isnan(circuit.speed) and not winds_up(circuit, solver.loading),
         through_change_points=circuit.motion_type == "change-point",
         between=partial(_between, solver, circuit, at_rest),
     )
@@ -221,11 +230,11 @@ def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest
     found = solver.solved(rows.input, rows.poses, speeds)
     torque, spin, energies, wrenches, seats, shaking, free, *_ = found
     size, metre = solver.size, LENGTHS[linkage.length_unit]
-    if _nothing_pulls(solver, speeds, energies[:, 0] * size**2, shaking[:, 3:] * size):
+    if nothing_pulls(solver, speeds, energies[:, 0] * size**2, shaking[:, 3:] * size):
         # not the rounding of a linkage that takes nothing; rows without values keep none
         torque, wrenches, shaking = 0.0 * torque, 0.0 * wrenches, 0.0 * shaking
     slides = not linkage.turns(circuit.input_column)
-    pull, inertia = _acting_forces(solver, energies * size**2, shaking[:, 3:] * size)
+    pull, inertia = acting_forces(solver, energies * size**2, shaking[:, 3:] * size)
     torque = without_rounding(torque[:, None], pull / size)[:, 0] * (size if slides else size**2)
     wrenches = without_rounding(wrenches, pull / size)
     shaking = without_rounding(shaking, inertia / size)
@@ -259,7 +268,7 @@ def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest
     )
 
 
-def _acting_forces(solver: ForceSolver, energies: Floats, shaking: Floats) -> tuple[float, float]:
+def acting_forces(solver: ForceSolver, energies: Floats, shaking: Floats) -> tuple[float, float]:
     """How large the forces are [N] that act on the links, of all kinds and of inertia; torques by the size.
 
     From energies (n, 3) [J, and W] and the shaking force (n, 3) [N].
@@ -276,7 +285,7 @@ def _acting_forces(solver: ForceSolver, energies: Floats, shaking: Floats) -> tu
     return float(weight + sum(loads) + springs) + inertia, inertia
 
 
-def _nothing_pulls(solver: ForceSolver, speeds: Floats, kinetic: Floats, shaking: Floats) -> bool:
+def nothing_pulls(solver: ForceSolver, speeds: Floats, kinetic: Floats, shaking: Floats) -> bool:
     """Whether all that acts is the inertia of bodies, which stand still while others move.
 
     From speeds and accelerations of the input (n, 2), kinetic energy (n,) [J] and shaking force (n, 3) [N].
@@ -310,7 +319,7 @@ def _between(solver: ForceSolver, circuit: Circuit, at_rest: bool, inputs: Float
     return forces_of(solver, driven(solver.linkage, circuit, inputs, speed=circuit.speed), at_rest=at_rest)
 
 
-def _winds_up(circuit: Circuit, loading: Loading) -> bool:
+def winds_up(circuit: Circuit, loading: Loading) -> bool:
     """Whether a spring in a joint has more to give with every turn of the joint."""
     columns = [circuit.columns.index(s.joint) for s in loading.springs if s.joint and s.stiffness]
     # rows end one step before the first comes again
