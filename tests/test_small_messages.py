@@ -220,3 +220,34 @@ def test_the_tables_of_poses_have_the_stops(tmp_path):
         "超出 theta_1 的范围限位"
         in sevenbar("modes", "stops.toml", "--at", "90", "--lang", "zh", cwd=tmp_path).stdout
     )
+
+
+@pytest.mark.parametrize(
+    ("make", "key"),
+    [
+        (lambda place: sb.Body(1.0, centre=place), "centre"),
+        (lambda place: sb.Load(2, at=place, force=(0, -5, 0)), "at"),
+        (lambda place: sb.Spring(links=(4, 2), at=(place, (0, 0, 0)), stiffness=1.0), r"at\[0\]"),
+    ],
+)
+def test_a_place_of_what_acts_is_three_numbers_and_says_whose(make, key):
+    with pytest.raises(
+        RequestError, match=rf"{key}: 2 numbers; give three, as points are written in files: places"
+    ):
+        make((225, 0))
+
+
+def test_the_middle_of_a_rod_is_a_place_of_the_drawing_and_of_a_coupler_half_its_length():
+    # docs/conventions.md: a rod is a body whose centre lies there
+    for linkage, link, middle in (
+        (sb.slider_crank(125, 500), 2, (375, 0, 0)),
+        (sb.four_bar(40, 100, 80, 90), 2, (0, 50, 0)),
+    ):
+        bodies = (sb.Body(1.0, solid="rod"), sb.Body(1.0, centre=middle, solid="point"))
+        pulls = [
+            linkage.loaded(bodies={link: body}, gravity=(0, -9.8, 0))
+            .motion(24, speed="1 rpm")[0]
+            .forces(at_rest=True)
+            for body in bodies
+        ]
+        assert np.allclose(pulls[0].torque, pulls[1].torque)

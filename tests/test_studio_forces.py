@@ -7,9 +7,11 @@ import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
+import viser
 
 import sevenbar as sb
 from browser import keep, settled
@@ -17,11 +19,13 @@ from controls import choose, open_tab, options, shown, toggle
 from sevenbar.arrays import Floats
 from sevenbar.description.gallery import text
 from sevenbar.kinematics.answers import LinkageAnswers
+from sevenbar.studio.panels.forces import ForcesPanel
 from sevenbar.studio.state.acting import ALL_OFF, drive_sizing, known_force
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.svg.curves import panels
 from sevenbar.studio.svg.picture import Panel
 from sevenbar.studio.svg.quantities import ForceQuantity, force_quantities, quantities
+from sevenbar.studio.worker import Worker
 from studio_pictures import texts, ticks, value_at
 from studio_sessions import DOUBLE_ROCKER, opened
 from test_studio_browser import SHOWN, Desk
@@ -196,6 +200,25 @@ def test_switches_stay_while_a_dimension_changes_and_not_in_another_file() -> No
     assert session.acting.linkage is session.draft.linkage
     session.open(text("engine"), "engine")
     assert not session.acting.off
+
+
+def test_a_switch_that_a_person_has_just_turned_is_not_set_back() -> None:
+    # viser has the value before anybody is told of it; in between the panel may be shown for another reason
+    session, server = opened("rssr_press"), viser.ViserServer(port=0, verbose=False)
+    try:
+        panel = ForcesPanel(server.gui, Worker(int, int, int), session, MagicMock())
+        panel.show()
+        boxes = {box.label: box for box in panel._boxes}
+        boxes["work"]._impl.value = False
+        panel.show()
+        assert not boxes["work"].value
+        session.switch("load 1", on=False)
+        panel.show()
+        session.switch("load 1", on=True)
+        panel.show()
+        assert all(box.value for box in boxes.values())
+    finally:
+        server.stop()
 
 
 def test_with_all_switched_off_and_no_mass_the_panel_says_so() -> None:

@@ -110,6 +110,7 @@ class Loop:
         ground: _Floats,
         links: _Floats,
         agree: float = ...,
+        drawn: _Floats | None = None,
     ) -> Loop: ...
     @property
     def size(self) -> float: ...
@@ -250,8 +251,12 @@ def reactions(
 class Rows:
     """Rows of a circuit, of which their loop tells the points of any link; pickled as their numbers."""
 
-    def __new__(cls, numbers: _Floats, offsets: _Floats, speed: float) -> Rows: ...
-    def __reduce__(self) -> tuple[type[Rows], tuple[_Floats, _Floats, float]]: ...
+    def __new__(
+        cls, numbers: _Floats, offsets: _Floats, speed: float, still: tuple[int, float] | None = None
+    ) -> Rows: ...
+    def __reduce__(
+        self,
+    ) -> tuple[type[Rows], tuple[_Floats, _Floats, float, tuple[int, float] | None]]: ...
 
 @final
 class Course:
@@ -442,6 +447,7 @@ def measure_loops(
     samples: int,
     speed: _Floats,
     threads: int,
+    drawn: _Floats | None = None,
 ) -> LoopBatch: ...
 def measure_rssr(dimensions: _Floats, input: str, speed: _Floats, threads: int) -> RssrBatch: ...
 def simd_level() -> str: ...

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sized
+from collections.abc import Sized
 from decimal import Decimal
 from numbers import Real
+from types import MappingProxyType
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -31,14 +32,22 @@ Words = npt.NDArray[np.str_]
 ROUNDING = 1e-12
 
 
+#: What a result keeps arrays by name in.
+_MAPPINGS = (dict, MappingProxyType)
+
+
 class ReadOnly:
     """A result whose arrays cannot be written, nor those of its copies: they are what was computed."""
 
     def __post_init__(self) -> None:
-        for value in list(vars(self).values()):
-            for array in value.values() if isinstance(value, Mapping) else (value,):
-                if isinstance(array, np.ndarray):
-                    array.setflags(write=False)
+        for value in vars(self).values():
+            # an abstract Mapping is slow to recognise, and some results take no longer than that
+            if type(value) is np.ndarray:
+                value.setflags(write=False)
+            elif type(value) in _MAPPINGS:
+                for array in value.values():
+                    if type(array) is np.ndarray:
+                        array.setflags(write=False)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         # arrays come out of a pickle, and out of a deep copy, as writable ones
@@ -71,6 +80,17 @@ def triple(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
     if array.size != 3:
         raise RequestError(f"{name}: {array.size} numbers; give three")
     return float(array[0]), float(array[1]), float(array[2])
+
+
+def place_of_link(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
+    """Three finite numbers that are a place on a link as its points are written, or `RequestError`."""
+    array = finite_array(name, values)
+    if array.size == 2:
+        raise RequestError(
+            f"{name}: 2 numbers; give three, as points are written in files: places of the drawing where "
+            "joints are drawn, as by slider_crank; (0, u, v) in rows, as of four_bar"
+        )
+    return triple(name, array)
 
 
 def finite_number(name: str, value: npt.ArrayLike) -> float:

@@ -181,8 +181,10 @@ fn finite<'a>(name: &str, values: impl Iterator<Item = &'a f64>) -> PyResult<()>
 
 /// The measures of the motions of n loops of one pattern of joints, with so many rows a turn, the input of each at its speed.
 ///
-/// `advances` (n, joints), `base` and `ground` (n, 4, 4), `links` (n, joints - 1, 4, 4), `speed` (n,), otherwise as for one loop.
+/// `advances` (n, joints), `base` and `ground` (n, 4, 4), `links` (n, joints - 1, 4, 4), `speed` (n,), `drawn` (n, columns), otherwise as
+/// for one loop.
 #[pyfunction]
+#[pyo3(signature = (letters, advances, base, ground, links, input, output, samples, speed, threads, drawn=None))]
 #[expect(clippy::too_many_arguments)]
 pub(crate) fn measure_loops<'py>(
     py: Python<'py>,
@@ -196,6 +198,7 @@ pub(crate) fn measure_loops<'py>(
     samples: usize,
     speed: PyReadonlyArray1<'py, f64>,
     threads: usize,
+    drawn: Option<PyReadonlyArray2<'py, f64>>,
 ) -> PyResult<LoopBatch> {
     let joints = letters.chars().count();
     if joints < 2 || samples == 0 {
@@ -232,6 +235,9 @@ pub(crate) fn measure_loops<'py>(
             )));
         }
     }
+    if let Some(drawn) = &drawn {
+        checked("drawn", drawn.shape(), &[count, columns])?;
+    }
     let described = (0..count)
         .map(|n| {
             let kinds = kinds(letters, &advances.row(n).to_vec())?;
@@ -241,13 +247,18 @@ pub(crate) fn measure_loops<'py>(
                 .axis_iter(Axis(0))
                 .map(pose)
                 .collect();
-            Ok((kinds, base, ground, links))
+            let drawn = drawn.as_ref().map(|d| d.as_array().row(n).to_vec());
+            Ok((kinds, base, ground, links, drawn))
         })
         .collect::<PyResult<Vec<_>>>()?;
     let measures = working(py, || {
         in_order(count, threads, |n| {
-            let (kinds, base, ground, links) = &described[n];
+            let (kinds, base, ground, links, drawn) = &described[n];
             let linkage = Loop::new(kinds, *base, *ground, links);
+            let linkage = match drawn {
+                Some(values) => loops::drawn_at(linkage, values),
+                None => linkage,
+            };
             loops::measures(&linkage, input, output, samples, speed[n])
         })
     })?;

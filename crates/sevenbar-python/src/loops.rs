@@ -64,9 +64,9 @@ fn no_input(column: usize) -> PyErr {
 impl Loop {
     /// From the joints' letters R P H S, the advance of each for a radian (H), the frames of the first joint and of the ground's
     /// side of the last, each (4, 4), and the transforms of the moving links (n - 1, 4, 4); redundant constraints agree up to a closure
-    /// error [rad, or relative to the size].
+    /// error [rad, or relative to the size]. `drawn` are the values of the columns in the pose of a drawing, all zero without.
     #[new]
-    #[pyo3(signature = (letters, advances, base, ground, links, agree=loops::AGREE))]
+    #[pyo3(signature = (letters, advances, base, ground, links, agree=loops::AGREE, drawn=None))]
     fn new(
         letters: &str,
         advances: PyReadonlyArray1<'_, f64>,
@@ -74,6 +74,7 @@ impl Loop {
         ground: PyReadonlyArray2<'_, f64>,
         links: PyReadonlyArray3<'_, f64>,
         agree: f64,
+        drawn: Option<PyReadonlyArray1<'_, f64>>,
     ) -> PyResult<Self> {
         let kinds = kinds(letters, &in_rows(&advances))?;
         let (base, ground, links) = (base.as_array(), ground.as_array(), links.as_array());
@@ -88,7 +89,18 @@ impl Loop {
         }
         let links: Vec<Pose> = links.axis_iter(Axis(0)).map(pose).collect();
         let own = loops::Loop::new(&kinds, pose(base), pose(ground), &links);
-        Ok(Self(own.agreeing(agree)))
+        let own = own.agreeing(agree);
+        let Some(drawn) = drawn else {
+            return Ok(Self(own));
+        };
+        let drawn = in_rows(&drawn);
+        if drawn.len() != own.columns() {
+            return Err(CoreError::new_err(format!(
+                "drawn: give {} values",
+                own.columns()
+            )));
+        }
+        Ok(Self(loops::drawn_at(own, &drawn)))
     }
 
     /// The size of which residuals are parts.

@@ -29,22 +29,30 @@ impl Course {
 #[pyclass(frozen, module = "sevenbar._core")]
 pub(crate) struct Rows(pub loops::Rows);
 
-type RowNumbers<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, f64);
+type RowNumbers<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    f64,
+    Option<(usize, f64)>,
+);
 
 #[pymethods]
 impl Rows {
-    /// From numbers (n, numbers of a row), turns to be added to each column, and the speed.
+    /// From numbers (n, numbers of a row), turns to be added to each column, the speed, and the joint that rests and where.
     #[new]
+    #[pyo3(signature = (numbers, offsets, speed, still=None))]
     fn new(
         numbers: PyReadonlyArray2<'_, f64>,
         offsets: PyReadonlyArray1<'_, f64>,
         speed: f64,
+        still: Option<(usize, f64)>,
     ) -> PyResult<Self> {
         if numbers.shape()[1] != loops::ROW_NUMBERS {
             let wanted = loops::ROW_NUMBERS;
             return Err(CoreError::new_err(format!("rows need {wanted} numbers each")));
         }
-        loops::Rows::from_numbers(&in_rows(&numbers), in_rows(&offsets).to_vec(), speed)
+        let still = still.map(|(joint, value)| loops::Still { joint, value });
+        loops::Rows::from_numbers(&in_rows(&numbers), in_rows(&offsets).to_vec(), speed, still)
             .map(Self)
             .ok_or_else(|| CoreError::new_err("no rows of a circuit have these numbers"))
     }
@@ -53,6 +61,7 @@ impl Rows {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyType>, RowNumbers<'py>)> {
         let numbers = PyArray1::from_vec(py, self.0.numbers()).reshape([self.0.len(), loops::ROW_NUMBERS])?;
         let offsets = PyArray1::from_slice(py, self.0.offsets());
-        Ok((py.get_type::<Self>(), (numbers, offsets, self.0.speed())))
+        let still = self.0.still().map(|s| (s.joint, s.value));
+        Ok((py.get_type::<Self>(), (numbers, offsets, self.0.speed(), still)))
     }
 }

@@ -24,7 +24,6 @@ from sevenbar.commands.consent import confirm, long_motion, table_ahead
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
 from sevenbar.commands.given import check_law, film_of, input_value, law_of, look_of, opened, point_of
 from sevenbar.commands.output import safe_output
-from sevenbar.commands.poses import rates_at
 from sevenbar.commands.progress import progress_bar
 from sevenbar.commands.signals import NOTHING, at_work, has_just_come, heed_signals, stopped
 from sevenbar.drawing.asked import PATH_PARTS
@@ -267,6 +266,7 @@ def modes(
     json: options.Json = False,
 ) -> None:
     """Every assembly mode at one value of the input, each way the loop can be put together; its rates."""
+    from sevenbar.commands.poses import rates_at
     from sevenbar.reporting.report import modes_report
 
     loaded = opened(linkage, agree)

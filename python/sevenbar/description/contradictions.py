@@ -20,7 +20,7 @@ from sevenbar.description.written import (
     unknown_link,
 )
 from sevenbar.errors import Problem, shown
-from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, ROW_KINDS
+from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, READ_KINDS, ROW_KINDS, no_reading
 
 #: The keys of the three ways to write a linkage: a file has one of them.
 FORMS = ("rssr", "joint", "link")
@@ -100,6 +100,8 @@ def _wrong_keys(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
     needs = set(KINDS[kind].drawn_keys)
     given = joint.keys() & {key for row in KINDS.values() for key in row.drawn_keys}
     missing = [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - given)]
+    if "value" in joint and kind not in READ_KINDS:
+        missing.append(("value", no_reading(kind)))
     return missing + [
         (key, f"does not belong to a joint of kind {kind}; leave it out") for key in sorted(given - needs)
     ]

@@ -286,8 +286,10 @@ def slider_crank(
     is the place of the pin on the slider, whose guide lies `offset` above the crank's pivot. Drawn with the
     crank along x, theta = 0; the slider's value is the change of x from there. The pin is the point `pin`.
     Other `points` are named as those of `four_bar`, each (link, (u, v)): u along crank or rod from its first
-    joint, of the slider along x from the pin. `Circuit.point(link, at)` takes (u, v) likewise. Raises
-    `RequestError` where the rod does not reach the guide.
+    joint, of the slider along x from the pin. `Circuit.point(link, at)` takes (u, v) likewise. The `centre`
+    of a body and the `at` of a load or spring are three numbers, a place of the drawing at theta = 0: the
+    middle of a rod without offset is (crank + rod / 2, 0, 0). Raises `RequestError` where the rod does not
+    reach the guide.
 
         >>> import sevenbar as sb
         >>> sb.slider_crank(40, 140).motion().motion_type

@@ -23,8 +23,8 @@ from sevenbar.errors import (
     shown,
 )
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.encodings import wide_text
 from sevenbar.text.paths import is_file
-from sevenbar.text.table import wide_text
 
 if TYPE_CHECKING:
     from sevenbar.description.table_reader import TableDescription

@@ -25,7 +25,7 @@ from sevenbar.errors import (
 )
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.loop.geometry import Drive, Form, Joint, Place, Point
+from sevenbar.kinematics.loop.geometry import Drive, Form, Joint, Place, Point, drawn_off_zero
 from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.loop.rigid import unit
@@ -90,9 +90,9 @@ def from_axes(
 
     Each joint is a mapping with `kind` (a letter), `at` (three coordinates), `axis` (three numbers;
     `axes`, two of them, for U; none for S), `pitch` (length per turn) for H, and perhaps `name`. Link i lies
-    between joints i and i + 1, the last is the ground. Every joint is at zero in this pose. Coordinates and
-    pitches are in `length_unit`, or texts as in "12 mm", "8 mm/turn". A joint at the ground, first or last,
-    counts its link against the ground.
+    between joints i and i + 1, the last is the ground. Every joint reads 0 in this pose, or its `value`, of R
+    [deg, or text] and P [`length_unit`, or text]. Coordinates and pitches are in `length_unit`, or texts as
+    in "12 mm", "8 mm/turn". A joint at the ground, first or last, counts its link against the ground.
 
         >>> import sevenbar as sb
         >>> linkage = sb.from_axes([
@@ -378,6 +378,7 @@ def _linkage(form: LoopForm, written: Form, joints: tuple[Joint, ...], **parts: 
     numbers = _values(form)
     slots, values = Slots(zip(numbers, count())), np.array([*numbers.values()], dtype=np.float64)
     slots.across = across(_tables(form.joint or ()))
+    slots.to_drawn = drawn_off_zero(joints)
     base, links, ground, frames = outer_of(written, [joint.kind for joint in joints], slots)
     return Linkage(
         name=form.name,
@@ -436,7 +437,7 @@ def _tables(drawn: Sequence[JointForm]) -> list[dict[str, Any]]:
 
 
 def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> Linkage:
-    """Joints as drawn, all at zero."""
+    """Joints as drawn, each at the `value` that it is given there, or at zero."""
     names, kinds = zip(*form.joints, strict=True)
     rssr = "".join(kinds) == "RSSR"
     problems = _coincident(drawn, names) if rssr else _coincident_balls(drawn)
@@ -451,6 +452,7 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
             joint.pitch or 0.0,
             _between(*joint.axes) if joint.axes else 0.0,
             backwards=i == last,
+            value=joint.value or 0.0,
         )
         for i, (joint, name) in enumerate(zip(drawn, names, strict=True))
     )

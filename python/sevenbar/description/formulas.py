@@ -16,6 +16,19 @@ if TYPE_CHECKING:
     from sevenbar.description.values import NumberKind
 
 
+def joint_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:  # noqa: ARG001
+    """What the numbers of a joint as drawn are: what it reads there by how it moves."""
+    moves: NumberKind = "length" if _word(table.get("kind")) == "P" else "angle"
+    return {
+        "at": "length",
+        "axis": "number",
+        "axes": "number",
+        "pitch": "pitch",
+        "longer": "length",
+        "value": moves,
+    }
+
+
 def spring_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:
     """What the numbers of a spring are: between two points, in a joint that slides, or in one that turns."""
     turns = "joint" in table and context.get("freedoms", {}).get(_word(table["joint"])) != "slide"
@@ -48,7 +61,7 @@ def _word(value: object) -> str:
 #: What the numbers of each table are; a test compares this with the schema.
 KINDS_OF_NUMBERS: Mapping[str, Mapping[str, NumberKind]] = {
     "rssr": dict.fromkeys(("M", "N", "L1", "L2", "L3", "D"), "length"),
-    "joint": {"at": "length", "axis": "number", "axes": "number", "pitch": "pitch", "longer": "length"},
+    "joint": joint_kinds({}, {}),
     "link": {"length": "length", "offset": "length", "pitch": "pitch", "twist": "angle", "angle": "angle"},
     "point": {"at": "length"},
     "forces": {"gravity": "acceleration"},
@@ -68,7 +81,7 @@ KINDS_OF_NUMBERS: Mapping[str, Mapping[str, NumberKind]] = {
 }
 
 #: Tables in which the kind of a number depends on how a joint moves.
-_KINDS_IN = {"load": load_kinds, "spring": spring_kinds, "stop": stop_kinds}
+_KINDS_IN = {"joint": joint_kinds, "load": load_kinds, "spring": spring_kinds, "stop": stop_kinds}
 
 
 def context_of(raw: Mapping[str, Any], source: str = "") -> dict[str, Any]:

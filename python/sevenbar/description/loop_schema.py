@@ -9,10 +9,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    WithJsonSchema,
+)
 
 from sevenbar.description.contradictions import contradictions
+from sevenbar.description.formulas import joint_kinds
 from sevenbar.description.values import (
+    FORMULA,
     Angle,
     Direction,
     Length,
@@ -22,6 +31,7 @@ from sevenbar.description.values import (
     TableForm,
     Text,
     Vector,
+    carried,
     crossing,
     key,
     one_of,
@@ -31,7 +41,7 @@ from sevenbar.description.values import (
 from sevenbar.description.written import RSSR_JOINTS, Written, driven, meant_kind
 from sevenbar.errors import shown
 from sevenbar.kinematics.loop.geometry import following_coupler
-from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, ROW_KINDS, letters_with
+from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, READ_KINDS, ROW_KINDS, letters_with
 from sevenbar.text.units import ANGLES, LENGTHS
 
 
@@ -41,6 +51,11 @@ def _row_kind(value: object) -> object:
         how = f"write {kind.as_rows}, or draw the loop as [[joint]]"
         raise refuse(f"{shown(value)} takes more than one row; {how}")
     return value
+
+
+def _reading(value: object, info: ValidationInfo) -> float:
+    """What a joint as drawn reads, an angle in radians; `kind` is read before it."""
+    return carried(value, info, joint_kinds(info.data, info.context or {})["value"])
 
 
 class RssrForm(TableForm):
@@ -86,6 +101,10 @@ class JointForm(TableForm):
             f"of {letters_with('pitch')}, which needs it: right-handed, left-hand if negative",
             "length per turn",
         ),
+    ] = None
+    value: Annotated[
+        Annotated[float, BeforeValidator(_reading), WithJsonSchema(FORMULA)] | None,
+        key(f"of {' '.join(READ_KINDS)}: what it reads as drawn; left out, 0", "angle_unit, or length"),
     ] = None
     longer: Annotated[
         Number | None,

@@ -14,6 +14,9 @@ from sevenbar.errors import Problem, bare, shown, suggestion
 #: What pydantic adds to the keys and numbers of a place.
 _NO_PLACE = ("tuple",)
 
+#: What to say of the key `value` in rows.
+ROW_READS = "is of joints as drawn; a row reads its own angle, or offset of P, so leave it out"
+
 
 @dataclass(frozen=True)
 class FileForms:
@@ -46,6 +49,7 @@ class FileForms:
             case "extra_forbidden":
                 near = suggestion(str(location[-1]), owner.model_fields if owner else ())
                 home = not_covered(location[-1], of_joint=location[0] == "joint" and len(location) > 1)
+                home = home or ROW_READS * (location[0] == "link" and location[-1] == "value")
                 home = home or ("" if near else self._home(str(location[-1])))
                 message = home or f"is not known here; {near}allowed: {keys}"
             case "literal_error" | "int_parsing_size":

@@ -24,6 +24,7 @@ SPELLINGS: Mapping[str, tuple[str, ...]] = {
     "angle": ("angle", "theta", "\u03b8", "theta i", "\u03b8 i", "joint angle"),
     "pitch": ("pitch", "h", "lead"),
     "longer": ("longer",),
+    "value": ("value",),
     "link": ("link", "body", "on link"),
     "order": ("order", "sequence", "loop order"),
     "input": ("input", "drive", "driver", "driven", "driving"),
@@ -67,7 +68,7 @@ def key_of(label: str) -> str:
 
 def is_header(labels: Sequence[str]) -> bool:
     """Whether cells are the header of a table of a linkage: two columns of a kind that no text has."""
-    known = {key_of(label) for label in labels} - {"", "kind", "joint", "name", "link", "order"}
+    known = {key_of(label) for label in labels} - {"", "kind", "joint", "name", "link", "order", "value"}
     return len(known) >= 2 or has_dimensions(labels) or any(map(is_modified, labels))
 
 

@@ -142,6 +142,9 @@ class _Reader(TableCells):
                     self.unread.append(self.grid.names[self.columns.pop(key)])
             found = self._of_joints("joint")
         elif any(key in self.columns for key in ROWS):
+            if "value" in self.columns:
+                # rows have their own angle, or offset of P
+                self.unread.append(self.grid.names[self.columns.pop("value")])
             found = self._of_joints("link")
         else:
             self.wrong(f"the columns describe no linkage; name them as in {EXAMPLES}")
@@ -291,6 +294,11 @@ class _Reader(TableCells):
         if "longer" in self.columns and (longer := self.amount(row, "longer", "length")) is not None:
             table["longer"] = longer
             self.note_place(f"{place}.longer", row, "longer")
+        if self.text(row, "value"):
+            self.note_place(f"{place}.value", row, "value")
+            moves: Kind = "length" if kind == "P" else "angle"
+            if (value := self.amount(row, "value", moves)) is not None:
+                table["value"] = value
         if kind in KINDS and "axis" in KINDS[kind].drawn_keys and "axis" not in table:
             self.wrong(f"no axis; a joint of kind {kind} needs one, in columns axis x, axis y, axis z", row)
         # a ball has no axis, whatever a list of axes holds

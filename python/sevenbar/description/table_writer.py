@@ -53,12 +53,16 @@ def linkage_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
     head += [f"pitch [{length}]"] if pitched else []
     longer = any(LONGER in table for table in tables)
     head += [f"{LONGER} [{length}]"] if longer else []
+    reads = any("value" in table for table in tables)
+    head += ["value"] if reads else []
+    units = {"R": angle, "P": length}
     drawn: list[list[Cell]] = []
     for name, table, mark in zip(names, tables, marks, strict=True):
         first, second = table.get("axes", (table.get("axis", (None,) * 3), (None,) * 3))
         row: list[Cell] = [name, table["kind"], *table["at"], *first, *(second if crossed else ())]
         drawn.append([*row, *([table.get("pitch")] if pitched else [])])
-        drawn[-1] += [*([table.get(LONGER)] if longer else []), *mark]
+        reading = f"{table['value']!r} {units[table['kind']]}" if "value" in table else None
+        drawn[-1] += [*([table.get(LONGER)] if longer else []), *([reading] if reads else []), *mark]
     return [*head, *drive], drawn
 
 

@@ -232,13 +232,14 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
 
 
 def home_circuit(motion: Motion) -> Circuit:
-    """The circuit that a motion is about: that of the drawn pose, all joints at zero, else the first."""
+    """The circuit that a motion is about: that of the drawn pose, else the first."""
     if motion.linkage.form != "drawn":
         return motion.circuits[0]
-    turning = motion.linkage.turning
+    turning, pose = motion.linkage.turning, motion.linkage.drawn_pose
 
     def distance(circuit: Circuit) -> float:
-        off = circuit.q - math.tau * np.round(circuit.q / math.tau) * turning
+        off = circuit.q - pose
+        off -= math.tau * np.round(off / math.tau) * turning
         off = np.abs(off / np.where(turning, 1.0, circuit.size or 1.0)).max(axis=1)
         return float(np.nanmin(off, initial=math.inf))
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeGuard
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, finite_number, triple, whole_number
+from sevenbar.arrays import Floats, finite_array, finite_number, place_of_link, triple, whole_number
 from sevenbar.curves.turn import is_a_turn, is_beyond_a_turn
 from sevenbar.errors import RequestError, check_name, check_word, shown
 from sevenbar.text.given import given_number
@@ -51,7 +51,7 @@ class Load:
         check_word("axes", self.axes, ("ground", "link"))
         if any(self.force) and self.at is None:
             raise RequestError("at: is missing; give the point at which the force acts")
-        object.__setattr__(self, "at", triple("at", (0.0, 0.0, 0.0) if self.at is None else self.at))
+        object.__setattr__(self, "at", place_of_link("at", (0.0, 0.0, 0.0) if self.at is None else self.at))
         if not any(self.force) and not any(self.torque):
             raise RequestError("force: is missing; give a force [N] at a point, or a torque [N m]")
         if self.between is not None and self.table is not None:
@@ -215,4 +215,6 @@ class Spring:
         object.__setattr__(self, "links", (first, second))
         if not _is_pair(self.at):
             raise RequestError("at: give two points, one on each link")
-        object.__setattr__(self, "at", (triple("at[0]", self.at[0]), triple("at[1]", self.at[1])))
+        object.__setattr__(
+            self, "at", (place_of_link("at[0]", self.at[0]), place_of_link("at[1]", self.at[1]))
+        )

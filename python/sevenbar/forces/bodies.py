@@ -10,7 +10,7 @@ from typing import Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_number, positive_length, triple
+from sevenbar.arrays import Floats, finite_number, place_of_link, positive_length, triple
 from sevenbar.errors import RequestError, check_word, shown, suggestion
 from sevenbar.forces.solids import DENSITIES, box, cylinder
 
@@ -92,7 +92,7 @@ class Body:
         if not made:
             if self.centre is None:
                 raise RequestError("centre: is missing; give three lengths, or solid")
-            object.__setattr__(self, "centre", triple("centre", self.centre))
+            object.__setattr__(self, "centre", place_of_link("centre", self.centre))
         object.__setattr__(
             self, "inertia", np.zeros((3, 3)) if self.inertia is None else _inertia(self.inertia)
         )
@@ -124,7 +124,7 @@ class Body:
             if self.ends is not None:
                 if not isinstance(self.ends, (tuple, list, np.ndarray)) or len(self.ends) != 2:
                     raise RequestError("ends: give two places, the middles of the cylinder's ends")
-                ends = triple("ends[0]", self.ends[0]), triple("ends[1]", self.ends[1])
+                ends = place_of_link("ends[0]", self.ends[0]), place_of_link("ends[1]", self.ends[1])
                 if ends[0] == ends[1]:
                     raise RequestError("ends: both are one place; give two")
                 object.__setattr__(self, "ends", ends)

@@ -17,7 +17,6 @@ from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.circuits.table import circuit_columns, frame_of
 from sevenbar.kinematics.loop.geometry import Point
-from sevenbar.kinematics.solvers.link_places import written_place
 
 # the engines are for those who ask
 if TYPE_CHECKING:
@@ -80,6 +79,8 @@ class LinkageAnswers:
 
     def place(self, link: int, at: Floats) -> tuple[float, float, float]:
         """A place on a link as the file writes it, from two numbers in the plane, or from three."""
+        from sevenbar.kinematics.solvers.link_places import written_place
+
         return written_place(self.linkage, link, at)
 
     def transmission_angle(self, circuit: Circuit) -> Floats | None:

@@ -290,10 +290,15 @@ class Linkage(Solvable):
 
     def reason_of(self, motion: Motion) -> Reason | None:
         """Why a motion of it has no circuit, or which link has no length; see `Motion.reason`."""
-        from sevenbar.kinematics.solvers.why_rigid import reason_of
+        from sevenbar.kinematics.loop.reason import no_length
 
         check_kind("motion", motion, Motion, "a motion of it; give one, as motion() has it")
-        return reason_of(motion)
+        reason = no_length(self)
+        if reason is not None or motion.motion_type != "rigid" or self.in_rows:
+            return reason
+        from sevenbar.kinematics.solvers.why_rigid import off_joints
+
+        return off_joints(motion)
 
     @property
     def idle(self) -> tuple[str, ...]:

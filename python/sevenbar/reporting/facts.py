@@ -14,7 +14,6 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.reporting.extents import usable_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
-from sevenbar.reporting.reason_text import reason_text
 from sevenbar.reporting.shown import Shown, drive_text
 from sevenbar.text.words import retold, say
 
@@ -96,8 +95,11 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     facts.append(("motion type", say(motion.motion_type)))
     if sentence := meaning(motion):
         facts.append(("", sentence))
-    if sentence := reason_text(motion):
-        facts.append(("", sentence))
+    if motion.reason is not None:
+        # most loops have none
+        from sevenbar.reporting.reason_text import reason_text
+
+        facts.append(("", reason_text(motion)))
     if near := nearly_moves(motion):
         facts.append(("nearly moves", near))
     facts.append(("circuits", _circuit_count(motion)))
@@ -214,7 +216,12 @@ def nearly_moves(motion: Motion) -> str:
 
 
 def meaning(motion: Motion) -> str:
-    """A sentence on a motion type that is not a pair of words for input and output."""
+    """A sentence on a type that is not a pair of words for input and output, or met twice over."""
+    if motion.circuits and motion.mobility.met_twice > 0:
+        return say(
+            "a constraint is met twice over along the circuits: the least change of a dimension parts each "
+            "in two, or leaves none"
+        )
     match motion.motion_type:
         case "two-inputs":
             return say(

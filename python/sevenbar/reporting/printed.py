@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
@@ -11,7 +12,6 @@ from rich.text import Text
 
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
-from sevenbar.kinematics.circuits.poses_at import SAME_POSE, PosesAt
 from sevenbar.reporting.facts import completeness_text, idle_text
 from sevenbar.reporting.how_found import left_open
 from sevenbar.reporting.page import Facts
@@ -19,6 +19,9 @@ from sevenbar.reporting.pose_text import driven_text, rates_sheets
 from sevenbar.reporting.shown import value_text
 from sevenbar.reporting.summary import GAP, Sheet, modes_sheets, summary
 from sevenbar.text.words import language, say, spoken
+
+if TYPE_CHECKING:
+    from sevenbar.kinematics.circuits.poses_at import PosesAt
 
 
 class _Page:
@@ -58,7 +61,7 @@ def modes_page(
 
     `limit` is the nearest value up to which the loop closes, where it does not close at this one.
     """
-    own = [] if poses is None else [poses.nearest(q, within=SAME_POSE) for q in modes.q]
+    own = [] if poses is None else [poses.nearest(q) for q in modes.q]
 
     def parts(width: int) -> Iterator[RenderableType]:
         yield Text(linkage.heading, style="bold underline")

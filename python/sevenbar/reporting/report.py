@@ -16,7 +16,6 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
-from sevenbar.kinematics.circuits.poses_at import SAME_POSE, PosesAt
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.extents import extents_dict
@@ -30,6 +29,8 @@ from sevenbar.text.markdown import escaped, table
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
+
+    from sevenbar.kinematics.circuits.poses_at import PosesAt
 
 __all__ = [
     "as_dict",
@@ -282,7 +283,7 @@ def _modes_dict(
 ) -> dict[str, Any]:
     from sevenbar.reporting.pose_text import pose_dict
 
-    own = [None] * len(modes) if poses is None else [poses.nearest(q, within=SAME_POSE) for q in modes.q]
+    own = [None] * len(modes) if poses is None else [poses.nearest(q) for q in modes.q]
     rates = [{} if pose is None else pose_dict(pose) for pose in own]
     drive = None if poses is None else {"speed": poses.speed, "acceleration": poses.acceleration}
     return {

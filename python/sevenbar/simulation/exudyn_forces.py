@@ -124,7 +124,8 @@ def constraint_forces(
         after = _placed(frames, joint.after) @ joint.frame_after
         force = -_turned(before, places[number])
         moment = _moment(joint, before, after, turns[number])
-        moment = moment + np.cross(metre * (after[:, :3, 3] - before[:, :3, 3]), force)
+        place = (_placed(frames, joint.before) @ joint.drawn_before)[:, :3, 3]
+        moment = moment + np.cross(metre * (after[:, :3, 3] - place), force)
         if number == drive.connection:
             along = (after if carried else before)[:, :3, axis] * given[:, None]
             force, moment = (force, moment + along) if drive.turns else (force + along, moment)

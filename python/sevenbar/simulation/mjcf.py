@@ -212,8 +212,8 @@ class _Tree:
 
     def _add_bar(self, body: Element, number: int) -> None:
         """A bar between the two joints of a body, for the eye."""
-        ends = [joint.frame_after[:3, 3] for joint in self._model.connections if joint.after == number]
-        ends += [joint.frame_before[:3, 3] for joint in self._model.connections if joint.before == number]
+        ends = [joint.drawn_after[:3, 3] for joint in self._model.connections if joint.after == number]
+        ends += [joint.drawn_before[:3, 3] for joint in self._model.connections if joint.before == number]
         radius = f"{BAR * self._model.size * self._metre:.6g}"
         first, second = (end * self._metre for end in ends)
         if np.linalg.norm(second - first) > BAR * self._model.size * self._metre:

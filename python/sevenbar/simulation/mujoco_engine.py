@@ -103,7 +103,7 @@ class MujocoForces:
         body = self._own.body("loop_end_body").id if child == GROUND else self._bodies[child]
         way = -1.0 if backwards else 1.0
         moment, force = way * data.cfrc_int[body].reshape(2, 3)
-        place = joint.frame_before[:3, 3] * self._metre
+        place = joint.drawn_before[:3, 3] * self._metre
         if joint.before != GROUND:
             above = self._bodies[joint.before]
             place = data.xpos[above] + data.xmat[above].reshape(3, 3) @ place

@@ -6,7 +6,7 @@ A prototype is made of the linkage and of one row of a circuit, whose pose and v
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -56,7 +56,7 @@ class Connection:
 
     `before` and `after` number the bodies, `GROUND` for the ground; `frame_before` and `frame_after` (4, 4)
     are the joint's frames in the two, equal where the joint is at zero. `advance` [length for a radian] of H.
-    `backwards`: as of a joint of the linkage.
+    `backwards` and `to_drawn` (4, 4): as of a joint of the linkage.
     """
 
     name: str
@@ -67,11 +67,22 @@ class Connection:
     frame_after: Floats
     advance: float = 0.0
     backwards: bool = False
+    to_drawn: Floats = field(default_factory=lambda: np.eye(4))
 
     @property
     def row(self) -> JointKind:
         """Its kind's row of the table."""
         return kind_row(self.kind, backwards=self.backwards)
+
+    @property
+    def drawn_before(self) -> Floats:
+        """Its frame (4, 4) in the body before, as it is drawn."""
+        return self.frame_before if self.backwards else self.frame_before @ self.to_drawn
+
+    @property
+    def drawn_after(self) -> Floats:
+        """Its frame (4, 4) in the body after, as it is drawn."""
+        return self.frame_after @ self.to_drawn if self.backwards else self.frame_after
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +212,9 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
         else:
             after, frame_after = GROUND, linkage.ground
         both = frame_before, frame_after
-        connections.append(Connection(name, kind, before, after, *both, joint.advance, joint.backwards))
+        connections.append(
+            Connection(name, kind, before, after, *both, joint.advance, joint.backwards, joint.to_drawn)
+        )
         values += [np.full(6, math.nan) for _ in connections[first:]]
         rates += [np.full(6, math.nan) for _ in connections[first:]]
         column = own.start

@@ -20,14 +20,11 @@ import numpy.typing as npt
 
 from sevenbar.errors import TableError, read_start, shown
 from sevenbar.text.csv_cells import NUMBER, as_written
+from sevenbar.text.encodings import wide_text
 from sevenbar.text.units import MeasuredUnit, is_unit, measured_unit
-from sevenbar.text.workbook import ZIP, refuse_old, sheets_of
 
 #: Largest file [bytes]: a table of a million rows has some 50 MB, so a larger one is the wrong file.
 LARGEST_FILE = 200_000_000
-
-#: What of a file shows its encoding [bytes].
-HEAD = 2000
 
 #: Longest line [characters]: a row has some dozen cells, so a longer line is no row of a table.
 LONGEST_LINE = 100_000
@@ -274,20 +271,10 @@ def read_bytes(path: Path, of: str) -> bytes:
     return content
 
 
-def wide_text(content: bytes) -> str:
-    """The kind of UTF-16 of a text; empty for another. Without a mark plain letters have a zero byte each."""
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16"
-    head = content[:HEAD]
-    for first, name in ((1, "utf-16-le"), (0, "utf-16-be")):
-        zeros, others = head[first::2], head[1 - first :: 2]
-        if zeros and not any(zeros) and all(others):
-            return name
-    return ""
-
-
 def text_of_bytes(content: bytes, path: str) -> str:
     """The text of a file's bytes, as `read_text` gives it."""
+    from sevenbar.text.workbook import ZIP, refuse_old, sheets_of
+
     refuse_old(content, path)
     if content.startswith(ZIP):
         return sheets_of(content, path)[0].text()

@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from sevenbar.arrays import Floats
-from sevenbar.forces.result import Forces, Reaction
 from sevenbar.kinematics.circuits.circuit_values import Trace
-from sevenbar.kinematics.circuits.extents import Allowed
 from sevenbar.kinematics.circuits.link_motion import LinkMotion
 from sevenbar.kinematics.loop.columns import column_named
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.text.printing import Printed
+
+if TYPE_CHECKING:
+    from sevenbar.forces.result import Forces, Reaction
+    from sevenbar.kinematics.circuits.extents import Allowed
 
 
 class AnsweringRows(Protocol):

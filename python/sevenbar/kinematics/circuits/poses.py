@@ -122,7 +122,8 @@ def _frames_back(linkage: Loop, q: Floats) -> Floats:
 def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
     """The frames (n, joints, 4, 4) of each joint on the link before it and on the link after it.
 
-    `frames` (n, moving links, 4, 4) are those of the links, as `frames_of` gives them.
+    `frames` (n, moving links, 4, 4) are those of the links, as `frames_of` gives them. A joint that slides is
+    where it is drawn on both, whatever it reads there.
     """
     rows, links = frames.shape[:2]
     before, after = np.empty((2, rows, links + 1, 4, 4))
@@ -130,6 +131,10 @@ def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
     after[:, :-1] = frames
     for i, link in enumerate(linkage.links):
         before[:, i + 1] = product(frames[:, i], link)
+    for i, joint in enumerate(linkage.joints):
+        if joint.value:
+            side = after if joint.backwards else before
+            side[:, i] = side[:, i] @ joint.to_drawn
     return before, after
 
 

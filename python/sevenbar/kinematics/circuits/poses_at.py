@@ -79,7 +79,7 @@ class PosesAt:
                     found.append(_pose(linkage, motion, circuit, row, rate, acceleration))
         return cls(linkage, motion, rate, acceleration, turns, tuple(found))
 
-    def nearest(self, q: Floats, *, within: float) -> OnePose | None:
+    def nearest(self, q: Floats, *, within: float = SAME_POSE) -> OnePose | None:
         """The pose nearest to joint values (columns,), `within` [rad, or relative to the size]; or `None`."""
         if not self.poses:
             return None

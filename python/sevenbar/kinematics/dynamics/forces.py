@@ -144,6 +144,9 @@ class ForceSolver:
         step = 0
         for i, (joint, inside) in enumerate(zip(linkage.joints, word.inner, strict=True)):
             frame = inverse(inside[0].pose(values)) if inside else np.eye(4)
+            if joint.value and not joint.backwards:
+                # a joint is where it is drawn, whatever it reads there
+                frame = joint.to_drawn @ frame
             if linkage.form == "drawn" and i + 1 == len(linkage.joints):
                 # its axes are those that are written
                 frame = frame @ half_turn(joint.row.half_turn)

@@ -146,12 +146,12 @@ def _rod(mass: float, link: int, linkage: Loop) -> Body:
 def joint_places(linkage: Loop, link: int) -> tuple[Floats, Floats]:
     """The places (3,) of the joints before and after a link, the ground last, written as its points are.
 
-    Of a joint that slides it is that of its frame.
+    Of a joint that slides it is that of its frame, as drawn.
     """
-    back = inverse(linkage.point_frames[link - 1])
+    start = inverse(linkage.point_frames[link - 1])
     if link == len(linkage.joints):
-        return (back @ linkage.ground)[:3, 3], (back @ linkage.base)[:3, 3]
-    return back[:3, 3], (back @ linkage.links[link - 1])[:3, 3]
+        start = start @ linkage.drawn_ground
+    return start[:3, 3], (start @ linkage.drawn_transforms[link - 1])[:3, 3]
 
 
 def _drawn(linkage: Loop, circuit: int) -> dict[int, Body]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property, reduce
 from itertools import pairwise
@@ -15,7 +15,17 @@ import numpy.typing as npt
 from sevenbar.arrays import Booleans, Floats, finite_number, triple, truth, whole_number
 from sevenbar.errors import RequestError, check_kind, check_name, check_word, no_joint
 from sevenbar.forces.loading import UNLOADED, Loading
-from sevenbar.kinematics.loop.joints import JOINT_KINDS, Freedom, JointKind, Step, X, Z, kind_row
+from sevenbar.kinematics.loop.joints import (
+    JOINT_KINDS,
+    READ_KINDS,
+    Freedom,
+    JointKind,
+    Step,
+    X,
+    Z,
+    kind_row,
+    no_reading,
+)
 from sevenbar.kinematics.loop.rigid import about, inverse, pose, product
 from sevenbar.kinematics.loop.stops import NO_STOPS, Stops
 from sevenbar.text.given import given_number
@@ -42,6 +52,7 @@ class Joint:
 
     `pitch` [length per turn, right-handed] of H; `angle` [rad] between the two axes of U. `backwards`: its
     values are those of the link before it against the link after it, as of the last joint of a drawing.
+    `value` [rad, or length] of R and P: what it reads in the pose that is drawn.
     """
 
     kind: str
@@ -49,6 +60,7 @@ class Joint:
     pitch: float = 0.0
     angle: float = 0.0
     backwards: bool = False
+    value: float = 0.0
 
     def __post_init__(self) -> None:
         check_word("kind", self.kind, JOINT_KINDS, "a joint kind")
@@ -57,6 +69,10 @@ class Joint:
         object.__setattr__(self, "pitch", finite_number("pitch", self.pitch))
         object.__setattr__(self, "angle", finite_number("angle", angle))  # type: ignore[arg-type]
         object.__setattr__(self, "backwards", truth("backwards", self.backwards))
+        value = given_number("value", self.value, "rad") if self.kind == "R" else self.value
+        object.__setattr__(self, "value", finite_number("value", value))  # type: ignore[arg-type]
+        if self.value and self.kind not in READ_KINDS:
+            raise RequestError(f"value: {no_reading(self.kind)}")
 
     @cached_property
     def row(self) -> JointKind:
@@ -102,10 +118,26 @@ class Joint:
             parts.append(moved_by(step, values))
         return reduce(product, parts)
 
+    @cached_property
+    def to_drawn(self) -> Floats:
+        """From its frame on the side that holds its zero to that frame as it is drawn (4, 4).
+
+        That is the link before it, of a joint `backwards` the link after it.
+        """
+        if not self.value:
+            return np.eye(4)
+        moved: Floats = self.motion(np.array([[self.value]]))[0]
+        return inverse(moved) if self.backwards else moved
+
     def slid(self, q: Floats) -> Floats:
         """How far it has slid along its axis (n,) [length] for the values of its columns (n, columns)."""
         along = [v for step, v in self.steps(q) if step.freedom == "slide" and step.axis == Z]
         return sum(along, np.zeros(len(q)))
+
+
+def drawn_off_zero(joints: Sequence[Joint]) -> dict[int, Floats]:
+    """What takes joints, by their number from 0, to the drawing from where they read 0: of those it moves."""
+    return {i: joint.to_drawn for i, joint in enumerate(joints) if joint.value}
 
 
 def moved_by(step: Step, values: Floats) -> Floats:
@@ -196,14 +228,18 @@ class Loop(Drawable):
         check_name("name", self.name)
         check_word("form", self.form, get_args(Form))
         check_word("length_unit", self.length_unit, LENGTHS, "a length unit")
+        # a message is made only where it is needed: each load comes this way
         for name, (kind, what) in _PARTS.items():
-            check_kind(name, getattr(self, name), kind, f"{what}; {_MADE_WITH}")
+            if not isinstance(value := getattr(self, name), kind):
+                check_kind(name, value, kind, f"{what}; {_MADE_WITH}")
         for name, one in (("joints", Joint), ("points", Point)):
             for i, part in enumerate(getattr(self, name)):
-                check_kind(f"{name}[{i}]", part, one, f"a {one.__name__.lower()}; {_MADE_WITH}")
-        for name, many in (("base", ()), ("ground", ()), ("links", (-1,)), ("point_frames", (0,))):
+                if not isinstance(part, one):
+                    check_kind(f"{name}[{i}]", part, one, f"a {one.__name__.lower()}; {_MADE_WITH}")
+        n = len(self.joints)
+        shapes = {"base": (4, 4), "ground": (4, 4), "links": (n - 1, 4, 4), "point_frames": (n, 4, 4)}
+        for name, shape in shapes.items():
             array = getattr(self, name)
-            shape = (*(len(self.joints) + more for more in many), 4, 4)
             if array.shape != shape:
                 raise RequestError(f"{name}: an array of shape {array.shape}, not {shape}; {_MADE_WITH}")
             array.setflags(write=False)
@@ -216,6 +252,23 @@ class Loop(Drawable):
     def transforms(self) -> Floats:
         """The G's of all links (n, 4, 4), the ground's last: `Z(q1) G1 .. Z(qn) Gn = 1`."""
         return np.concatenate([self.links, [inverse(self.ground) @ self.base]])
+
+    @property
+    def drawn_ground(self) -> Floats:
+        """The frame (4, 4) of the last joint on the ground, as it is drawn."""
+        last = self.joints[-1]
+        return self.ground @ last.to_drawn if last.value and last.backwards else self.ground
+
+    @property
+    def drawn_transforms(self) -> Floats:
+        """The same from joint to joint as each is drawn, whatever it reads there."""
+        found = self.transforms
+        for i, joint in enumerate(self.joints):
+            if joint.value and joint.backwards:
+                found[i] = inverse(joint.to_drawn) @ found[i]
+            elif joint.value:
+                found[i - 1] = found[i - 1] @ joint.to_drawn
+        return found
 
     @property
     def size(self) -> float:
@@ -253,6 +306,13 @@ class Loop(Drawable):
     def columns(self) -> tuple[str, ...]:
         """The names of the one-freedom joints, in loop order."""
         return tuple(column for joint in self.joints for column in joint.columns)
+
+    @cached_property
+    def drawn_pose(self) -> Floats:
+        """What the columns (columns,) read in the pose that is drawn [rad, or length]; 0 of other forms."""
+        found = np.array([joint.value for joint in self.joints for _ in joint.columns])
+        found.setflags(write=False)
+        return found
 
     @cached_property
     def column_kinds(self) -> tuple[Freedom, ...]:

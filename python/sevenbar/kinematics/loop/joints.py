@@ -207,6 +207,15 @@ JOINT_KINDS = tuple(KINDS)
 ROW_KINDS = tuple(letter for letter, kind in KINDS.items() if kind.row_keys)
 
 
+#: Kinds of one value, which may read another than 0 as drawn: a screw's slide would follow its pitch.
+READ_KINDS = tuple(letter for letter, kind in KINDS.items() if len(kind.steps) == 1)
+
+
+def no_reading(kind: str) -> str:
+    """Why a joint of a kind has no value of its own as drawn."""
+    return f"is of joints {' and '.join(READ_KINDS)}; one of kind {kind} reads 0 as drawn, so leave it out"
+
+
 def column_names(joint: str, freedoms: Sequence[Freedom]) -> tuple[str, ...]:
     """One name for each freedom of a joint: its own, numbered from 1 where it has more than one."""
     return (joint,) if len(freedoms) == 1 else tuple(f"{joint}.{k}" for k in range(1, len(freedoms) + 1))

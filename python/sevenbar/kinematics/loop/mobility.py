@@ -28,6 +28,13 @@ class Mobility:
     idle: tuple[str, ...] = ()
     redundant: tuple[str, ...] = ()
 
+    @property
+    def met_twice(self) -> int:
+        """How many constraints are met twice over along the motion: as much more is free to first order."""
+        if self.rank is None or self.finite != 1:
+            return 0
+        return self.freedoms - len(self.idle) - self.rank - self.finite
+
     def __str__(self) -> str:
         parts = [f"Gruebler {self.gruebler}"]
         if self.idle:

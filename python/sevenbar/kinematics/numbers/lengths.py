@@ -24,7 +24,6 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.grashof import link_roles
 from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.loop.rigid import cross, perpendicular, unit
 
@@ -44,6 +43,8 @@ def link_names(loop: Loop) -> tuple[str, ...]:
     """
     if loop.kind == "RSSR":
         return RSSR_LINKS
+    from sevenbar.kinematics.loop.grashof import link_roles
+
     names = [joint.name for joint in loop.joints]
     if len(loop.columns) == len(names) == 4:
         return tuple(link_roles(names, loop.drive.joint, loop.drive.output)[:3])

@@ -28,6 +28,7 @@ from sevenbar.arrays import Booleans, Floats, Integers
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Sensitivity
 from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.loop.geometry import drawn_off_zero
 from sevenbar.kinematics.loop.rigid import about, zyx_turns
 from sevenbar.kinematics.numbers.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.numbers.lengths import across
@@ -105,6 +106,7 @@ class Numbers:
         form, kinds, values = linkage.form, linkage.kind, self.values(self.nominal)
         slots = Slots({d.place: k for k, d in enumerate(self.dimensions)})
         slots.across = across(linkage.description.get("joint", ()))
+        slots.to_drawn = drawn_off_zero(linkage.joints)
         axes = {
             ball: holding_axis(form, kinds, slots, values, ball, linkage.spin_axes[linkage.joints[ball].name])
             for ball in self.spun

@@ -33,7 +33,7 @@ from sevenbar._core import Product
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.loop.geometry import Form, Place
 from sevenbar.kinematics.loop.joints import KINDS, JointKind, Z
-from sevenbar.kinematics.loop.rigid import axis_to_z, cross, half_turn, pose, unit
+from sevenbar.kinematics.loop.rigid import axis_to_z, cross, half_turn, inverse, pose, unit
 from sevenbar.kinematics.numbers.lengths import LONGER, axis_at
 
 #: A point that a link carries.
@@ -79,10 +79,16 @@ class WordStep:
 class Slots(dict[Place, int]):
     """Where numbers of a description stand among all, by their places; what it leaves out is 0.
 
-    `across` are the directions of `lengths.across`.
+    `across` are the directions of `lengths.across`. `to_drawn` (4, 4) are those of joints, by their number
+    from 0, that do not read 0 as drawn: no number that can be changed moves anything by them.
     """
 
     across: Mapping[int, Floats] = MappingProxyType({})
+    to_drawn: Mapping[int, Floats] = MappingProxyType({})
+
+    def read_zero(self, joint: int) -> Product:
+        """From a joint's frame as drawn to that where it reads 0."""
+        return Product.still(inverse(self.to_drawn[joint])) if joint in self.to_drawn else Product()
 
     def three(self, place: Place) -> Three:
         """Where the numbers of a vector stand."""
@@ -149,11 +155,14 @@ class Word:
 
     def rod(self, link: int) -> tuple[Carried, Carried]:
         """The places of the joints before and behind a link, counted from 1, the ground being the last."""
+        first, last = (self.slots.read_zero(i).back for i in (0, len(self.freedoms) - 1))
         if link == len(self.freedoms):
-            return Carried(0, self.ground), Carried(0, self.base)
+            return Carried(0, self.ground + last), Carried(0, self.base + first)
         steps = sum(map(len, self.freedoms[:link]))
-        behind = self._behind(link)
-        return Carried(steps, behind), Carried(steps, behind + self.links[link - 1])
+        behind, after = self._behind(link), self.links[link - 1]
+        if link < len(self.freedoms) - 1:
+            after += self.slots.read_zero(link).back
+        return Carried(steps, behind), Carried(steps, behind + after)
 
     def axis(self, column: int, length: float) -> tuple[Carried, Carried]:
         """Two points on the axis of the joint of a column, so far apart."""
@@ -295,10 +304,12 @@ def _drawn_frames(kinds: Sequence[str], slots: Slots, joint: int) -> tuple[Produ
 
 
 def _drawn(kinds: Sequence[str], slots: Slots) -> _Outer:
-    """Joints as drawn, all at zero: the frames on both sides of each, in ground coordinates."""
-    pairs = [_drawn_frames(kinds, slots, i) for i in range(len(kinds))]
+    """Joints as drawn: the frames on both sides of each where it reads 0, in ground coordinates."""
+    count = len(kinds)
+    pairs = [_drawn_frames(kinds, slots, i) for i in range(count)]
     sides = [[side + _turned(kinds, i) for side in pair] for i, pair in enumerate(pairs)]
-    before, behind = zip(*sides, strict=True)
+    before = [side[0] + slots.read_zero(i) for i, side in enumerate(sides[:-1])] + [sides[-1][0]]
+    behind = [side[1] for side in sides[:-1]] + [sides[-1][1] + slots.read_zero(count - 1)]
     links = tuple(behind[i].back + _longer(kinds, slots, i) + before[i + 1] for i in range(len(kinds) - 1))
     frames = (*(frame.back for frame in behind[:-1]), Product())
     return before[0], links, behind[-1], frames

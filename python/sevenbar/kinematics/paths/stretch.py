@@ -100,11 +100,10 @@ def place_of(path: CircuitPath, numbers: Numbers, q: Floats, *, turns: bool) -> 
 
 
 def drawn_place(linkage: Solvable, path: CircuitPath, numbers: Numbers) -> float | None:
-    """The place of the drawn pose, where every joint is at 0; `None` of rows, and on other circuits."""
+    """The place of the drawn pose; `None` of rows, and on other circuits."""
     if linkage.form != "drawn":
         return None
-    pose = np.zeros(path.poses.series.shape[2])
-    place, off = place_of(path, numbers, pose, turns=linkage.turns(path.input))
+    place, off = place_of(path, numbers, linkage.drawn_pose, turns=linkage.turns(path.input))
     return place if off < DRAWN else None
 
 

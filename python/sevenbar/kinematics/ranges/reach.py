@@ -13,8 +13,8 @@ from sevenbar.kinematics.circuits.extents import Flags
 from sevenbar.kinematics.circuits.timed_walk import SAME_ROW, TimedWalk
 from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 
-#: A row at the drawn input is the drawn pose if all joints are nearer to 0 [rad, or shares of the size]: rows
-#: are joined by lines, and other passes are farther off.
+#: A row at the drawn input is the drawn pose if all joints are nearer to it [rad, or shares of the size]:
+#: rows are joined by lines, and other passes are farther off.
 DRAWN_NEAR = 0.02
 
 
@@ -156,19 +156,20 @@ def used_reach(way: TimedWalk) -> Reach | None:
 
 
 def drawn_row(way: TimedWalk) -> float | None:
-    """The row of a walk in the drawn pose, where all joints are at 0; `None` where it has none."""
+    """The row of a walk in the drawn pose; `None` where it has none."""
     if way.linkage.form != "drawn":
         return None
     circuit, turning = way.circuit, way.linkage.turning
     scales = np.where(turning, 1.0, circuit.size)
     best, nearest = None, DRAWN_NEAR
-    for row in way.rows_at(0.0):
+    pose = way.linkage.drawn_pose
+    for row in way.rows_at(float(pose[way.linkage.columns.index(way.motion.input)])):
         # a pose between two rows is near the line between them
         low = min(int(row), len(way.path.rows) - 2)
         a, b = circuit.q[way.path.rows[low]], circuit.q[way.path.rows[low + 1]]
         step = b - a
         step[turning] -= math.tau * np.round(step[turning] / math.tau)
-        off = a + (row - low) * step
+        off = a + (row - low) * step - pose
         off[turning] -= math.tau * np.round(off[turning] / math.tau)
         # turns of a ball may be undefined there
         distance = float(np.nanmax(np.abs(off / scales), initial=0.0))

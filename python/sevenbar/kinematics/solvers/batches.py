@@ -108,6 +108,7 @@ def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int
     does not drive, and those without a circuit, whose reason must be looked for.
     """
     parts = [expanded(linkage) for linkage in linkages]
+    drawn = np.stack([linkage.drawn_pose for linkage in linkages])
     raw = _core.measure_loops(
         parts[0].letters,
         np.array([part.advances for part in parts]),
@@ -119,6 +120,7 @@ def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int
         samples,
         np.array([linkage.speed_of(input) for linkage in linkages], dtype=np.float64),
         threads,
+        drawn if drawn.any() else None,
     )
     linkage, circuit = _numbered(raw.circuits)
     types = np.array(raw.motion_types, dtype=object)

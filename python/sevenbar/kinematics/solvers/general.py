@@ -52,9 +52,17 @@ class GeneralLoop:
         parts = expanded(linkage)
         self._base, self._link = parts.base, parts.last
         self._core = _core.Loop(
-            parts.letters, np.array(parts.advances), parts.base, parts.ground, np.array(parts.links), agree
-        )
+            parts.letters, np.array(parts.advances), parts.base, parts.ground, np.array(parts.links), agree,
+            linkage.drawn_pose if linkage.drawn_pose.any() else None,
+        )  # fmt: skip
         self._found: dict[int, Mobility] = {}
+        held = (parts.columns[joint] for word, joint, _ in self._core.idle if "between-balls" not in word)
+        for column in held:
+            if linkage.drawn_pose[column]:
+                raise RequestError(
+                    f"value: joint '{linkage.columns[column]}' reads 0 wherever it is, as its freedom moves "
+                    f"nothing else ({'; '.join(self.idle())}); leave its value out"
+                )
 
     def __reduce__(self) -> tuple[type[GeneralLoop], tuple[Solvable, float]]:
         return GeneralLoop, (self._linkage, self._agree)

@@ -45,7 +45,7 @@ def written_place(loop: Loop, link: int, at: Floats) -> tuple[float, float, floa
     normal = loop.base[:3, :3].T @ plane.normal
     for before in loop.transforms[: link - 1]:
         normal = before[:3, :3].T @ normal
-    next_frame = loop.transforms[link - 1]
+    next_frame = loop.drawn_transforms[link - 1]
     along = next_frame[:3, 3] - (normal @ next_frame[:3, 3]) * normal
     if math.hypot(*along) <= NO_SIZE * loop.size:
         after = loop.joints[link % len(loop.joints)]
@@ -56,5 +56,8 @@ def written_place(loop: Loop, link: int, at: Floats) -> tuple[float, float, floa
         along = ahead if after.kind == "P" else np.array([0.0, 0.0, 1.0])
     along = unit(along)
     place = at[0] * along + at[1] * cross(normal, along)
+    if link == len(loop.joints):
+        # the ground's own frame is that of the report
+        place = placed(loop.drawn_ground, place)
     x, y, z = placed(inverse(loop.point_frames[link - 1]), place) + 0.0
     return float(x), float(y), float(z)

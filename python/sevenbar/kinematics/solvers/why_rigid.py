@@ -12,7 +12,6 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.forces.loading import UNLOADED
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
-from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.reason import OffJoint, Reason, What
 from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, turns_about, unit
 from sevenbar.kinematics.loop.stops import NO_STOPS
@@ -62,19 +61,12 @@ class _Drawn:
         )  # fmt: skip
 
 
-def reason_of(motion: Motion) -> Reason | None:
-    """Why a motion has no circuit, or which link has no length; `None` where nothing of it is seen.
+def off_joints(motion: Motion) -> Reason | None:
+    """Joints, one or some by little, that keep the others of a drawn loop off a plane or a common point.
 
-    The reasons are one joint, or some by little, that keep the others from moving in a plane or about a
-    point, of drawn loops, since rows do not tell a pose; and two neighbours that turn about one axis.
+    `None` where nothing of it is seen.
     """
     loop = motion.linkage
-    for i, name in enumerate(names := [joint.name for joint in loop.joints]):
-        after = (i + 1) % len(names)
-        if loop.joints[i].kind == loop.joints[after].kind == "R" and _on_one_axis(loop, i):
-            return Reason("one-axis", (name, names[after]))
-    if motion.motion_type != "rigid" or loop.in_rows:
-        return None
     drawn = _drawn(loop)
     for found in (_off_plane(drawn), _off_point(drawn)):
         if found is None:
@@ -89,8 +81,8 @@ def reason_of(motion: Motion) -> Reason | None:
 
 
 def _drawn(loop: Solvable) -> _Drawn:
-    """The loop in the drawn pose, all joints at zero."""
-    q = np.zeros((1, len(loop.columns)))
+    """The loop in the drawn pose."""
+    q = loop.drawn_pose[None]
     before, behind = [], []
     now = loop.base
     for i, (joint, own) in enumerate(zip(loop.joints, loop.places, strict=True)):
@@ -98,12 +90,6 @@ def _drawn(loop: Solvable) -> _Drawn:
         behind.append(now @ joint.motion(q[:, own])[0])
         now = behind[-1] @ loop.links[i] if i < len(loop.links) else now
     return _Drawn(loop, np.stack(before), np.stack(behind))
-
-
-def _on_one_axis(loop: Loop, link: int) -> bool:
-    """Whether the two joints of a link, counted from 0, turn about one axis."""
-    way = loop.transforms[link]
-    return math.hypot(*way[:2, 2]) <= SAME and math.hypot(*way[:2, 3]) <= SAME * loop.size
 
 
 def _off_plane(drawn: _Drawn) -> tuple[Reason, Solvable | None] | None:

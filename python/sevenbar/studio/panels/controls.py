@@ -37,7 +37,9 @@ def on_change(
 ) -> None:
     """Has `action(value)` done, after a delay [s], for what a person sets a control to; the last alone."""
 
-    def changed(event: viser.GuiEvent[Any]) -> None:
+    # a coroutine is run where the value arrives: a function would wait for a thread, and until it has one
+    # the worker, which knows of no change, would set the control back
+    async def changed(event: viser.GuiEvent[Any]) -> None:
         if by_person(event):
             value = control.value
             worker.ask(key, lambda: action(value), delay=delay)

@@ -125,7 +125,9 @@ class ForcesPanel:
         self._boxes: list[viser.GuiCheckboxHandle] = []
         self.arrows = ForceArrows(gui, worker, session, stage)
         self._facts = gui.add_html("")
+        # what the check boxes are for, and what of it they show as switched off
         self._switches: tuple[Switch, ...] | None = None
+        self._off: frozenset[str] = frozenset()
         self._shown: tuple[object, ...] = ()
         self._text = ""
 
@@ -134,10 +136,11 @@ class ForcesPanel:
         acting = self._session.acting
         if acting.switches != self._switches:
             self._build(acting.switches)
-        for box, switch in zip(self._boxes, acting.switches, strict=True):
-            on = switch.key not in acting.off
-            if box.value != on and not self._worker.awaits(("switch", switch.key)):
-                put(box, on)
+        if acting.off != self._off:
+            self._off = acting.off
+            for box, switch in zip(self._boxes, acting.switches, strict=True):
+                if not self._worker.awaits(("switch", switch.key)):
+                    put(box, switch.key not in acting.off)
         shown = (self._session.view, acting, bool(self._session.problem))
         if shown == self._shown:
             return
@@ -170,7 +173,7 @@ class ForcesPanel:
 
     def _build(self, switches: tuple[Switch, ...]) -> None:
         """Makes the check boxes of other switches than before."""
-        self._switches = switches
+        self._switches, self._off = switches, frozenset()
         for box in self._boxes:
             box.remove()
         self._boxes = []

@@ -166,8 +166,7 @@ class Scenery:
         linkage = draft.linkage
         if linkage.form != "drawn":
             return
-        zero = np.zeros((1, len(linkage.columns)))
-        frame = skeleton_of(linkage, frames_of(linkage, zero), linkage.added_points)
+        frame = skeleton_of(linkage, frames_of(linkage, linkage.drawn_pose[None]), linkage.added_points)
         self._everything = frame.places.reshape(-1, 3)
         if self._framed is not draft.text:
             self.stage.frame_view(self._everything, upright(linkage))

@@ -18,7 +18,7 @@ from sevenbar.kinematics.ranges.reach import Reach, reaches, stopped_by, within
 from sevenbar.reporting.facts import meaning
 from sevenbar.reporting.reason_text import reason_text
 from sevenbar.studio.state.acting import SwitchedLoading
-from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
+from sevenbar.studio.state.view import View, distance_from_drawn, modes_at, nearest, views_of
 
 #: Inputs in a full turn.
 SAMPLES = 360
@@ -148,11 +148,13 @@ class Session:
 
     @property
     def drawn(self) -> tuple[View, float] | None:
-        """Where all joints are at zero, as drawn; `None` where it does not move, or has no drawing."""
+        """Where it is as drawn; `None` where it does not move, or has no drawing."""
         if self.problem or not self.views or self.draft.linkage.form != "drawn":
             return None
-        modes = modes_at(self.views, 0.0)
-        apart = [distance_from_zero(view, row) for view, row in modes]
+        linkage = self.draft.linkage
+        value = linkage.drawn_pose[linkage.columns.index(linkage.drive.joint)]
+        modes = modes_at(self.views, float(value))
+        apart = [distance_from_drawn(view, row) for view, row in modes]
         return modes[int(np.argmin(apart))] if apart and min(apart) < AS_DRAWN else None
 
     def as_drawn(self) -> None:

@@ -207,10 +207,9 @@ def nearest(views: Sequence[View], view: View, row: float) -> tuple[View, float]
     return views[index], at
 
 
-def distance_from_zero(view: View, row: float) -> float:
-    """How far the joints of a view are from zero at a row; turns of balls are left out."""
-    measure = _Measure(view.motion)
-    return float(measure.apart(view.joints(row), np.zeros(len(view.linkage.columns))))
+def distance_from_drawn(view: View, row: float) -> float:
+    """How far the joints of a view are from the drawn pose at a row; turns of balls are left out."""
+    return float(_Measure(view.motion).apart(view.joints(row), view.linkage.drawn_pose))
 
 
 class _Measure:

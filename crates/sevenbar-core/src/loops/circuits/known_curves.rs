@@ -37,6 +37,8 @@ pub(crate) struct Curves {
     sharp: Vec<Configuration>,
     /// Modes from which no motion was followed when they were met.
     not_followed: Vec<Configuration>,
+    /// Those of them that lie on no curve, nor at a change point with a way out, once all curves are known.
+    pub lost: Vec<Configuration>,
     pub last: bool,
     /// Columns whose limits say what is a change point.
     pub wished: Vec<usize>,
@@ -54,6 +56,7 @@ impl Curves {
             arcs: Arcs::new(),
             sharp: Vec::new(),
             not_followed: Vec::new(),
+            lost: Vec::new(),
             last: false,
             wished: wished.to_vec(),
             ahead: Vec::new(),
@@ -138,6 +141,7 @@ impl Curves {
             !lies_on_any(chain, &self.curves, m) && !self.change_points.iter().any(|p| p.is_at(chain, m))
         });
         self.search.unfollowed += lost.len();
+        self.lost = lost;
         self.search.unfollowed += self.change_points.iter().map(|p| p.lost).sum::<usize>();
         self.search.unfollowed += self.arcs.not_followed();
         self.name_ends(chain);

@@ -4,7 +4,7 @@ use super::curve::{self, Curve, Node, REACH};
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::stopping;
 
-pub(super) fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
+pub(crate) fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
     curves.iter().any(|c| lies_on(chain, c, mode))
 }
 

@@ -63,14 +63,10 @@ fn seed_columns(chain: &Chain, wished: &[usize], drawn: bool) -> Vec<usize> {
 
 /// The curves through all modes at the seeds, or the first.
 pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
-    let drawn = chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED;
+    let drawn = chain.residual(&chain.place(&chain.drawn)) < CLOSED;
     let seeds = seed_columns(chain, wished, drawn);
-    // the pose of a drawing first: the joints are zero there
-    let mut drawings = if drawn {
-        vec![Configuration::ZERO]
-    } else {
-        Vec::new()
-    };
+    // the pose of a drawing first
+    let mut drawings = if drawn { vec![chain.drawn] } else { Vec::new() };
     let mut out = Curves::new(wished);
     out.search.columns.clone_from(&seeds);
     for seed in seeds {

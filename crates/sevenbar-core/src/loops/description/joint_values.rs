@@ -29,6 +29,15 @@ pub(crate) fn joint_values(linkage: &Loop, at: &Configuration) -> Vec<f64> {
         .collect()
 }
 
+/// The same loop whose joints have these values in the pose of its drawing; without, all are zero there.
+pub fn drawn_at(mut linkage: Loop, values: &[f64]) -> Loop {
+    let drawn = configuration(&linkage, values);
+    if let Some(chain) = &mut linkage.reduced.chain {
+        chain.drawn = drawn;
+    }
+    linkage
+}
+
 /// The configuration with these joint values; the idle spin of links is left out.
 pub(crate) fn configuration(linkage: &Loop, values: &[f64]) -> Configuration {
     let mut out = Configuration::ZERO;
@@ -39,7 +48,7 @@ pub(crate) fn configuration(linkage: &Loop, values: &[f64]) -> Configuration {
     for (part, &first) in linkage.reduced.parts.iter().zip(&linkage.first) {
         let turns = || ball_rotation(&[values[first], values[first + 1], values[first + 2]]);
         match (part.source, part.kind) {
-            (Source::Held, _) => {}
+            (Source::Held(_), _) => {}
             (Source::Joint(joint), Kind::Ball) => {
                 if let Joint::Ball(b) = chain.joints[joint] {
                     out.balls[b] = turns();
@@ -130,7 +139,10 @@ pub(crate) fn write_joint_rates(linkage: &Loop, at: &Configuration, rates: &Rate
     };
     for (part, &first) in linkage.reduced.parts.iter().zip(&linkage.first) {
         match (part.source, part.kind) {
-            (Source::Held, _) => {}
+            (Source::Held(value), kind) => {
+                let factor = if kind == Kind::Slide { linkage.size } else { 1.0 };
+                out[first] = [value * factor, 0.0, 0.0, 0.0];
+            }
             (Source::Joint(joint), Kind::Ball) => {
                 let series = joint_series(chain, joint, at, rates);
                 write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));

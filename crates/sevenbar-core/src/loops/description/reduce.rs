@@ -14,8 +14,8 @@ use crate::rigid::{Pose, Vec3, add, cross, dot, most_perpendicular_axis, norm, s
 pub(crate) enum Source {
     /// A joint of the chain.
     Joint(usize),
-    /// Held at its zero.
-    Held,
+    /// Held at a value [rad, or relative to the size].
+    Held(f64),
     /// A ball that is held from spinning idly: two turns of the chain, in a frame whose z is the first axis and x the second.
     Universal(usize, Rotation),
     /// The same for a ball before links that spin together, whose place on the chain's links depends on their joint.
@@ -277,7 +277,7 @@ pub(super) fn reduce(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose])
             spun = Some(links);
             Source::BeforeSpun(first, frame)
         } else if described.held[i] {
-            Source::Held
+            Source::Held(0.0)
         } else {
             let number = built.push(kinds[i].joint(built.balls));
             if let (Some(way), Some(links)) = (&mut among, &spun) {

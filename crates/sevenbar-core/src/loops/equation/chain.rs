@@ -53,6 +53,8 @@ pub(crate) struct Chain {
     pub agree: f64,
     /// Turns of which one half counts: in the other stand the same poses, with links that spin idly turned over.
     pub halves: Vec<Half>,
+    /// The pose of a drawing, where it closes.
+    pub drawn: Configuration,
 }
 
 /// The half turn of a joint that counts.
@@ -150,6 +152,7 @@ impl Chain {
             around,
             agree: AGREE,
             halves: Vec::new(),
+            drawn: Configuration::ZERO,
         }
     }
 

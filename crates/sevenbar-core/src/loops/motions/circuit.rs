@@ -10,6 +10,7 @@ use crate::loops::description::described_loop::{Column, Loop};
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
 use crate::loops::equation::dense::{COLUMNS, Columns, length};
 use crate::loops::equation::rotations::short_way;
+use crate::loops::mobility::at_rest::Still;
 use crate::loops::rates::velocities::ORDERS;
 use crate::outcome::{CircuitMeasures, DeadCentre, DeadCentreKind, Role, RowStatus};
 use std::f64::consts::TAU;
@@ -27,6 +28,25 @@ pub struct Circuit {
     pub(super) limits: [Limits; 2],
     /// The distance of its farthest pose from its first [rad, or relative to the size].
     pub(super) extent: f64,
+}
+
+impl Circuit {
+    /// The circuit of a loop with a joint held, as one of that loop with the joint free.
+    pub(super) fn holding(mut self, still: Still, held: &Loop, output: usize) -> Self {
+        if held.inner(output).is_none() {
+            // nothing moves in its column, and it rests where it is held
+            let value = still.value / held.inward(output);
+            self.measures.output = Some([value; 2]);
+            for dead_centre in &mut self.measures.dead_centres {
+                dead_centre.output = value;
+            }
+        }
+        self.rows.still = Some(still);
+        if let Some(course) = &mut self.course {
+            course.still = Some(still);
+        }
+        self
+    }
 }
 
 /// A value at which a column turns back, and the column's second derivative there by the length of the curve.
@@ -70,6 +90,7 @@ pub struct Course {
     grid: (f64, f64),
     offsets: Vec<f64>,
     speed: f64,
+    still: Option<Still>,
     /// What the rows were when they were computed first.
     pub tally: Tally,
 }
@@ -77,6 +98,7 @@ pub struct Course {
 impl Course {
     /// The rows, to the last bit those that were dropped.
     pub fn rows(&self, linkage: &Loop) -> Rows {
+        let linkage = linkage.followed(self.still);
         let rows = linkage.reduced.chain.as_ref().map(|chain| {
             let passes = Passes {
                 chain,
@@ -91,6 +113,7 @@ impl Course {
             rows: rows.unwrap_or_default(),
             offsets: self.offsets.clone(),
             speed: self.speed,
+            still: self.still,
         }
     }
 }
@@ -178,6 +201,7 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
         } else {
             speed * linkage.inward(driver.outer)
         },
+        still: None,
     };
     // one without rows is no circuit, so a course is never of none
     let course = (!keep && law.is_none() && !rows.is_empty()).then(|| {
@@ -191,6 +215,7 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
             grid,
             offsets: rows.offsets.clone(),
             speed: rows.speed,
+            still: None,
             tally,
         }
     });

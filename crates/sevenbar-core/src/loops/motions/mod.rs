@@ -3,6 +3,7 @@
 pub(super) mod circuit;
 mod extremes;
 pub(super) mod measures;
+mod met_twice;
 pub(super) mod motion;
 pub(super) mod passes;
 mod row;

@@ -1,6 +1,7 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
 use super::circuit::{Circuit, Limit, Limits, Wanted, circuit, grid};
+use super::met_twice::{Held, HeldMotions, held_at};
 use super::passes::Passes;
 use crate::loops::branch_points::counting::Uncounted;
 use crate::loops::circuits::curve::Curve;
@@ -68,6 +69,17 @@ pub enum Through {
     InputRests(Vec<usize>),
 }
 
+/// What a motion is computed over.
+#[derive(Clone, Copy)]
+struct Asked<'a> {
+    input: usize,
+    output: usize,
+    samples: usize,
+    speed: f64,
+    law: Option<&'a [[f64; 4]]>,
+    keep: bool,
+}
+
 /// Every circuit over the inputs of one column, on a grid of `samples` a turn or at the inputs of a law.
 ///
 /// Without `keep` the circuits of a grid have courses in place of rows. `None` where one of the columns is no joint of one freedom that
@@ -92,11 +104,48 @@ pub fn motion(
         });
     };
     let (driver, follower) = (linkage.inner(input)?, linkage.inner(output)?);
-    let mut curves = curves(chain, &[driver.inner, follower.inner], false);
-    let followed = std::mem::take(&mut curves.curves);
+    let curves = curves(chain, &[driver.inner, follower.inner], false);
+    let held = held_motions(linkage, &curves, &[input, output], false);
+    let asked = Asked { input, output, samples, speed, law, keep };
+    let mut motion = followed(linkage, curves, &asked)?;
+    motion.search.unfollowed -= held.explained;
+    for one in held.motions {
+        motion.add(one, &asked);
+    }
+    let turns = [driver, follower].map(|column| chain.is_turn(column.inner));
+    let meeting = limits_meet(&motion.circuits, turns);
+    motion.motion_type = motion_type(
+        linkage,
+        &motion.search,
+        &motion.circuits,
+        &motion.change_points,
+        meeting,
+    );
+    Some(motion)
+}
+
+/// The motions along which a constraint is met twice over, where there are no others.
+fn held_motions(linkage: &Loop, curves: &Curves, wished: &[usize], first_only: bool) -> HeldMotions {
+    let moves = curves.search.found.as_ref().is_some_and(|f| f.finite == 1);
+    if moves && curves.curves.is_empty() {
+        HeldMotions::through(linkage, &curves.lost, wished, first_only)
+    } else {
+        HeldMotions::default()
+    }
+}
+
+/// The motion along curves, its type aside.
+fn followed(linkage: &Loop, mut curves: Curves, asked: &Asked) -> Option<Motion> {
+    let Asked { samples, speed, law, keep, .. } = *asked;
+    let chain = linkage.reduced.chain.as_ref()?;
+    let driver = linkage.inner(asked.input)?;
+    let follower = linkage
+        .inner(asked.output)
+        .or_else(|| linkage.column_at_rest(asked.output))?;
+    let own = std::mem::take(&mut curves.curves);
     let rests = |c: &Curve| c.rests(driver.inner);
-    let moving = followed.iter().any(rests).then(|| moving(linkage, &followed));
-    let passes: Vec<Passes> = followed
+    let moving = own.iter().any(rests).then(|| moving(linkage, &own));
+    let passes: Vec<Passes> = own
         .into_iter()
         .filter(|c| !rests(c))
         .filter_map(|c| Passes::new(chain, c, driver.inner))
@@ -135,15 +184,40 @@ pub fn motion(
         count.column = outer(count.column).ok_or(Uncounted::Searched)?;
         Ok(count)
     });
-    let turns = [driver, follower].map(|column| chain.is_turn(column.inner));
-    let meeting = limits_meet(&circuits, turns);
-    Some(Motion {
-        motion_type: motion_type(linkage, &search, &circuits, &change_points, meeting),
-        search,
-        circuits,
-        change_points,
-        moving,
-    })
+    Some(Motion { motion_type: "", search, circuits, change_points, moving })
+}
+
+impl Motion {
+    /// Takes in the circuits of the loop with a joint held that rests along them.
+    fn add(&mut self, held: Held, asked: &Asked) {
+        let Held { still, linkage, curves } = held;
+        // no claim is made of isolated solutions where others are double
+        self.search.count = Err(Uncounted::Lost);
+        self.search.found.clone_from(&curves.search.found);
+        if linkage.inner(asked.input).is_none() {
+            self.moving = Some(moving(&linkage, &curves.curves));
+            return;
+        }
+        let Some(more) = followed(&linkage, curves, asked) else {
+            return;
+        };
+        if more.search.completeness == Completeness::Searched {
+            self.search.completeness = Completeness::Searched;
+        }
+        self.search.unfollowed += more.search.unfollowed;
+        let before = self.circuits.len();
+        self.circuits.extend(
+            more.circuits
+                .into_iter()
+                .map(|c| c.holding(still, &linkage, asked.output)),
+        );
+        self.change_points
+            .extend(more.change_points.into_iter().map(|mut point| {
+                point.circuits.iter_mut().for_each(|k| *k += before);
+                point
+            }));
+        self.moving = more.moving.or(self.moving.take());
+    }
 }
 
 /// Whether a gap of less than `SAME_LIMIT` parts two limits of the input, or of the output, at both of which it hardly moves while other
@@ -218,17 +292,32 @@ pub fn circuit_through(
     law: Option<&[[f64; 4]]>,
 ) -> Option<Through> {
     let chain = linkage.reduced.chain.as_ref()?;
-    let (driver, follower) = (linkage.inner(input)?, linkage.inner(output)?);
+    let driver = linkage.inner(input)?;
+    let follower = linkage.inner(output).or_else(|| linkage.column_at_rest(output))?;
     let rough = configuration(linkage, values);
     let Some(Settled { at: pose, .. }) = polish(chain, driver.inner, &rough, PUT_RIGHT).filter(|s| s.agrees)
     else {
         return Some(Through::Apart(chain.residual(&chain.place(&rough))));
     };
-    let mut curves = Curves::new(&[driver.inner, follower.inner]);
+    let wished: Vec<usize> = [driver.inner, follower.inner]
+        .into_iter()
+        .filter(|&c| c < chain.columns)
+        .collect();
+    let mut curves = Curves::new(&wished);
     curves.take(chain, &[pose], driver.inner);
     curves.finish(chain);
     let Some(curve) = through(chain, curves.curves, &pose, driver.inner) else {
-        return Some(Through::Still);
+        let Some(Held { still, linkage, curves }) = held_at(linkage, &pose) else {
+            return Some(Through::Still);
+        };
+        if linkage.inner(input).is_none() {
+            return Some(Through::InputRests(moving(&linkage, &curves.curves)));
+        }
+        let found = circuit_through(&linkage, values, input, output, samples, speed, law)?;
+        return Some(match found {
+            Through::Circuit(circuit) => Through::Circuit(Box::new(circuit.holding(still, &linkage, output))),
+            other => other,
+        });
     };
     if curve.rests(driver.inner) {
         return Some(Through::InputRests(moving(linkage, &[curve])));
@@ -260,5 +349,8 @@ fn moving(linkage: &Loop, curves: &[Curve]) -> Vec<usize> {
 /// How freely the loop moves, from the first poses found over the values of a column.
 pub fn mobility(linkage: &Loop, column: usize) -> Option<Found> {
     let chain = linkage.reduced.chain.as_ref()?;
-    curves(chain, &[linkage.chain_column(column)?], true).search.found
+    let curves = curves(chain, &[linkage.chain_column(column)?], true);
+    let held = held_motions(linkage, &curves, &[column], true).motions;
+    let search = held.into_iter().next().map_or(curves.search, |h| h.curves.search);
+    search.found
 }

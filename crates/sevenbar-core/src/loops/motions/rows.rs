@@ -8,6 +8,7 @@ use crate::loops::equation::chain::{BALLS, Chain, Configuration};
 use crate::loops::equation::dense::COLUMNS;
 use crate::loops::equation::kinds::Kind;
 use crate::loops::equation::rotations::short_way;
+use crate::loops::mobility::at_rest::Still;
 use crate::loops::rates::points::{in_report_frame, link_twist, point_rates};
 use crate::loops::rates::turns::value_series;
 use crate::loops::rates::velocities::{ORDERS, Rates};
@@ -27,6 +28,8 @@ pub struct Rows {
     pub(super) offsets: Vec<f64>,
     /// d(input)/dt at which rates are given; the rows hold them at one, or by a law.
     pub(super) speed: f64,
+    /// The joint of the loop that is held in them.
+    pub(super) still: Option<Still>,
 }
 
 /// What may be said of rows that are not at hand.
@@ -100,6 +103,11 @@ impl Rows {
         self.speed
     }
 
+    /// The joint of the loop that is held in them, as it rests.
+    pub fn still(&self) -> Option<Still> {
+        self.still
+    }
+
     /// Every row as `ROW_NUMBERS` numbers, from which `from_numbers` makes it again to the last bit.
     pub fn numbers(&self) -> Vec<f64> {
         let mut out = Vec::with_capacity(self.len() * ROW_NUMBERS);
@@ -117,8 +125,13 @@ impl Rows {
         out
     }
 
-    /// Rows of what `numbers`, `offsets` and `speed` told; `None` where these are no such numbers.
-    pub fn from_numbers(numbers: &[f64], offsets: Vec<f64>, speed: f64) -> Option<Self> {
+    /// Rows of what `numbers`, `offsets`, `speed` and `still` told; `None` where these are no such numbers.
+    pub fn from_numbers(
+        numbers: &[f64],
+        offsets: Vec<f64>,
+        speed: f64,
+        still: Option<Still>,
+    ) -> Option<Self> {
         let rows = numbers.chunks(ROW_NUMBERS).map(|row| {
             let (values, rest) = row.split_first_chunk::<COLUMNS>()?;
             let (balls, rest) = rest.split_at_checked(9 * BALLS)?;
@@ -140,7 +153,7 @@ impl Rows {
                 condition,
             })
         });
-        Some(Self { rows: rows.collect::<Option<_>>()?, offsets, speed })
+        Some(Self { rows: rows.collect::<Option<_>>()?, offsets, speed, still })
     }
 
     /// The row's rates at the speed asked for.
@@ -159,6 +172,7 @@ impl Rows {
 
 /// Values and three derivatives of every column, order by order: `4 x rows x columns`; angles unwrapped along the rows.
 pub fn joint_table(linkage: &Loop, rows: &Rows) -> Vec<f64> {
+    let linkage = &*linkage.followed(rows.still);
     let (count, columns) = (rows.len(), linkage.columns);
     let mut out = vec![f64::NAN; 4 * count * columns];
     let mut before: Vec<Option<f64>> = vec![None; columns];
@@ -197,6 +211,7 @@ fn is_ball_turn(linkage: &Loop, column: usize) -> bool {
 /// `link` counts from 0 the joint before it; `at` is in the frame after that joint. Rows without a pose are NaN; at dead
 /// centres only the position is given.
 pub fn point(linkage: &Loop, rows: &Rows, link: usize, at: Vec3) -> Vec<f64> {
+    let linkage = &*linkage.followed(rows.still);
     let count = rows.len();
     let mut out = vec![f64::NAN; 12 * count];
     for (n, row) in rows.rows.iter().enumerate() {
