@@ -1,9 +1,13 @@
 """One linkage written in twenty and more ways: every answer that must agree does (`python -m evidence.rewritten`)."""
 
+import numpy as np
 import pytest
 
+import sevenbar as sb
 from evidence.rewritten.__main__ import compared
-from evidence.rewritten.families import families
+from evidence.rewritten.families import families, lattice
+from sevenbar.reporting.how_found import how_found
+from sevenbar.reporting.report import as_dict
 
 #: Some of each kind; the whole is evidence.
 NAMES = (
@@ -45,3 +49,40 @@ def test_a_linkage_answers_alike_however_it_is_written(name: str) -> None:
 
 def test_there_are_a_hundred_families_and_a_lattice() -> None:
     assert len(families()) >= 100
+
+
+@pytest.mark.slow
+def test_a_loop_on_the_lattice_with_circuits_of_equal_ranges_answers_alike() -> None:
+    found = compared(lattice(175, seed=1), seed=1)
+    assert found.moves
+    assert found.ways >= 20
+    assert found.differences == []
+
+
+def test_the_circuit_through_a_pose_is_the_one_it_lies_on() -> None:
+    # circuits that change points lead to from one another
+    linkage = lattice(55, seed=1).linkage()
+    motion = linkage.motion(36, input="j1", output="j7")
+    turning_back = [circuit for circuit in motion.circuits if circuit.input_range is not None]
+    assert len(turning_back) == 6
+    for circuit in turning_back:
+        row = int(np.nanargmin(np.where(np.isfinite(circuit.condition), circuit.condition, np.nan)))
+        again = linkage.circuit(circuit.q[row], 36, input="j1", output="j7")
+        assert again.input_range is not None
+        lowest, highest = (
+            np.unwrap([end, other])[1]
+            for end, other in zip(circuit.input_range, again.input_range, strict=True)
+        )
+        assert (lowest, highest) == pytest.approx(circuit.input_range, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_a_search_that_stops_short_names_the_bound() -> None:
+    motion = lattice(124, seed=1).linkage().motion(36, input="j1", output="j7")
+    assert motion.search.bound == "change-points"
+    assert motion.search.unfollowed > 0
+    assert "stopped short after the most places that may be change points" in how_found(motion)
+
+
+def test_a_search_that_went_to_its_end_names_no_bound() -> None:
+    assert as_dict(sb.load("rssr").motion(12))["stopped_by"] is None

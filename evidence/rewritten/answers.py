@@ -76,7 +76,14 @@ def answers_of(way: Way) -> Answers:
 
 
 def _runs_off(linkage: Linkage, motion: Motion) -> bool:
-    open_ends = any(not circuit.closed and len(circuit.dead_centres) < 2 for circuit in motion.circuits)
+    def turns(circuit: Circuit) -> int:
+        return sum(centre.kind == "input" for centre in circuit.dead_centres)
+
+    open_ends = any(not circuit.closed and turns(circuit) < 2 for circuit in motion.circuits)
+    # an open circuit with two of them may run off beyond both
+    open_ends |= any(
+        not circuit.closed and circuit.motion_type != "change-point" for circuit in motion.circuits
+    )
     return open_ends and any(kind in "PC" for kind in linkage.kind)
 
 
@@ -129,17 +136,27 @@ def differences(way: Way, drawn: Answers, written: Answers) -> Iterator[str]:
             yield from _numbers("circuit", drawn.circuits[i], written.circuits[k], near, way)
 
 
+def differs(way: Way, drawn: Answers, written: Answers) -> set[str]:
+    """What of the answers differs, by its first words."""
+    return {line.partition(":")[0] for line in differences(way, drawn, written)}
+
+
 def reason(way: Way, drawn: Answers, written: Answers) -> str:
     """Why answers may differ, as docs/not-covered.md has it; empty where they may not."""
     if "searched" in (drawn.words.get("completeness"), written.words.get("completeness")):
         return "searched, screws and slides within bounds that count from how it is written"
     unfollowed = "some not followed"
-    if drawn.words.get(unfollowed) and written.words.get(unfollowed) and drawn.is_change:
-        return "both say that not all was followed: curves that touch or coincide are joined in part"
-    if all(line.startswith(unfollowed) for line in differences(way, drawn, written)) and (
-        drawn.words.get("completeness") == written.words.get("completeness") == "algebraic"
-    ):
+    if drawn.is_change and (drawn.words.get(unfollowed) or written.words.get(unfollowed)):
+        if drawn.words[unfollowed] == written.words[unfollowed]:
+            return "both say that not all was followed: curves that touch or coincide are joined in part"
+        if differs(way, drawn, written) - {unfollowed}:
+            return "one says that not all was followed: its curves break off where they touch others"
+    words = differs(way, drawn, written)
+    sure = {drawn.words.get("completeness"), written.words.get("completeness")}
+    if words == {unfollowed} and sure == {"algebraic"}:
         return "of circuits that are not counted, whether modes on curves that coincide are met is chance"
+    if words == {"completeness"} and sure == {"algebraic", "counted"} and drawn.is_change:
+        return "all else agrees: about change points the count of branch points balances in some ways only"
     if drawn.runs_off and written.runs_off:
         return "slides run to infinity, and are followed to a distance from where they are written"
     if not drawn.circuits and not written.circuits:

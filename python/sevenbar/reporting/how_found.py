@@ -23,6 +23,13 @@ _UNCOUNTED = {
     "still": "circuits are not counted, since there may be motions with the joint at rest",
 }
 
+#: At which bound of work a search stopped short.
+_BOUNDS = {
+    "long-curves": "the search stopped short at two curves that had no end after the most steps",
+    "change-points": "the search stopped short after the most places that may be change points",
+    "memory": "the search stopped short at the most memory for curves between change points",
+}
+
 #: Ranges that do not balance listed in one sentence.
 MOST_RANGES = 4
 
@@ -62,6 +69,8 @@ def how_found(motion: Motion) -> str:
         parts.append(say("motions that lead out of them could not be followed"))
     else:
         parts.append(say("no motion leads out of them"))
+    if search.bound is not None:
+        parts.append(say(_BOUNDS[search.bound]))
     if counted := _counted(search):
         parts.append(counted)
     if search.open_by.size:

@@ -19,7 +19,7 @@ mod rates;
 mod tests;
 
 pub use branch_points::counting::{Count, Open, Uncounted};
-pub use circuits::found::{Found, Search};
+pub use circuits::found::{Bound, Found, Search};
 pub use description::described_loop::{Loop, NO_SIZE};
 pub use description::joint_values::drawn_at;
 pub use equation::chain::AGREE;

@@ -43,6 +43,7 @@ def search_from(raw: _core.RawSearch, columns: Sequence[str]) -> Search:
         columns=tuple(columns[c] for c in raw.columns),
         values=raw.values,
         unfollowed=raw.unfollowed,
+        bound=raw.bound,
         rank=None if found is None else found.rank,
         freedoms=None if found is None else found.finite,
         open_by=raw.open_by,

@@ -54,6 +54,9 @@ class Search:
     columns: tuple[str, ...] = ()
     values: int = 0
     unfollowed: int = 0
+    #: The bound of work at which the search stopped short: curves that were followed over the most steps
+    #: without an end, places searched for ways out as change points are, or memory for curves between these.
+    bound: Literal["long-curves", "change-points", "memory"] | None = None
     rank: int | None = None
     freedoms: int | None = None
     #: Poses that redundant constraints alone keep open: by how much [rad, or relative to the size], rising.

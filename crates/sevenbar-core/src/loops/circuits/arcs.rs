@@ -3,6 +3,7 @@
 use super::change_points::{self, AT_POINT, ChangePoint};
 use super::curve::{Curve, End, Node, measure};
 use super::follow::{self, Start, Stop};
+use super::found::Bound;
 use super::on_curve::lies_on;
 use super::turnings::begun_at;
 use super::walked_again;
@@ -27,6 +28,10 @@ const MOST_ENDLESS: usize = 2;
 
 /// Nodes of all arcs after which the same holds, 130 MB: many arcs run ever more slowly into places where curves touch.
 const MOST_HELD: usize = 300_000;
+
+/// Spheres on which ways out are searched after which the same holds: next to a surface of poses each place seems a change point, and each
+/// takes a tenth of a second. Special loops need up to 31.
+const MOST_SPHERES: usize = 60;
 
 /// Places of a curve at which it nearly loses rank that are searched: where it does all along, rounding makes thousands of them.
 const MOST_NARROW: usize = 64;
@@ -63,6 +68,8 @@ pub(crate) struct Arcs {
     failed: Vec<Configuration>,
     /// How many poses were searched about which every pose is like them.
     alike: usize,
+    /// How many spheres were searched for ways out.
+    spheres: usize,
     /// How many more curves may be followed to where they end however slowly they near it.
     pub patience: usize,
     /// Curves with too many nodes so far, in the arcs or not, be they kept or not; and arcs that were dropped as there are enough.
@@ -83,6 +90,7 @@ impl Arcs {
             done: Vec::new(),
             failed: Vec::new(),
             alike: 0,
+            spheres: 0,
             patience: MOST_PATIENCE,
             endless: 0,
             dropped: 0,
@@ -106,10 +114,21 @@ impl Arcs {
         self.arcs.is_empty()
     }
 
-    /// Whether so many curves have no end, or arcs so many nodes, that nothing more is followed.
+    /// The bound of work that is reached, after which nothing more is followed.
+    pub fn bound(&self) -> Option<Bound> {
+        let held = || self.arcs.iter().map(|a| a.curve.nodes.len()).sum::<usize>();
+        if self.endless >= MOST_ENDLESS {
+            Some(Bound::LongCurves)
+        } else if self.spheres >= MOST_SPHERES {
+            Some(Bound::ChangePoints)
+        } else {
+            (held() > MOST_HELD).then_some(Bound::Memory)
+        }
+    }
+
+    /// Whether nothing more is followed.
     pub fn is_endless(&self) -> bool {
-        let held: usize = self.arcs.iter().map(|a| a.curve.nodes.len()).sum();
-        self.endless >= MOST_ENDLESS || held > MOST_HELD
+        self.bound().is_some()
     }
 
     /// Forgets the arcs, once they are joined.
@@ -139,10 +158,10 @@ impl Arcs {
         }
         let tried = |at: &Configuration| length(&chain.difference(at, pose)) < TRIED;
         let degenerate = self.failed.len() >= MOST_FAILED || (self.alike >= MOST_ALIKE && !stuck);
-        if degenerate || self.failed.iter().any(tried) {
+        if degenerate || self.spheres >= MOST_SPHERES || self.failed.iter().any(tried) {
             return None;
         }
-        let Some(found) = change_points::change_point(chain, pose, wished, stuck) else {
+        let Some(found) = change_points::change_point(chain, pose, wished, stuck, &mut self.spheres) else {
             if stuck && is_blind(chain, pose) {
                 self.failed.push(*pose);
             }

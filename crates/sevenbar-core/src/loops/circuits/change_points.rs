@@ -90,11 +90,13 @@ pub(crate) struct ChangePoint {
 }
 
 /// The change point at or near a pose, if there is one, judged by the wished columns; `stuck` says that a walk could not go on there.
+/// `spheres` counts those on which its ways out are searched.
 pub(super) fn change_point(
     chain: &Chain,
     rough: &Configuration,
     wished: &[usize],
     stuck: bool,
+    spheres: &mut usize,
 ) -> Option<ChangePoint> {
     let place = singular_place(chain, rough)?;
     let counts = place.counts(wished, stuck);
@@ -127,6 +129,7 @@ pub(super) fn change_point(
     // the sphere on which its ways were found
     let mut widest = RADII[0];
     for radius in radii {
+        *spheres += 1;
         let ways = ways_out(chain, &place, radius);
         found.finite = ways.finite;
         let rays: Vec<Ray> = ways

@@ -14,6 +14,28 @@ pub struct Found {
     pub finite: usize,
 }
 
+/// A bound of work at which a search stops short.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bound {
+    /// Curves followed over the most steps without an end.
+    LongCurves,
+    /// Places searched for ways out as change points are.
+    ChangePoints,
+    /// Nodes kept of curves between change points.
+    Memory,
+}
+
+impl Bound {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LongCurves => "long-curves",
+            Self::ChangePoints => "change-points",
+            Self::Memory => "memory",
+        }
+    }
+}
+
 /// Where modes were looked for, and what was found out about them.
 #[derive(Clone, Debug)]
 pub struct Search {
@@ -27,6 +49,8 @@ pub struct Search {
     pub values: usize,
     /// Modes there that run into a place where the motion is not smooth, or do not move.
     pub unfollowed: usize,
+    /// The bound of work at which the search stopped short, if it did.
+    pub bound: Option<Bound>,
     /// By how much redundant constraints keep other poses there open, least first [rad, or relative to the size].
     pub open_by: Vec<f64>,
     /// The account of the branch points of the first column, or why there is none.
@@ -42,6 +66,7 @@ impl Search {
             columns: Vec::new(),
             values: 0,
             unfollowed: 0,
+            bound: None,
             open_by: Vec::new(),
             count: Err(Uncounted::Searched),
         }

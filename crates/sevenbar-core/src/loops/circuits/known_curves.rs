@@ -131,6 +131,7 @@ impl Curves {
             self.take_together(chain, &[mode], self.wished[0]);
         }
         self.curves.extend(self.arcs.joined(chain, self.wished[0]));
+        self.search.bound = self.arcs.bound();
         self.arcs.forget();
         self.forget_parts(chain);
         self.change_points = std::mem::take(&mut self.arcs.points);
