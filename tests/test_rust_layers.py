@@ -21,14 +21,14 @@ survey: draw figures kind swing transmission cone wish readings pose tally judge
 
 loops::equation: dense rotations flat screws chain kinds lanes complex_frame closure
 loops::rates: velocities turns points
-loops::mobility: rank idle singular_place
+loops::mobility: rank idle singular_place at_rest
 loops::numbers: twists factors word numbered_loop slopes
 loops::forces: acting stations reactions
-loops::description: spun spin_axis reduce described_loop joint_values
+loops::description: spun spin_axis reduce described_loop holding joint_values
 loops::modes: phases continuation straight circle poles geometry starts chain_closure polish many_starts curves_at_input finder assembly
 loops::branch_points: locating other_input afar survey sectors counting
-loops::circuits: curve follow walked_again on_curve turnings join meetings sphere change_points arcs found known_curves search
-loops::motions: row row_lanes passes extremes rows circuit motion measures
+loops::circuits: curve follow walked_again on_curve turnings join meetings sphere change_points found arcs known_curves search
+loops::motions: row row_lanes passes extremes rows circuit met_twice motion measures
 loops
 """
 

@@ -91,7 +91,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         "mobility": {name: getattr(mobility, name) for name in ("gruebler", "freedoms", "rank", "finite")},
         "completeness": motion.completeness,
         "how_found": how_found(motion),
-        "stopped_by": motion.search.bound,
+        "search_bound": motion.search.bound,
         "open_by": motion.search.open_by.tolist(),
         "agree": motion.agree,
         "near_motion": None if motion.near_motion is None else vars(motion.near_motion),

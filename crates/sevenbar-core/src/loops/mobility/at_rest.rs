@@ -5,7 +5,7 @@
 //! wherever the motion leads. A joint that takes part across it and not along it is at that extreme: held there, it leaves an
 //! overconstrained loop of the rank that it has, which is followed like any other.
 //!
-//! Source: docs/theory.md, (20) and what follows (22).
+//! Source: docs/theory.md, (20).
 
 use super::rank::rank;
 use super::singular_place::singular_place;

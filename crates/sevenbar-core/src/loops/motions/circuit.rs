@@ -7,6 +7,7 @@ use super::rows::{Rows, Tally};
 use crate::loops::circuits::curve::{Curve, Node};
 use crate::loops::circuits::turnings::{self, Turning};
 use crate::loops::description::described_loop::{Column, Loop};
+use crate::loops::description::holding::followed;
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
 use crate::loops::equation::dense::{COLUMNS, Columns, length};
 use crate::loops::equation::rotations::short_way;
@@ -98,7 +99,7 @@ pub struct Course {
 impl Course {
     /// The rows, to the last bit those that were dropped.
     pub fn rows(&self, linkage: &Loop) -> Rows {
-        let linkage = linkage.followed(self.still);
+        let linkage = followed(linkage, self.still);
         let rows = linkage.reduced.chain.as_ref().map(|chain| {
             let passes = Passes {
                 chain,

@@ -1,12 +1,12 @@
 //! Motions along which a constraint is met twice over, or nearly so: the loop's with a joint held that rests along them.
 //!
-//! Source: docs/theory.md, (20) and what follows (22).
+//! Source: docs/theory.md, (20).
 
 use crate::loops::circuits::known_curves::Curves;
 use crate::loops::circuits::on_curve::lies_on_any;
 use crate::loops::circuits::search::curves;
 use crate::loops::description::described_loop::Loop;
-use crate::loops::description::holding::without;
+use crate::loops::description::holding::{holding, without};
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::mobility::at_rest::{Still, joints_at_rest};
 
@@ -26,7 +26,7 @@ pub(super) fn held_at(linkage: &Loop, pose: &Configuration) -> Option<Held> {
     let chain = linkage.reduced.chain.as_ref()?;
     let (at, joints) = joints_at_rest(chain, pose);
     joints.into_iter().find_map(|still| {
-        let held = linkage.holding(still)?;
+        let held = holding(linkage, still)?;
         let own = held.reduced.chain.as_ref()?;
         let mut curves = Curves::new(&[0]);
         curves.take(own, &[without(chain, still.joint, &at)], 0);

@@ -10,6 +10,7 @@ use crate::loops::circuits::known_curves::Curves;
 use crate::loops::circuits::on_curve::lies_on;
 use crate::loops::circuits::search::curves;
 use crate::loops::description::described_loop::Loop;
+use crate::loops::description::holding::column_at_rest;
 use crate::loops::description::joint_values::{configuration, joint_values};
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::rotations::short_way;
@@ -141,7 +142,7 @@ fn followed(linkage: &Loop, mut curves: Curves, asked: &Asked) -> Option<Motion>
     let driver = linkage.inner(asked.input)?;
     let follower = linkage
         .inner(asked.output)
-        .or_else(|| linkage.column_at_rest(asked.output))?;
+        .or_else(|| column_at_rest(linkage, asked.output))?;
     let own = std::mem::take(&mut curves.curves);
     let rests = |c: &Curve| c.rests(driver.inner);
     let moving = own.iter().any(rests).then(|| moving(linkage, &own));
@@ -293,7 +294,9 @@ pub fn circuit_through(
 ) -> Option<Through> {
     let chain = linkage.reduced.chain.as_ref()?;
     let driver = linkage.inner(input)?;
-    let follower = linkage.inner(output).or_else(|| linkage.column_at_rest(output))?;
+    let follower = linkage
+        .inner(output)
+        .or_else(|| column_at_rest(linkage, output))?;
     let rough = configuration(linkage, values);
     let Some(Settled { at: pose, .. }) = polish(chain, driver.inner, &rough, PUT_RIGHT).filter(|s| s.agrees)
     else {

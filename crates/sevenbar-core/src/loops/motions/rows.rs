@@ -2,6 +2,7 @@
 
 use super::row::Row;
 use crate::loops::description::described_loop::Loop;
+use crate::loops::description::holding::followed;
 use crate::loops::description::joint_values::write_joint_rates;
 use crate::loops::description::reduce::{Carrier, SpunLinks};
 use crate::loops::equation::chain::{BALLS, Chain, Configuration};
@@ -172,7 +173,7 @@ impl Rows {
 
 /// Values and three derivatives of every column, order by order: `4 x rows x columns`; angles unwrapped along the rows.
 pub fn joint_table(linkage: &Loop, rows: &Rows) -> Vec<f64> {
-    let linkage = &*linkage.followed(rows.still);
+    let linkage = &*followed(linkage, rows.still);
     let (count, columns) = (rows.len(), linkage.columns);
     let mut out = vec![f64::NAN; 4 * count * columns];
     let mut before: Vec<Option<f64>> = vec![None; columns];
@@ -211,7 +212,7 @@ fn is_ball_turn(linkage: &Loop, column: usize) -> bool {
 /// `link` counts from 0 the joint before it; `at` is in the frame after that joint. Rows without a pose are NaN; at dead
 /// centres only the position is given.
 pub fn point(linkage: &Loop, rows: &Rows, link: usize, at: Vec3) -> Vec<f64> {
-    let linkage = &*linkage.followed(rows.still);
+    let linkage = &*followed(linkage, rows.still);
     let count = rows.len();
     let mut out = vec![f64::NAN; 12 * count];
     for (n, row) in rows.rows.iter().enumerate() {
