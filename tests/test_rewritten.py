@@ -85,4 +85,4 @@ def test_a_search_that_stops_short_names_the_bound() -> None:
 
 
 def test_a_search_that_went_to_its_end_names_no_bound() -> None:
-    assert as_dict(sb.load("rssr").motion(12))["stopped_by"] is None
+    assert as_dict(sb.load("rssr").motion(12))["search_bound"] is None
