@@ -30,8 +30,8 @@ const MOST_ENDLESS: usize = 2;
 const MOST_HELD: usize = 300_000;
 
 /// Spheres on which ways out are searched after which the same holds: next to a surface of poses each place seems a change point, and each
-/// takes a tenth of a second. Special loops need up to 31.
-const MOST_SPHERES: usize = 60;
+/// takes a tenth of a second. Special loops need up to 31, seven axes at right angles more than 60.
+const MOST_SPHERES: usize = 100;
 
 /// Places of a curve at which it nearly loses rank that are searched: where it does all along, rounding makes thousands of them.
 const MOST_NARROW: usize = 64;
