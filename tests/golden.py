@@ -23,8 +23,8 @@ from sevenbar.export.tables import write_csv
 #: The record, a file a case.
 FOLDER = Path(__file__).parent / "golden_record"
 
-#: Files that commands are given.
-EXAMPLES = Path(__file__).parents[1] / "examples"
+#: Where commands run, so that the names of files that they are given have no folder of one machine.
+ROOT = Path(__file__).parents[1]
 
 #: At most so many lines of a table are kept, spread over it.
 ROWS = 12
@@ -50,9 +50,9 @@ SINGLE = {
     "forces_speed": ("forces", "rssr_press", "--speed", "90 rpm", "--unevenness", "0.02", "--json"),
     "forces_pose": ("forces", "engine", "--at", "45deg"),
     "free": ("free", "rssr_press", "--time", "1s", "--from", "30deg", "--json"),
-    "compare": ("compare", "rssr", EXAMPLES / "rssr_table1.csv"),
+    "compare": ("compare", "rssr", "examples/rssr_table1.csv"),
     "calibrate": (
-        *("calibrate", "rssr", EXAMPLES / "rssr_bench.csv", "--hold", "D", "--offset", "input,output"),
+        *("calibrate", "rssr", "examples/rssr_bench.csv", "--hold", "D", "--offset", "input,output"),
         "--json",
     ),
     "tolerance": ("tolerance", "rssr", "--tolerance", "L*=0.5mm", "--tolerance", "M=1", "--json"),
@@ -91,7 +91,7 @@ def where(name):
 
 def printed(*words):
     """How a command ends, and what it prints."""
-    run = sevenbar(*words)
+    run = sevenbar(*words, cwd=ROOT)
     return f"exit {run.returncode}\n{run.stdout}{run.stderr}"
 
 

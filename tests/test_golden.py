@@ -13,8 +13,7 @@ def test_the_record_has_each_case_and_no_other():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
-def test_it_is_said_as_before(case, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_it_is_said_as_before(case):
     assert not difference(CASES[case](), (FOLDER / f"{case}.txt").read_text("utf-8"))
 
 

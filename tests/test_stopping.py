@@ -133,6 +133,8 @@ def test_of_a_loop_whose_curves_have_no_end_two_are_followed_at_most_and_the_oth
 
 STOP = """
 import os, signal
+# a shell starts what runs in the background with signals ignored, and so they stay
+signal.signal(signal.{how}, signal.SIG_DFL)
 import sevenbar.kinematics.linkage as linkage
 def motion(*_, **__):
     os.kill(os.getpid(), signal.{how})

@@ -148,9 +148,9 @@ def test_numbers_that_are_no_rows_make_none():
     from sevenbar import _core
 
     motion = sb.load("seven_r").motion(SAMPLES)
-    kind, (numbers, offsets, speed) = motion.circuits[0]._point.args[0].__reduce__()
+    kind, (numbers, offsets, speed, still) = motion.circuits[0]._point.args[0].__reduce__()
     assert kind is _core.Rows
-    assert kind(numbers, offsets, speed).__reduce__()[1][0].tobytes() == numbers.tobytes()
+    assert kind(numbers, offsets, speed, still).__reduce__()[1][0].tobytes() == numbers.tobytes()
     with pytest.raises(_core.CoreError, match="rows need 50 numbers each"):
         kind(numbers[:, 1:].copy(), offsets, speed)
     broken = numbers.copy()
