@@ -49,7 +49,10 @@ def compared(one: Drawing, seed: int) -> Compared:
                 continue
             why = reason(way, first, answers)
             for difference in differences(way, first, answers):
-                (found.explained if why else found.differences).append(f"{difference}{why and ': '}{why}")
+                if why:
+                    found.explained.setdefault(why, []).append(difference)
+                else:
+                    found.differences.append(difference)
     found.seconds = time.process_time() - start
     return found
 
@@ -87,7 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             for one in found:
                 if given.record:
                     keep(given.record, name, one)
-                for line in [*one.differences, *(one.explained if given.only else ())]:
+                for line in [*one.differences, *(one.with_reason() if given.only else ())]:
                     print(f"{one.name if name == 'lattice' else name}: {line}", flush=True)
     out = given.out or (None if given.only else ROOT / "docs/rewritten.md")
     page = written(rows, made)

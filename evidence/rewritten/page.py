@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,20 +11,30 @@ from typing import Any
 from evidence.circumstances import in_words
 from evidence.markdown import table
 
-#: Differences of a family that the page lists.
-LISTED = 12
+#: Differences of a family that the page lists; of those that have a reason, so many for each.
+LISTED, EXAMPLES = 12, 2
+
+#: How names of families begin that have a line of the table to themselves, and what the others are called.
+KINDS, OTHERS = ("planar", "slider-crank", "spherical", "gallery", "lattice"), "other loops"
 
 
 @dataclass
 class Compared:
-    """What was seen of a drawing: its ways, what differs without and with a reason, processor time [s]."""
+    """What was seen of a drawing: its ways, what differs without a reason and by reason, and its time [s]."""
 
     name: str
     ways: int = 0
     moves: bool = False
     differences: list[str] = field(default_factory=list)
-    explained: list[str] = field(default_factory=list)
+    explained: dict[str, list[str]] = field(default_factory=dict)
     seconds: float = 0.0
+
+    def with_reason(self) -> list[str]:
+        """Each reason once, with how many answers differ for it and the first of them."""
+        return [
+            f"{why} ({len(lines)} answer{'s' * (len(lines) > 1)}, as {'; '.join(lines[:EXAMPLES])})"
+            for why, lines in self.explained.items()
+        ]
 
 
 def recorded(record: Path | None) -> dict[str, list[Compared]]:
@@ -47,7 +57,8 @@ def written(rows: Mapping[str, Sequence[Compared]], made: Mapping[str, Any]) -> 
     """The page as Markdown."""
     parts: dict[str, list[Compared]] = {}
     for name, found in rows.items():
-        parts.setdefault(name.split()[0].rstrip(",") if name != "lattice" else name, []).extend(found)
+        kind = name.split()[0].rstrip(",")
+        parts.setdefault(kind if kind in KINDS else OTHERS, []).extend(found)
     every = [one for found in rows.values() for one in found]
     least = min((one.ways for one in every), default=0)
     lines = [
@@ -82,11 +93,16 @@ def written(rows: Mapping[str, Sequence[Compared]], made: Mapping[str, Any]) -> 
         ),
         "",
     ]
-    for heading, kind in (("Differences", "differences"), ("Differences with a reason", "explained")):
-        differ = [(name, one) for name, found in rows.items() for one in found if getattr(one, kind)]
+    kinds: dict[str, Callable[[Compared], list[str]]] = {
+        "Differences": lambda one: one.differences,
+        "Differences with a reason": Compared.with_reason,
+    }
+    for heading, lines_of in kinds.items():
+        differ = [
+            (name, one, lines_of(one)) for name, found in rows.items() for one in found if lines_of(one)
+        ]
         lines += [f"## {heading}", ""] + ([] if differ else ["None.", ""])
-        for name, one in differ:
-            own = getattr(one, kind)
+        for name, one, own in differ:
             lines += [f"- {one.name if name == 'lattice' else name}: {'; '.join(own[:LISTED])}"]
             if len(own) > LISTED:
                 lines[-1] += f"; {len(own) - LISTED} more"
