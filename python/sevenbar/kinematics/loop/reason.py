@@ -6,10 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from sevenbar._core import AGREE
 from sevenbar.kinematics.loop.geometry import Loop
-
-#: Axes nearer than this [rad, or relative to the size] are one.
-SAME_AXIS = 1e-9
 
 #: What the others have in common: a plane in which they move, a point through which their axes go; or two
 #: joints turn about one axis, so that the link between them has no length.
@@ -51,7 +49,7 @@ def no_length(loop: Loop) -> Reason | None:
     for i, joint in enumerate(loop.joints):
         after = loop.joints[(i + 1) % len(loop.joints)]
         link = loop.transforms[i]
-        same = math.hypot(*link[:2, 2]) <= SAME_AXIS and math.hypot(*link[:2, 3]) <= SAME_AXIS * loop.size
+        same = math.hypot(*link[:2, 2]) <= AGREE and math.hypot(*link[:2, 3]) <= AGREE * loop.size
         if joint.kind == after.kind == "R" and same:
             return Reason("one-axis", (joint.name, after.name))
     return None
