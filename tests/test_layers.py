@@ -24,6 +24,7 @@ CORE_IMPORTERS = {
         for name in (
             "circuits/from_core",
             "dynamics/forces",
+            "loop/reason",
             "numbers/sensitivity",
             "numbers/word",
             "solvers/batches",
@@ -85,7 +86,7 @@ def imported_from_core(python: str) -> set[str]:
 
 
 @pytest.mark.slow
-def test_the_core_is_imported_by_the_solvers_the_batches_and_the_sensitivities_only():
+def test_the_core_is_imported_by_the_modules_listed_only():
     taken = {
         file.relative_to(PACKAGE).with_suffix("").as_posix(): imported_from_core(
             file.read_text(encoding="utf-8")
