@@ -5,6 +5,7 @@ the record anew with `make golden`, read what `git diff` shows of it, and name i
 """
 
 import math
+import os
 import re
 import sys
 from functools import partial
@@ -13,6 +14,7 @@ from tempfile import TemporaryDirectory
 
 import matplotlib as mpl
 import numpy as np
+import trimesh
 
 import sevenbar as sb
 from commands import sevenbar
@@ -60,6 +62,39 @@ SINGLE = {
     "swing": ("design", "swing", "--swing", "60deg", "--time-ratio", "1.2", "--json"),
     "point": ("design", "point", "seven_r", "--link", "4", "--box=-200:200,-200:200,-200:200", "--json"),
     "inertia": ("design", "inertia", "seven_r", "--mass", "P=2.5", "--json"),
+    "function": ("design", "function", "--y", "log10(x)", "--x", "1:2", "--points", "5", "--designs", "2"),
+    "path": (
+        *("design", "path", "planar_4r", "--path", "examples/coupler_curve.csv", "--link", "2"),
+        *("--at", "0,-50,20", "--vary", "length_*", "--designs", "1", "--starts", "2"),
+    ),
+    "survey": (
+        *("design", "survey", "--output-range", "0:23.75deg", "--ball-angle", "15deg"),
+        *("--count", "2000", "--seed", "1"),
+    ),
+    "sweep": ("sweep", "rssr", "--over", "L1=200:600:5", "--over", "L3=400,450", "--json"),
+}
+
+#: Tables of exact tasks, and how each is asked.
+EXACT = {
+    "planar": ("x [mm],y [mm],turn_z [rad]\n0,0,0\n4,1,0.4\n7,4,0.9\n9,8,1.3\n", ()),
+    "spherical": (
+        "turn_x [deg],turn_y [deg],turn_z [deg]\n0,0,0\n10,4,9\n-6,23,40\n",
+        ("--moving", "0,0,1", "--moving", "1,0,1"),
+    ),
+    "pairs": (
+        "input [deg],output [deg]\n0,0\n40,20\n80,50\n",
+        ("--twist", "90deg", "--zeros", "30deg,90deg"),
+    ),
+}
+
+#: Files that are written from a linkage: the linkage, the ending, and what else is asked.
+FILES = {
+    "mjcf": ("rssr", ".xml", ("--at", "40")),
+    "mjcf_motor": ("rscr", ".xml", ("--drive", "motor")),
+    "urdf": ("rsur", ".urdf", ()),
+    "adams": ("planar_4r", ".cmd", ("--at", "0.5rad")),
+    "table_si": ("rssp", ".csv", ("--units", "si", "--samples", "12")),
+    "glb": ("planar_4r", ".glb", ()),
 }
 
 
@@ -77,6 +112,10 @@ def cases():
     for name in LOADED:
         found[f"{name}.forces"] = partial(printed, "forces", name)
         found[f"{name}.forces.json"] = partial(printed, "forces", name, "--json")
+    for name, (table, words) in EXACT.items():
+        found[f"exact.{name}"] = partial(solved, table, words)
+    for name, (linkage, ending, words) in FILES.items():
+        found[f"export.{name}"] = partial(written, linkage, ending, words)
     return found | {f"commands.{name}": partial(printed, *words) for name, words in SINGLE.items()}
 
 
@@ -91,8 +130,36 @@ def where(name):
 
 def printed(*words):
     """How a command ends, and what it prints."""
+    os.environ["COLUMNS"] = "80"
     run = sevenbar(*words, cwd=ROOT)
     return f"exit {run.returncode}\n{run.stdout}{run.stderr}"
+
+
+def solved(table, words):
+    """All answers to a table of pairs or poses."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "task.csv"
+        file.write_text(table, encoding="utf-8")
+        return printed("design", "exact", str(file), *words).replace(folder, "")
+
+
+def written(linkage, ending, words):
+    """The files that an export writes; of a binary one the bodies, with where they lie and their volume."""
+    lines = []
+    with TemporaryDirectory() as folder:
+        run = sevenbar("export", linkage, "--out", Path(folder) / f"out{ending}", *words)
+        lines.append(f"exit {run.returncode}\n{run.stdout}{run.stderr}".replace(folder, "").rstrip())
+        for file in sorted(Path(folder).iterdir()):
+            lines.append(f"-- {file.name}")
+            lines += bodies(file) if file.suffix == ".glb" else file.read_text("utf-8").splitlines()
+    return "\n".join(lines) + "\n"
+
+
+def bodies(file):
+    """Each body of a GLB: name, corners of its box, volume."""
+    for name, mesh in sorted(trimesh.load(file, force="scene").geometry.items()):
+        corners = " ".join(f"{number + 0.0:.6f}" for number in mesh.bounds.ravel())
+        yield f"{name}: {corners}; {mesh.volume:.6g}"
 
 
 def exported(name):
