@@ -26,6 +26,17 @@ def test_the_package_and_its_program_are_imported_without_anything_large():
     assert printed(code) == "[]\n"
 
 
+def test_a_table_is_exported_without_figures_engines_or_meshes(tmp_path):
+    code = (
+        f"import sys; sys.argv = ['sevenbar', 'export', 'rssr', '--out', {str(tmp_path / 'motion.csv')!r}]\n"
+        "from sevenbar.commands.cli import main\n"
+        "try:\n    main()\nexcept SystemExit:\n    pass\n"
+        "print([name for name in ('matplotlib', 'sevenbar.simulation', 'sevenbar.export.parts', 'trimesh') "
+        "if name in sys.modules])"
+    )
+    assert printed(code).splitlines()[-1] == "[]"
+
+
 @pytest.mark.parametrize("name", sb.__all__)
 def test_every_public_name_is_imported_at_its_first_use(name):
     assert getattr(sb, name) is not None

@@ -116,16 +116,21 @@ def export(
 def _notes(out: Path, form: Table | Bodies, loaded: Linkage) -> list[str]:
     """What to know of a file besides its name."""
     from sevenbar.export import Bodies, Table
-    from sevenbar.export.mass import has_masses
-    from sevenbar.reporting.facts import idle_note
 
     notes = []
     if out.suffix.lower() == ".urdf":
         notes.append("URDF holds trees only: the joint that closes the loop is in the .loop.json file")
-    if isinstance(form, Table) and (idle := idle_note(loaded, [point.link for point in loaded.points])):
-        notes.append(idle)
-    if isinstance(form, Bodies) and form.masses and has_masses(loaded):
-        notes.append("masses are the linkage's own; bodies that have none weigh next to nothing")
-    elif isinstance(form, Bodies) and form.masses:
-        notes.append(f"masses are assumed: {form.masses}; put in your own where forces matter")
+    if isinstance(form, Table):
+        from sevenbar.reporting.facts import idle_note
+
+        if idle := idle_note(loaded, [point.link for point in loaded.points]):
+            notes.append(idle)
+    if isinstance(form, Bodies) and form.masses:
+        # after the writer has imported what this does: a table needs neither figures nor engines
+        from sevenbar.export.mass import has_masses
+
+        if has_masses(loaded):
+            notes.append("masses are the linkage's own; bodies that have none weigh next to nothing")
+        else:
+            notes.append(f"masses are assumed: {form.masses}; put in your own where forces matter")
     return notes
