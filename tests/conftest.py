@@ -10,16 +10,30 @@ from matplotlib import get_data_path
 from matplotlib.font_manager import fontManager
 
 import browser
+import slow_tests
 from served import Studio
 from sevenbar.drawing import fonts, style
 
 
+def pytest_addoption(parser):
+    parser.addoption("--write-slow-tests", action="store_true", help="write tests/slow_tests.txt anew")
+
+
+def pytest_configure(config):
+    # in workers, too, which have the options of the process that hands tests out
+    if config.getoption("--write-slow-tests"):
+        write = not hasattr(config, "workerinput")
+        config.pluginmanager.register(slow_tests.Recorder(write=write))
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """No test that needs a browser is among the fast ones, whatever its author remembers."""
+    """Slow are the tests on the list, and all that need a browser."""
+    slow = slow_tests.listed()
     for item in items:
         if "chromium" in item.fixturenames:
             item.add_marker("browser")
+        if "chromium" in item.fixturenames or slow_tests.name_of(item.nodeid) in slow:
             item.add_marker("slow")
 
 
