@@ -123,6 +123,10 @@ tutorial: $(VENV)/.installed-dev  ## Write the tutorial's outputs and pictures a
 pages: $(VENV)/.installed-dev  ## Write the tables of keys, commands, modules and the gallery into the pages
 	$(BIN)/python docs/_extensions/written_parts.py
 
+.PHONY: slow-tests
+slow-tests: $(VENV)/.installed-dev have-chromium  ## Run every test and write anew which are slow, after many were added
+	$(PYTEST) --write-slow-tests
+
 .PHONY: golden
 golden: $(VENV)/.installed-dev  ## Write anew what commands and figures say of the gallery, after a change that is meant
 	$(BIN)/python tests/golden.py
