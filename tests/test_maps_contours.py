@@ -30,8 +30,16 @@ def values_at(of, place, name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["swing", "transmission_lowest", "time_ratio", "velocity_highest"])
-@pytest.mark.parametrize("take", ["highest", "lowest", 1])
+@pytest.mark.parametrize(
+    ("name", "take"),
+    [
+        ("swing", "highest"),
+        ("transmission_lowest", "lowest"),
+        ("time_ratio", 1),
+        ("velocity_highest", "lowest"),
+        ("swing", 1),
+    ],
+)
 def test_the_measure_has_the_value_of_the_contour_at_its_points(of, name, take):
     (heights,) = measure_heights(of, [name], take=take)
     step = min(np.diff(heights.levels))
