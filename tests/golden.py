@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 import matplotlib as mpl
 import numpy as np
 
+import golden_tasks
 import sevenbar as sb
 from commands import sevenbar
 from sevenbar.description.gallery import names
@@ -77,6 +78,7 @@ def cases():
     for name in LOADED:
         found[f"{name}.forces"] = partial(printed, "forces", name)
         found[f"{name}.forces.json"] = partial(printed, "forces", name, "--json")
+    found |= golden_tasks.cases()
     return found | {f"commands.{name}": partial(printed, *words) for name, words in SINGLE.items()}
 
 
