@@ -306,7 +306,7 @@ def _designs(read, starts):
     said = _said(report, found)
     for design in search.designs[:1]:
         along = DesignAlong(read.task, design)
-        figures = [want_figure(along, number) for number in range(len(along.wants))]
+        figures = [want_figure(along, number) for number in range(len(read.task.sampled))]
         said += "".join(map(figure_text, [*figures, musts_figure(along)]))
     return said
 
