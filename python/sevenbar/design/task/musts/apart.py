@@ -22,8 +22,7 @@ class ApartMust(MustForm):
     links: Annotated[Links, key("their numbers, counted from 1")]
     least: Annotated[Length, key("the least distance of the two as rods between their joints", "length")]
 
-    def must(self, linkage: Linkage, wants: Sequence[Want]) -> Apart:  # noqa: ARG002
-        """The must of the table."""
+    def must(self, linkage: Linkage, wants: Sequence[Want]) -> Apart:
         return Apart(self.links, self.least)
 
 
@@ -38,12 +37,10 @@ class Apart(PoseMust):
     links: tuple[int, int]
     least: float
 
-    def turns(self, linkage: Linkage) -> bool:  # noqa: ARG002
-        """Never."""
+    def turns(self, linkage: Linkage) -> bool:
         return False
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """Links that there are not, or that meet."""
         count = len(task.draft.linkage.joints)
         first, second = self.links
         outside = [link for link in self.links if not 1 <= link <= count]
@@ -59,13 +56,11 @@ class Apart(PoseMust):
         yield from not_positive("least", self.least, "distance", "a length")
 
     def words(self, linkage: Linkage) -> str:
-        """The links and the distance."""
         return (
             f"links {self.links[0]} and {self.links[1]} at least {self.least:g} {linkage.length_unit} apart"
         )
 
     def slacks(self, loop: TaskLoop) -> Callable[[Here], Slacks]:
-        """Of the distance."""
         ends = [end for link in self.links for end in loop.rod(link)]
 
         def slacks(here: Here) -> Slacks:

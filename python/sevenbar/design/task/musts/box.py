@@ -30,8 +30,7 @@ class BoxMust(MustForm):
     high: Annotated[Vector, key("its greatest x, y, z", "length")]
     names: Annotated[Words | None, key("of points and joints; left out, all of them")] = None
 
-    def must(self, linkage: Linkage, wants: Sequence[Want]) -> InBox:  # noqa: ARG002
-        """The must of the table; without names of all points and joints that are not of the ground alone."""
+    def must(self, linkage: Linkage, wants: Sequence[Want]) -> InBox:
         points = [point.name for point in linkage.points if point.link < len(linkage.joints)]
         every = tuple(dict.fromkeys([*points, *(joint.name for joint in linkage.joints)]))
         return InBox(self.low, self.high, self.names or every)
@@ -52,15 +51,12 @@ class InBox(PoseMust):
 
     @property
     def points(self) -> tuple[str, ...]:
-        """Its names."""
         return self.names
 
-    def turns(self, linkage: Linkage) -> bool:  # noqa: ARG002
-        """Never."""
+    def turns(self, linkage: Linkage) -> bool:
         return False
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """An empty box, unknown names, or places of a want that lie outside."""
         linkage = task.draft.linkage
         for axis, low, high in zip("xyz", self.low, self.high, strict=True):
             if not low < high:
@@ -92,8 +88,7 @@ class InBox(PoseMust):
         """Which of places (n, 3) lie outside."""
         return np.asarray(((places < self.low) | (places > self.high)).any(axis=1))
 
-    def start_flaws(self, loop: TaskLoop, circuits: Sequence[Circuit], q: Floats) -> Flaws:  # noqa: ARG002
-        """Points and joints that nothing moves, outside of the box."""
+    def start_flaws(self, loop: TaskLoop, circuits: Sequence[Circuit], q: Floats) -> Flaws:
         numbers = self._places(loop)
         here = loop.here(loop.start, q)
         for name, number in zip(self.names, numbers, strict=True):
@@ -107,7 +102,6 @@ class InBox(PoseMust):
                 )
 
     def words(self, linkage: Linkage) -> str:
-        """The names and the sides."""
         sides = ", ".join(f"{low:g}:{high:g}" for low, high in zip(self.low, self.high, strict=True))
         return f"{', '.join(self.names)} in the box {sides} {linkage.length_unit}"
 
@@ -117,7 +111,6 @@ class InBox(PoseMust):
         return [loop.named(name) if name in points else loop.joint(name) for name in self.names]
 
     def slacks(self, loop: TaskLoop) -> Callable[[Here], Slacks]:
-        """To every side."""
         numbers = self._places(loop)
         low, high = np.array(self.low), np.array(self.high)
 

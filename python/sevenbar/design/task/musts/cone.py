@@ -37,8 +37,7 @@ class ConeMust(MustForm):
         Direction | None, key("on the link after the joint, as its points are written; left out, its rod")
     ] = None
 
-    def must(self, linkage: Linkage, wants: Sequence[Want]) -> InCone:  # noqa: ARG002
-        """The must of the table."""
+    def must(self, linkage: Linkage, wants: Sequence[Want]) -> InCone:
         return InCone(self.joint, self.angle, self.seat, self.stud)
 
 
@@ -60,20 +59,17 @@ class InCone(PoseMust):
     seat: Three | None = None
     stud: Three | None = None
 
-    def turns(self, linkage: Linkage) -> bool:  # noqa: ARG002
-        """Always."""
+    def turns(self, linkage: Linkage) -> bool:
         return True
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """A joint that has no cone, or directions that fit none."""
         try:
             chosen(task.draft.linkage, self.joint, Cone(self.angle, self.seat, self.stud))
         except RequestError as error:
             key, _, message = str(error).partition(": ")
             yield {"cone": "angle"}.get(key, key), message
 
-    def start_flaws(self, loop: TaskLoop, circuits: Sequence[Circuit], q: Floats) -> Flaws:  # noqa: ARG002
-        """That a direction was left out and its rod is on the far side of the joint all along."""
+    def start_flaws(self, loop: TaskLoop, circuits: Sequence[Circuit], q: Floats) -> Flaws:
         bend = ball_angle(loop.linkage, self.joint, self.seat, self.stud)
         bends = [bend.at(circuit.q)[np.isfinite(circuit.q[:, bend.own]).all(axis=1)] for circuit in circuits]
         found = np.concatenate([np.empty(0), *bends])
@@ -92,12 +88,10 @@ class InCone(PoseMust):
             f"at the start; give {hint}",
         )
 
-    def words(self, linkage: Linkage) -> str:  # noqa: ARG002
-        """The joint and the angle."""
+    def words(self, linkage: Linkage) -> str:
         return f"{self.joint} within a cone of {math.degrees(self.angle):g} deg"
 
     def slacks(self, loop: TaskLoop) -> Callable[[Here], Slacks]:
-        """Of the angle."""
         place = [joint.name for joint in loop.linkage.joints].index(self.joint)
         before, after = place or len(loop.linkage.joints), place + 1
         ends = [*_line(loop, before, place, self.seat), *_line(loop, after, place, self.stud)]

@@ -25,8 +25,7 @@ class FigureMustForm(MustForm):
     least: Annotated[Value | None, key("the least that it may be", "of the measure")] = None
     most: Annotated[Value | None, key("the most that it may be", "of the measure")] = None
 
-    def must(self, linkage: Linkage, wants: Sequence[Want]) -> FigureMust:  # noqa: ARG002
-        """The must of the table."""
+    def must(self, linkage: Linkage, wants: Sequence[Want]) -> FigureMust:
         ends = [
             None if end is None else measure_value(name, end, linkage, self.name)
             for name, end in (("least", self.least), ("most", self.most))
@@ -45,7 +44,6 @@ class FigureMust(MeasureMust):
     most: float | None = None
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """Those of the measure and its ends, and wants and musts of the same one that lie outside."""
         if flaw := measure_flaw(task.draft.linkage, self.name):
             yield "name", flaw
             return
@@ -78,7 +76,6 @@ class FigureMust(MeasureMust):
         )
 
     def words(self, linkage: Linkage) -> str:
-        """The measure and its ends."""
         unit = measure_unit(self.name, linkage)
         ends = [(">=", self.least), ("<=", self.most)]
         each = [f"{sign} {end:g} {unit}".rstrip() for sign, end in ends if end is not None]

@@ -24,7 +24,6 @@ class MostMust(MustForm):
     ]
 
     def must(self, linkage: Linkage, wants: Sequence[Want]) -> Most:
-        """The must of the table: the bound relative to what the want's residuals are relative to."""
         want = wants[self.want - 1] if self.want <= len(wants) else None
         if not isinstance(want, SampledWant):
             # the task is checked for it
@@ -50,7 +49,6 @@ class Most(ResidualMust):
     at: tuple[int, ...] | None = None
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """A want that there is not, or that has no residuals at poses."""
         count = len(task.wants)
         if not 0 <= self.want < count:
             yield "want", f"{self.want + 1} is not a want; give its place, 1 to {count}"
@@ -58,6 +56,5 @@ class Most(ResidualMust):
             yield "want", "is a figure; bound it by a must with kind = 'figure', least and most"
         yield from not_positive("most", self.most, "bound")
 
-    def words(self, linkage: Linkage) -> str:  # noqa: ARG002
-        """The want and the bound."""
+    def words(self, linkage: Linkage) -> str:
         return f"each residual of want {self.want + 1} at most {self.most:.3g}"

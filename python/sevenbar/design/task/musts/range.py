@@ -31,8 +31,7 @@ class RangeMust(MustForm):
     joint: Annotated[Text, key("the joint, or its column")]
     range: Annotated[Span, key("from where to where it may go", OF_INPUT)]
 
-    def must(self, linkage: Linkage, wants: Sequence[Want]) -> InRange:  # noqa: ARG002
-        """The must of the table."""
+    def must(self, linkage: Linkage, wants: Sequence[Want]) -> InRange:
         column = linkage.columns[linkage.column(self.joint, "joint")]
         return InRange(column, *reading_span("range", self.range, linkage, column))
 
@@ -51,15 +50,12 @@ class InRange(PoseMust):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Its own."""
         return (self.column,)
 
     def turns(self, linkage: Linkage) -> bool:
-        """Whether the joint turns."""
         return linkage.turns(self.column)
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """Ends that do not rise, or that a want or another range does not reach."""
         linkage = task.draft.linkage
         try:
             name = linkage.columns[linkage.column(self.column, "joint")]
@@ -89,11 +85,9 @@ class InRange(PoseMust):
         return bool(((values < self.low - slack) | (values > self.high + slack)).any())
 
     def words(self, linkage: Linkage) -> str:
-        """The column and its ends."""
         return f"{self.column} within {ends_in_words((self.low, self.high), linkage, self.column)}"
 
     def slacks(self, loop: TaskLoop) -> Callable[[Here], Slacks]:
-        """To either end."""
         column = loop.linkage.columns.index(self.column)
         unit, turns = float(loop.units[column]), bool(loop.numbers.turns[column])
         middle = (self.low + self.high) / 2

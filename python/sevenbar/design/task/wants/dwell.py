@@ -31,8 +31,7 @@ class DwellForm(WantForm):
     samples: Annotated[Samples, key("inputs of the range that count")] = 41
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
-    def want(self, linkage: Linkage, folder: Path) -> DwellWant:  # noqa: ARG002
-        """The want of the table."""
+    def want(self, linkage: Linkage, folder: Path) -> DwellWant:
         level = zero("level", self.level, linkage, linkage.drive.output)
         ends = reading_span("range", self.range, linkage, linkage.drive.joint)
         return DwellWant(ends, level, self.samples, self.weight)
@@ -55,27 +54,22 @@ class DwellWant(SampledWant):
     weight: float = 1.0
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """Those of its range."""
         yield from range_flaws(task.draft.linkage, self.inputs, self.samples)
 
     def words(self, linkage: Linkage) -> str:
-        """Over which inputs, and at which level if at one."""
         drive = linkage.drive
         level = "" if self.level is None else f" at {ends_in_words([self.level], linkage, drive.output)}"
         return f"{drive.output} still{level} over {ends_in_words(self.inputs, linkage, drive.joint)}"
 
     def input_range(self) -> tuple[float, float]:
-        """Its own."""
         return min(self.inputs), max(self.inputs)
 
     def in_loop(self, loop: TaskLoop) -> _Residuals:
-        """Its residuals in a loop: the readings 0 from its level."""
         inputs = np.linspace(*self.inputs, self.samples)
         return _Residuals(loop, inputs, np.zeros(self.samples), (0.0, self.level), self.weight)
 
 
 class _Residuals(ReadingsWanted):
     def facts(self, used: Used) -> Sequence[Fact]:
-        """The level."""
         unit, scale = shown_in(used.loop.linkage, used.loop.linkage.drive.output)
         return (Fact("level", unit, self.shown_zeros(used)[1] * scale),)

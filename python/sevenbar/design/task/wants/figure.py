@@ -31,8 +31,7 @@ class FigureForm(WantForm):
     unit: Annotated[Unit, key("what counts as 1", "of the measure")] = 1.0
     weight: Annotated[Weight, key("how much its residual counts")] = 1.0
 
-    def want(self, linkage: Linkage, folder: Path) -> FigureWant:  # noqa: ARG002
-        """The want of the table."""
+    def want(self, linkage: Linkage, folder: Path) -> FigureWant:
         if self.value in ("small", "great"):
             return FigureWant(self.name, cast(Way, self.value), self.unit, self.weight)
         try:
@@ -60,16 +59,13 @@ class FigureWant(MeasureWant):
 
     @property
     def aim(self) -> float | None:
-        """Its value, unless that is "small" or "great"."""
         return None if isinstance(self.value, str) else float(self.value)
 
     @property
     def is_great(self) -> bool:
-        """Whether it is "great"."""
         return self.value == "great"
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """Those of the measure and its value."""
         if flaw := measure_flaw(task.draft.linkage, self.name):
             yield "name", flaw
             return
@@ -87,17 +83,14 @@ class FigureWant(MeasureWant):
                 yield "name", f"want {i + 1} wants {self.name}, too, and another value; leave one out"
 
     def words(self, linkage: Linkage) -> str:
-        """The measure and what it shall be."""
         if isinstance(self.value, str):
             return f"{self.name} {self.value}"
         return f"{self.name} {self.value:g} {measure_unit(self.name, linkage)}".rstrip()
 
-    def axis(self, place: int, linkage: Linkage) -> tuple[str, str, float]:  # noqa: ARG002
-        """The measure, or by how much it is off."""
+    def axis(self, place: int, linkage: Linkage) -> tuple[str, str, float]:
         return f"{'' if self.aim is None else 'off_'}{self.name}", measure_unit(self.name, linkage), 1.0
 
     def residual(self, value: float, by: Floats) -> tuple[float, Floats]:
-        """The residual at a value of the measure, and its slopes."""
         if self.value == "small":
             return value / self.unit, by / self.unit
         if self.value == "great":
@@ -108,13 +101,11 @@ class FigureWant(MeasureWant):
         return (value - self.value) / self.unit, by / self.unit
 
     def loss(self, value: float) -> float:
-        """The measure, its negative where it shall be great, or its distance from the value."""
         if self.aim is None:
             return -value if self.is_great else value
         return abs(value - self.aim)
 
     def ends(self, loss: float) -> tuple[float | None, float | None]:
-        """The least and the most of the measure that lack no more."""
         if self.aim is None:
             return (-loss, None) if self.is_great else (None, loss)
         return self.aim - loss, self.aim + loss

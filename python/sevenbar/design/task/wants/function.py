@@ -55,7 +55,6 @@ class FunctionForm(WantForm):
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
     def want(self, linkage: Linkage, folder: Path) -> FunctionWant:
-        """The want of the table."""
         given = one_of(self, "y", "pairs", "table")
         if self.y is None:
             for name in ("input", "output", "points"):
@@ -116,7 +115,6 @@ class FunctionForm(WantForm):
         return a + (b - a) * share, c + (d - c) * wish.function(share)
 
     def hints(self) -> Iterator[tuple[str, str]]:
-        """That x may be in degrees."""
         if self.y is not None and (hint := degrees_hint(self.y, self.x)):
             yield "y", hint
 
@@ -139,7 +137,6 @@ class FunctionWant(SampledWant):
     weight: float = 1.0
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """Readings that do not go one way, or over more than a turn."""
         x, y = self.input, self.output
         if x.ndim != 1 or x.shape != y.shape or x.size < 2 or not np.isfinite([x, y]).all():
             yield "", f"{x.size} inputs and {y.size} outputs; give two finite pairs or more"
@@ -150,7 +147,6 @@ class FunctionWant(SampledWant):
         yield from self.exact_flaws(task, x.size, sum(one is None for one in self.zeros))
 
     def words(self, linkage: Linkage) -> str:
-        """How many readings over which ranges."""
         drive = linkage.drive
         return (
             f"{drive.output} over {drive.joint}: {len(self.input)} readings, "
@@ -159,12 +155,10 @@ class FunctionWant(SampledWant):
         )
 
     def input_range(self) -> tuple[float, float] | None:
-        """That of its inputs, where their zero is given."""
         first = self.zeros[0]
         return None if first is None else (float(self.input.min()) + first, float(self.input.max()) + first)
 
     def readings_of(self, column: str, linkage: Linkage) -> Floats | None:
-        """Of input or output, where its zero is given."""
         columns = (linkage.drive.joint, linkage.drive.output)
         if column not in columns:
             return None
@@ -173,13 +167,11 @@ class FunctionWant(SampledWant):
         return None if first is None else first + (self.input, self.output)[which]
 
     def in_loop(self, loop: TaskLoop) -> _Residuals:
-        """Its residuals in a loop."""
         return _Residuals(loop, self.input, self.output, self.zeros, self.weight)
 
 
 class _Residuals(ReadingsWanted):
     def facts(self, used: Used) -> Sequence[Fact]:
-        """Both zeros."""
         linkage, found = used.loop.linkage, []
         ends = (("input_zero", linkage.drive.joint), ("output_zero", linkage.drive.output))
         for (name, column), value in zip(ends, self.shown_zeros(used), strict=True):

@@ -42,7 +42,6 @@ class PathForm(WantForm):
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
     def want(self, linkage: Linkage, folder: Path) -> PathWant:
-        """The want of the table."""
         given = one_of(self, "places", "table")
         inputs: Floats | None = None
         if self.table is not None:
@@ -83,15 +82,12 @@ class PathWant(SampledWant):
 
     @property
     def points(self) -> tuple[str, ...]:
-        """Its own."""
         return (self.point,)
 
-    def residual_unit(self, linkage: Linkage) -> float:  # noqa: ARG002
-        """The greatest extent of the places."""
+    def residual_unit(self, linkage: Linkage) -> float:
         return float(np.ptp(self.places, axis=0).max())
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """Those of the point, the places and their inputs."""
         yield from point_flaws(task.draft.linkage, self.point)
         rows = np.concatenate([self.places, self.places[:1]]) if self.closed else self.places
         try:
@@ -106,7 +102,6 @@ class PathWant(SampledWant):
         yield from self.exact_flaws(task, count, task.placings + self.phase)
 
     def words(self, linkage: Linkage) -> str:
-        """How many places, and how far apart."""
         return (
             f"path of {self.point}: {len(self.places)} places, {'closed' if self.closed else 'open'}, "
             f"{self.residual_unit(linkage):.4g} {linkage.length_unit} across"
@@ -114,15 +109,12 @@ class PathWant(SampledWant):
         )
 
     def input_range(self) -> tuple[float, float] | None:
-        """That of its timing."""
         return timed_range(self.timing, phase=self.phase)
 
     def places_of(self, point: str) -> Floats | None:
-        """Its own of its point."""
         return self.places if point == self.point else None
 
     def in_loop(self, loop: TaskLoop) -> PlacesWanted:
-        """Its residuals in a loop."""
         return PlacesWanted(
             loop,
             [(self.point, None)],

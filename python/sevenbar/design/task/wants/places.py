@@ -56,18 +56,15 @@ class PlacesWanted(Wanted):
             self.stations = Stations(timing, by, np.full(by.shape[1], own), round=closed)
         self.count = places.size
 
-    def residuals(self, here: Here, u: Floats) -> tuple[Floats, Floats]:  # noqa: ARG002
-        """Where the points are (r / 3, 3) at its stations, and their slopes (r / 3, 3, k + m)."""
+    def residuals(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         found, by = here.points[:, self.numbers], here.points_by[:, self.numbers]
         places = found.reshape(-1, 3)
         return places, by.reshape(*places.shape, by.shape[-1])
 
     def missed(self, here: Here, u: Floats, placing: Placing) -> Floats:
-        """The parts of the distances (r / 3, 3) at its stations [length]."""
         return placing.put(self.residuals(here, u)[0]) - self.places.reshape(-1, 3)
 
     def heights(self, residuals: Floats, by: Floats) -> tuple[Floats, Floats]:
-        """Distances of the places."""
         return distances(residuals, by)
 
     def _along(self, one: InputPass) -> Floats:
@@ -75,7 +72,6 @@ class PlacesWanted(Wanted):
         return np.stack([one.point(*which) for which in self._seen], axis=1)
 
     def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Start]:
-        """By the inputs of its timing, or by the best order-keeping match."""
         curve = self._along(one)
         if not np.isfinite(curve).all() or (self.closed and not one.closed):
             return []
@@ -131,14 +127,12 @@ class PlacesWanted(Wanted):
             return []
         return [self._start(best.u, best.rows, curve, placing)]
 
-    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:  # noqa: ARG002
-        """The distances (n p,) on rows of an analysis [length]."""
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
         one = InputPass(circuit, np.arange(len(circuit.q))[rows], closed=False, turns=True)
         off = placing.put(self._along(one)) - self.places
         return np.asarray(np.linalg.norm(off, axis=2).ravel())
 
     def curve(self, used: Used) -> PlacesCurve:
-        """The way of the first point, and the frames where there are more."""
         way, taken = (used.placing.put(used.points(self.numbers, q)) for q in (used.way, used.stations))
         errors = np.linalg.norm(taken[:, 0] - self.places[:, 0], axis=1)
         frames = (self.places, taken) if len(self._seen) > 1 else None

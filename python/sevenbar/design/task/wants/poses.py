@@ -59,7 +59,6 @@ class PosesForm(WantForm):
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
     def want(self, linkage: Linkage, folder: Path) -> PoseWant:
-        """The want of the table."""
         one_of(self, "poses", "table")
         inputs: Floats | None = None
         if self.table is not None:
@@ -91,12 +90,10 @@ class PoseWant(SampledWant):
     phase: bool = False
     weight: float = 1.0
 
-    def residual_unit(self, linkage: Linkage) -> float:  # noqa: ARG002
-        """The arm."""
+    def residual_unit(self, linkage: Linkage) -> float:
         return self.arm
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """Those of the link, the poses and their inputs."""
         linkage, poses = task.draft.linkage, self.poses
         yield from link_flaws(linkage, self.link)
         if not 1 <= self.link < len(linkage.joints):
@@ -124,18 +121,15 @@ class PoseWant(SampledWant):
         yield from self.exact_flaws(task, count, task.placings + self.phase)
 
     def words(self, linkage: Linkage) -> str:
-        """How many poses, and the arm."""
         return (
             f"link {self.link} in {len(self.poses)} poses, arm {self.arm:.4g} {linkage.length_unit}"
             f"{timed_words(self.timing, phase=self.phase)}"
         )
 
     def input_range(self) -> tuple[float, float] | None:
-        """That of its timing."""
         return timed_range(self.timing, phase=self.phase)
 
     def in_loop(self, loop: TaskLoop) -> PlacesWanted:
-        """Its residuals in a loop: of the ends of its frame."""
         return PlacesWanted(
             loop,
             [(self.link, end) for end in frame_ends(self.arm)],

@@ -54,7 +54,6 @@ class ReadingsWanted(Wanted):
         return short_way(values) if self.turns else values
 
     def residuals(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
-        """Deviations (n,) of the output at its stations, and their slopes (n, k + m)."""
         by = here.q_by[:, self._column].copy()
         if self._output_free:
             by[:, -1:] -= 1.0
@@ -62,11 +61,9 @@ class ReadingsWanted(Wanted):
         return self._apart(off) / self.unit, by / self.unit
 
     def heights(self, residuals: Floats, by: Floats) -> tuple[Floats, Floats]:
-        """Deviations of the output, to either side."""
         return both_signs(residuals, by)
 
-    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Start]:  # noqa: ARG002
-        """The best free zeros, from the rows of the pass."""
+    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Start]:
         fixed, inputs, outputs = self.stations.fixed, one.inputs, one.outputs
         phases, rows = one.begins(fixed, free=self._input_free)
         gap = fixed + phases[:, None] - inputs[rows]
@@ -80,8 +77,7 @@ class ReadingsWanted(Wanted):
         best = np.argsort(errors, kind="stable")[:TRIED]
         return [Start(free[k], rows[k], float(errors[k]), placing) for k in best]
 
-    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:  # noqa: ARG002
-        """Deviations of the output (n,) on rows of an analysis [rad, or length]."""
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
         return self._apart(circuit.output[rows] - self.readings - self.zeros(u)[1])
 
     def shown_zeros(self, used: Used) -> tuple[float, float]:
@@ -94,7 +90,6 @@ class ReadingsWanted(Wanted):
         )
 
     def curve(self, used: Used) -> ReadingsCurve:
-        """Readings along the way, near those wanted."""
         first, second = self.shown_zeros(used)
         x, y = used.inputs - first, used.way[:, self._column] - second
         if used.loop.numbers.turns[used.loop.input]:

@@ -43,8 +43,7 @@ class StraightForm(WantForm):
     samples: Annotated[Samples, key("inputs of the range that count")] = 41
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
-    def want(self, linkage: Linkage, folder: Path) -> StraightWant:  # noqa: ARG002
-        """The want of the table."""
+    def want(self, linkage: Linkage, folder: Path) -> StraightWant:
         ends = reading_span("range", self.range, linkage, linkage.drive.joint)
         return StraightWant(self.point, ends, self.length, self.samples, self.weight)
 
@@ -70,32 +69,26 @@ class StraightWant(SampledWant):
 
     @property
     def points(self) -> tuple[str, ...]:
-        """Its own."""
         return (self.point,)
 
     def residual_unit(self, linkage: Linkage) -> float:
-        """The length, or the linkage's size."""
         return linkage_size(linkage) if self.length is None else self.length
 
     def flaws(self, task: DesignTask) -> Flaws:
-        """Those of the point, the range and the length."""
         yield from point_flaws(task.draft.linkage, self.point)
         yield from range_flaws(task.draft.linkage, self.inputs, self.samples)
         if self.length is not None:
             yield from not_positive("length", self.length, "length")
 
     def words(self, linkage: Linkage) -> str:
-        """Over which inputs, and how far at least."""
         length = "" if self.length is None else f", {self.length:g} {linkage.length_unit} or longer"
         ends = ends_in_words(self.inputs, linkage, linkage.drive.joint)
         return f"{self.point} along a straight line over {ends}{length}"
 
     def input_range(self) -> tuple[float, float]:
-        """Its own."""
         return min(self.inputs), max(self.inputs)
 
     def in_loop(self, loop: TaskLoop) -> LineWanted:
-        """Its residuals in a loop."""
         return LineWanted(loop, self)
 
 
@@ -120,7 +113,6 @@ class LineWanted(Wanted):
         self._length_unit = loop.linkage.length_unit
 
     def residuals(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
-        """The residuals (r,), and their slopes (r, k + 6)."""
         p, by = here.points[:, self.numbers[0]], here.points_by[:, self.numbers[0]]
         a, way = u[:3], u[3:] - u[:3]
         square = float(way @ way)
@@ -138,11 +130,9 @@ class LineWanted(Wanted):
         return apart / self.unit, slopes.reshape(3 * len(p), -1) / self.unit
 
     def heights(self, residuals: Floats, by: Floats) -> tuple[Floats, Floats]:
-        """Distances from the line."""
         return distances(residuals, by)
 
     def bound(self, here: Here) -> Bound | None:
-        """That the point goes as far as the length."""
         if self._length is None:
             return None
         p, by = here.points[:, self.numbers[0]], here.points_by[:, self.numbers[0]]
@@ -154,8 +144,7 @@ class LineWanted(Wanted):
         missed = f"the point goes {size:.4g} {self._length_unit}, {asked}"
         return Bound(np.array([size - self._length]) / self.unit, slopes[None], missed)
 
-    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Start]:  # noqa: ARG002
-        """On a pass that has the range of inputs, with the best line of its rows."""
+    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Start]:
         curve = one.point(self._name)
         found = []
         for rows in one.begins(self.stations.fixed, free=False)[1][:1]:
@@ -168,8 +157,7 @@ class LineWanted(Wanted):
             found.append(Start(u, rows, error, placing))
         return found
 
-    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:  # noqa: ARG002
-        """The distances (n,) from the line on rows of an analysis [length]."""
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
         way = (u[3:] - u[:3]) / np.linalg.norm(u[3:] - u[:3])
         off = np.cross(circuit.point(self._name).position[rows] - u[:3], way)
         return np.asarray(np.linalg.norm(off, axis=1))
@@ -179,14 +167,12 @@ class LineWanted(Wanted):
         return used.points(self.numbers, q)[:, 0]
 
     def facts(self, used: Used) -> Sequence[Fact]:
-        """How far the point goes along the line."""
         p = self._taken(used, used.way)
         first, last = farthest(p)
         travel = float(np.linalg.norm(p[last] - p[first]))
         return (Fact("travel", self._length_unit, travel, tabled=True),)
 
     def curve(self, used: Used) -> PlacesCurve:
-        """The way of the point, and the places on the line through the ends of the way."""
         taken = self._taken(used, used.stations)
         begin, line = used.u[:3], used.u[3:] - used.u[:3]
         along = (taken - begin) @ line / float(line @ line)
