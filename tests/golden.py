@@ -16,6 +16,7 @@ import matplotlib as mpl
 import numpy as np
 import trimesh
 
+import golden_tasks
 import sevenbar as sb
 from commands import sevenbar
 from sevenbar.description.gallery import names
@@ -116,6 +117,7 @@ def cases():
         found[f"exact.{name}"] = partial(solved, table, words)
     for name, (linkage, ending, words) in FILES.items():
         found[f"export.{name}"] = partial(written, linkage, ending, words)
+    found |= golden_tasks.cases()
     return found | {f"commands.{name}": partial(printed, *words) for name, words in SINGLE.items()}
 
 

@@ -32,14 +32,12 @@ from sevenbar.design.task import (
 )
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign, checked_design
-from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.placing import rotation_of_vector
-from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
+from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed, pose_slacks
 from sevenbar.design.task.report import TaskDesigns, task_report
 from sevenbar.design.task.search import DesignsFound, designed
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
-from sevenbar.design.task.wants.figures import figure_left
 from sevenbar.kinematics.loop.rods import nearest_shares
 from sevenbar.kinematics.numbers.least_squares import nearest_least
 from sevenbar.kinematics.ranges.ball_angle import ball_angle
@@ -145,7 +143,7 @@ def test_places_moved_by_unknowns_have_exact_slopes_for_the_greatest_residual():
 def test_a_cone_is_the_angle_between_the_cranks_axis_and_the_coupler():
     model = TaskModel(DesignTask(KNOWN, free(KNOWN, NAMES), (FunctionWant(INPUTS, OUTPUTS),)))
     loop = model.loop
-    ((_, room),) = pose_rooms(loop, (InCone("ball_a", 1.0, seat=(0.0, 0.0, -1.0)),))
+    ((_, room),) = pose_slacks(loop, (InCone("ball_a", 1.0, seat=(0.0, 0.0, -1.0)),))
     q = loop.closed(loop.start, INPUTS, loop.poses(loop.start, CIRCUIT.q[ROWS]))
     a, b = (CIRCUIT.point(name).position[ROWS] for name in ("A", "B"))
     along = (b - a) / np.linalg.norm(b - a, axis=1)[:, None]
@@ -154,7 +152,7 @@ def test_a_cone_is_the_angle_between_the_cranks_axis_and_the_coupler():
     bend = ball_angle(KNOWN.linkage, "ball_a", seat=(0.0, 0.0, -1.0))
     assert room(loop.here(loop.start, q))[0][:, 0] == pytest.approx(1.0 - bend.at(CIRCUIT.q[ROWS]), abs=1e-12)
     for ball in ("ball_a", "ball_b"):
-        ((_, room),) = pose_rooms(loop, (InCone(ball, 1.0),))
+        ((_, room),) = pose_slacks(loop, (InCone(ball, 1.0),))
         found = room(loop.here(loop.start, q))[0][:, 0]
         assert found == pytest.approx(1.0 - ball_angle(KNOWN.linkage, ball).at(CIRCUIT.q[ROWS]), abs=1e-12)
 
@@ -463,9 +461,9 @@ def test_a_closed_path_of_two_turns_of_the_input_is_followed_over_both():
     (design,) = designed(task, count=1, starts=0).designs
     along = DesignAlong(task, design)
     assert np.ptp(along.ways[0].inputs) == pytest.approx(4 * math.pi, rel=0.01)
-    steps = np.linalg.norm(np.diff(along.places(0)[:, 0], axis=0), axis=1)
+    steps = np.linalg.norm(np.diff(along.curve(0).path, axis=0), axis=1)
     # to the place from which it began
-    assert np.linalg.norm(along.places(0)[-1, 0] - want.places[0]) < 2 * steps.max()
+    assert np.linalg.norm(along.curve(0).path[-1] - want.places[0]) < 2 * steps.max()
 
 
 def test_a_bound_of_1e_6_is_checked_to_its_digits():
@@ -482,7 +480,7 @@ def test_a_bound_of_1e_6_is_checked_to_its_digits():
 
 def test_what_shall_be_great_is_better_the_greater_it_is_below_zero_too():
     want, steps = FigureWant("clearance", "great", 10.0), np.array([-50.0, -1.0, 0.0, 9.9, 10.0, 10.1, 80.0])
-    left, by = zip(*(figure_left(want, x, np.ones(1)) for x in steps), strict=True)
+    left, by = zip(*(want.residual(x, np.ones(1)) for x in steps), strict=True)
     assert (np.diff(left) < 0).all()
     assert np.concatenate(by).max() < 0
     # without a step or a corner at the unit

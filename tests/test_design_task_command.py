@@ -17,7 +17,6 @@ from sevenbar.design.task.file.reader import task_file
 from sevenbar.design.task.front import pareto
 from sevenbar.design.task.report import TaskDesigns, task_report
 from sevenbar.design.task.search import designed
-from sevenbar.design.task.words import want_words
 from sevenbar.errors import RequestError
 
 #: Readings of the planar four-bar of 40, 100, 80 and 90 mm, by the law of cosines.
@@ -75,7 +74,7 @@ def task_path(tmp_path):
     ],
 )
 def test_a_want_in_words_has_its_unit(want, words):
-    assert want_words(want, sb.load("rssr")) == words
+    assert want.words(sb.load("rssr")) == words
 
 
 @pytest.mark.slow
@@ -112,7 +111,7 @@ def test_the_way_of_a_design_lies_on_the_closed_form(task_path):
     read = task_file(task_path)
     (design,) = designed(read.task, count=1, starts=0).designs
     along = DesignAlong(read.task, design)
-    x, read = along.ways[0].inputs, along.outputs(0)
+    x, read = along.ways[0].inputs, along.curve(0).outputs
     # the zero and the sense of the last joint are its own
     both = [np.ptp(np.unwrap(read + sign * rocker(x, way))) for sign in (-1, 1) for way in (-1, 1)]
     assert len(x) > 200

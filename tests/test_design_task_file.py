@@ -7,7 +7,8 @@ import pytest
 
 from sevenbar.description.gallery import text as gallery_text
 from sevenbar.design.task.file.reader import read_task, task_file
-from sevenbar.design.task.file.schema import MUSTS, WANTS, LimitsForm, PoseForm, TaskForm
+from sevenbar.design.task.file.schema import MUSTS, WANTS, LimitsForm, TaskForm
+from sevenbar.design.task.wants.pose_form import PoseForm
 from sevenbar.errors import DescriptionError
 
 #: A task that is right, part by part.

@@ -7,16 +7,15 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
-from sevenbar.design.task import DesignTask, FigureWant, FreeNumber, FunctionWant
+from sevenbar.design.task import DesignTask, FigureMust, FigureWant, FreeNumber, FunctionWant
 from sevenbar.design.task.effort import Effort
 from sevenbar.design.task.file.reader import task_file
 from sevenbar.design.task.loop import TaskLoop
+from sevenbar.design.task.measured import Figures
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.report import TaskDesigns, task_report
 from sevenbar.design.task.search import designed
-from sevenbar.design.task.task import FigureMust
 from sevenbar.design.task.transmitting import LeastAngle
-from sevenbar.design.task.wants.figures import Figures
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.measures import gradient
 from textbook_loops import four_bar_joints, linkage, slider_crank_joints, spherical_joints

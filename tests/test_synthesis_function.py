@@ -16,7 +16,8 @@ from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.function.generation import function_generation
 from sevenbar.design.synthesis.function.report import synthesis_report
 from sevenbar.design.task import DesignTask, FreeNumber, FunctionWant
-from sevenbar.design.task.loop import RssrLoop, TaskLoop, loop_of
+from sevenbar.design.task.loop import RssrLoop, TaskLoop
+from sevenbar.design.task.problem import loop_of
 from sevenbar.design.wish import wish_of_pairs
 from sevenbar.errors import RequestError
 from sevenbar.text.expression import function_of

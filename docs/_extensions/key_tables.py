@@ -6,7 +6,8 @@ from typing import Any
 
 from page_tables import code, table
 from sevenbar.description.schema import TABLES, LinkageForm, TomlSchema, json_schema
-from sevenbar.design.task.file.schema import MUSTS, WANTS, LimitsForm, PoseForm, TaskForm
+from sevenbar.design.task.file.schema import MUSTS, WANTS, LimitsForm, TaskForm
+from sevenbar.design.task.wants.pose_form import PoseForm
 
 #: Where the JSON schema is written, below the pages' folder; pages link it from there.
 SCHEMA = "_made/sevenbar.description.schema.json"

@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -47,23 +47,6 @@ LIMIT_ROUNDING = 1e-9
 #: Two designs are one where no dimension, relative to the longest [or rad], differs by more.
 SAME = 0.05
 
-Fault = Literal[
-    "assembly",
-    "circuit",
-    "dead centre",
-    "order",
-    "error",
-    "transmission",
-    "size",
-    "motion type",
-    "range",
-    "cone",
-    "box",
-    "distance",
-    "length",
-    "figure",
-]
-
 
 class Drafted(Protocol):
     """What has a description."""
@@ -99,7 +82,7 @@ class Claim:
 class Refusal:
     """Why a design was refused: the kind of fault, and a sentence with its numbers."""
 
-    fault: Fault
+    fault: str
     detail: str
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.exact.given import planar_given
 from sevenbar.design.exact.planar import planar_dyads
-from sevenbar.design.task.task import DesignTask, PoseWant, linkage_size
+from sevenbar.design.task import DesignTask, PoseWant
+from sevenbar.design.task.task import linkage_size
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.numbers.dimensions import Dimension

@@ -12,23 +12,23 @@ import math
 from dataclasses import asdict, dataclass, replace
 from functools import reduce
 from operator import add
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.candidates import Fault, size_fault
+from sevenbar.design.candidates import size_fault
 from sevenbar.design.survey.drawn import FORMAT, Drawn
 from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.task.problem import TaskModel, TaskProblem
-from sevenbar.design.task.search import DesignsFound, designed
+from sevenbar.design.task.search import EASE, DesignsFound, designed
 from sevenbar.design.task.starts import seeds_at
 from sevenbar.design.task.task import DesignTask
 from sevenbar.sweep.sampling import MOST_SOBOL, sobol_points
 from sevenbar.text.progress import Progress, silent
 
 #: What may be said of a linkage; the first is that it does what is wanted.
-VERDICTS: tuple[str, ...] = ("found", *get_args(Fault))
+VERDICTS: tuple[str, ...] = ("found", *EASE)
 
 #: Of the ways in which a linkage may begin so many are judged, the nearest first, until one does it.
 TRIED = 4

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from sevenbar.arrays import Floats, short_way
+from sevenbar.arrays import Floats
 from sevenbar.design.task.check import TaskDesign
-from sevenbar.design.task.musts import pose_rooms, room_scale
-from sevenbar.design.task.problem import TaskModel
-from sevenbar.design.task.task import DesignTask, Want
-from sevenbar.design.task.wants.at_inputs import LineWanted, ReadingsWanted, farthest
-from sevenbar.design.task.wants.places import PlacesWanted
-from sevenbar.design.task.wants.wanted import Wanted
+from sevenbar.design.task.problem import TaskModel, pose_slacks
+from sevenbar.design.task.task import DesignTask, PoseMust
+from sevenbar.design.task.wanted import Fact, PlacesCurve, ReadingsCurve, Used
 
 #: Poses along a want, at least, and the longest step of an input from one to the next [rad].
 DENSE, STEP = 240, math.radians(1.0)
@@ -37,11 +35,6 @@ class DesignAlong:
         self.model = TaskModel(task)
         self.loop = self.model.loop
         self.values = design.solution.seed.values
-
-    @property
-    def wants(self) -> list[tuple[int, Want, Wanted]]:
-        """The wants with poses along a way, each with its place among all."""
-        return [(i, want, one) for (i, want), one in zip(self.task.sampled, self.model.wanted, strict=True)]
 
     @cached_property
     def ways(self) -> list[UsedWay]:
@@ -73,55 +66,19 @@ class DesignAlong:
             x, q = np.append(x, inputs[-1]), np.concatenate([q, poses[-1:]])
         return UsedWay(x, q)
 
-    def zeros(self, place: int) -> tuple[float, float]:
-        """The input's and the output's values at the readings 0 of a function or a dwell [rad, or length].
+    def _used(self, number: int) -> Used:
+        """What the design does along a want, by its place among those with a way."""
+        solution, way = self.design.solution, self.ways[number]
+        own, stations = solution.seed.own[number], solution.poses_of(number)
+        return Used(self.loop, self.values, own, self.design.placing, way.inputs, way.q, stations)
 
-        Angles in (-pi, pi].
-        """
-        linkage = self.loop.linkage
-        zeros = self.readings(place).zeros(self.design.solution.seed.own[place])
-        first, second = (
-            float(short_way(zero)) if linkage.turns(column) else zero
-            for zero, column in zip(zeros, (linkage.drive.joint, linkage.drive.output), strict=True)
-        )
-        return first, second
+    def facts(self, number: int) -> Sequence[Fact]:
+        """What reports say of it besides its errors."""
+        return self.model.wanted[number].facts(self._used(number))
 
-    def readings(self, place: int) -> ReadingsWanted:
-        """A function or a dwell, by its place among the wants with a way."""
-        one = self.model.wanted[place]
-        assert isinstance(one, ReadingsWanted)
-        return one
-
-    def outputs(self, place: int) -> Floats:
-        """The output's readings (n,) along a function or a dwell, near those wanted."""
-        read = self.ways[place].q[:, self.loop.output] - self.zeros(place)[1]
-        if not bool(self.loop.numbers.turns[self.loop.output]):
-            return read
-        read = np.unwrap(read)
-        return np.asarray(read - math.tau * np.round((read[0] - self.readings(place).readings[0]) / math.tau))
-
-    def places(self, place: int) -> Floats:
-        """Where the points of a path or of poses, or the point of a straight line go (n, points, 3)."""
-        one = self.model.wanted[place]
-        return self._put(one, self.ways[place].q)
-
-    def travel(self, place: int) -> float:
-        """How far the point of a straight line goes along it [length]."""
-        points = self.places(place)[:, 0]
-        first, last = farthest(points)
-        return float(np.linalg.norm(points[last] - points[first]))
-
-    def stations(self, place: int) -> Floats:
-        """Where these points are at the stations (n, points, 3)."""
-        return self._put(self.model.wanted[place], self.design.solution.poses_of(place))
-
-    def _put(self, one: Wanted, q: Floats) -> Floats:
-        assert isinstance(one, PlacesWanted | LineWanted)
-        found = self.loop.here(self.values, q).points[:, one.numbers]
-        flat = found.reshape(-1, 3)
-        if isinstance(one, PlacesWanted):
-            flat = self.design.placing.put(flat)
-        return flat.reshape(found.shape)
+    def curve(self, number: int) -> ReadingsCurve | PlacesCurve:
+        """What figures show of it."""
+        return self.model.wanted[number].curve(self._used(number))
 
     def rooms(self) -> list[tuple[int, int, Floats, Floats]]:
         """The least room of each must about poses along each want: must, want, inputs (n,), rooms (n,).
@@ -131,11 +88,16 @@ class DesignAlong:
         found = []
         for number, way in enumerate(self.ways):
             here = self.loop.here(self.values, way.q)
-            for place, room in pose_rooms(self.loop, self.task.musts):
-                _, scale = room_scale(self.task.musts[place], self.loop)  # type: ignore[arg-type]
+            for place, room in pose_slacks(self.loop, self.task.musts):
+                _, scale = self._unit(place)
                 found.append((place, number, way.inputs, scale * room(here)[0].min(axis=1)))
         return found
 
+    def _unit(self, place: int) -> tuple[str, float]:
+        must = self.task.musts[place]
+        assert isinstance(must, PoseMust)
+        return must.slack_unit(self.loop)
+
     def room_unit(self, place: int) -> str:
         """The unit of the room of a must about poses: "deg", or the length unit."""
-        return room_scale(self.task.musts[place], self.loop)[0]  # type: ignore[arg-type]
+        return self._unit(place)[0]

@@ -21,14 +21,11 @@ from sevenbar.design.candidates import (
     within_limits,
 )
 from sevenbar.design.task.loop import TaskLoop
-from sevenbar.design.task.musts import FAULTS, pose_rooms, room_scale
 from sevenbar.design.task.placing import Placing, moved, standing
-from sevenbar.design.task.problem import TaskModel
+from sevenbar.design.task.problem import TaskModel, pose_slacks
 from sevenbar.design.task.solve import Solved
-from sevenbar.design.task.task import FigureMust, Most
-from sevenbar.design.task.wants.places import PlacesWanted
-from sevenbar.design.task.wants.wanted import Wanted
-from sevenbar.design.task.words import must_words
+from sevenbar.design.task.task import MeasureMust, PoseMust, ResidualMust
+from sevenbar.design.task.wanted import Wanted
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
@@ -182,7 +179,7 @@ def _candidate(
         refused = _torn(model, number, solution, own) or _short(model, number, solution)
         if refused is not None:
             return refused
-        placed = isinstance(one, PlacesWanted) and model.placed
+        placed = one.placeable and model.placed
         figures = standing(solution.seed.placing, linkage.length_unit) if placed else {}
         if placed and linkage.form == "drawn":
             draft, figures = moved(draft, solution.seed.placing), {}
@@ -213,10 +210,7 @@ def _torn(model: TaskModel, number: int, solution: Solved, own: list[_Way]) -> R
     loop, poses = model.loop, solution.poses_of(number)
     one = model.wanted[number]
     here = loop.here(solution.seed.values, poses)
-    left, _ = one.left(here.along(one.stations.by), solution.seed.own[number])
-    off = one.unit * left
-    if isinstance(one, PlacesWanted):
-        off = solution.seed.placing.put(left) - one.places.reshape(-1, 3)
+    off = one.missed(here.along(one.stations.by), solution.seed.own[number], solution.seed.placing)
     count = len(own[0].errors)
     best, expected = (float(np.linalg.norm(each)) / math.sqrt(count) for each in (own[0].errors, off))
     if best <= 2 * expected * (1 + TORN) + TORN * one.unit:
@@ -233,7 +227,8 @@ def _short(model: TaskModel, number: int, solution: Solved) -> Refusal | None:
     one = model.wanted[number]
     here = model.loop.here(solution.seed.values, solution.poses_of(number))
     bound = one.bound(here.along(one.stations.by))
-    return Refusal(bound.fault, bound.missed) if bound is not None and bound.slack < -TORN else None
+    fault = model.task.sampled[number][1].fault
+    return Refusal(fault, bound.missed) if bound is not None and bound.slack.min() < -TORN else None
 
 
 def _of_figures(model: TaskModel, draft: Draft, solution: Solved, motion: Motion) -> Candidate | Refusal:
@@ -244,8 +239,8 @@ def _of_figures(model: TaskModel, draft: Draft, solution: Solved, motion: Motion
     circuit, values = found[1].index, model.figures.read(*found)
     if not np.isfinite(list(values.values())).all() or circuit >= len(motion.circuits):
         return Refusal("figure", "a measure has no value there")
-    wanted = [want for want in model.figure_wants if not isinstance(want.value, str)]
-    errors = np.array([(values[want.name] - float(want.value)) / want.unit for want in wanted] or [0.0])
+    wanted = [want for want in model.figure_wants if want.aim is not None]
+    errors = np.array([want.residual(values[want.name], np.zeros(1))[0] for want in wanted] or [0.0])
     lowest = motion.circuits[circuit].transmission
     claim = Claim(np.empty(0), np.empty(0), errors, "", {}, whole_turn=True)
     least = None if lowest is None else lowest.lowest
@@ -257,7 +252,7 @@ def _figures(model: TaskModel, motion: Motion, circuit: Circuit) -> Mapping[str,
     """The measures as the analysis has them, or which misses its limit."""
     found = model.figures.read(motion, circuit)
     for must in model.task.musts:
-        if not isinstance(must, FigureMust):
+        if not isinstance(must, MeasureMust):
             continue
         value = found[must.name]
         slack = ROUNDING * max(abs(value), 1.0)
@@ -289,7 +284,7 @@ def _used_rooms(
 ) -> dict[int, float]:
     """The least room of each must about poses, by its place, over all that is used."""
     loop, values = model.loop, solution.seed.values
-    rooms = pose_rooms(loop, model.task.musts)
+    rooms = pose_slacks(loop, model.task.musts)
     least: dict[int, float] = {}
     for one, own, inputs in zip(model.wanted, ways, solution.inputs, strict=True):
         if not rooms:
@@ -311,12 +306,13 @@ def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: L
     for place, worst in _used_rooms(model, solution, ways, linkage).items():
         if not worst >= -MISSED:
             must = musts[place]
-            unit, scale = room_scale(must, loop)  # type: ignore[arg-type]
+            assert isinstance(must, PoseMust)
+            unit, scale = must.slack_unit(loop)
             missed = f"{-worst * scale:.3g} {unit}"
-            return Refusal(FAULTS[type(must)], f"{must_words(must, loop.linkage)}: missed by {missed}")
+            return Refusal(must.fault, f"{must.words(loop.linkage)}: missed by {missed}")
         least = min(least, worst)
     for must in musts:
-        if isinstance(must, Most):
+        if isinstance(must, ResidualMust):
             number = model.sampled.index(must.want)
             one = model.wanted[number]
             errors = ways[number][0].errors[slice(None) if must.at is None else list(must.at)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -13,9 +12,7 @@ from matplotlib.ticker import Locator, MaxNLocator
 from sevenbar.arrays import Floats
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.path_page import PathPage, path_page
-from sevenbar.design.task.wants.at_inputs import ReadingsWanted
-from sevenbar.design.task.wants.places import PlacesWanted
-from sevenbar.design.task.words import must_words
+from sevenbar.design.task.wanted import PlacesCurve, ReadingsCurve
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, OTHER, styled
@@ -67,21 +64,18 @@ def readings_figure(
 
 def want_figure(along: DesignAlong, number: int) -> Figure:
     """A want with a way, by its place among those: readings and error, or the path and its distances."""
-    return (_readings if isinstance(along.wants[number][2], ReadingsWanted) else _places)(along, number)
+    title = say("want {number}", number=along.task.sampled[number][0] + 1)
+    curve = along.curve(number)
+    if isinstance(curve, ReadingsCurve):
+        return _readings(along, curve, number, title)
+    return _places(along, curve, title)
 
 
-def _readings(along: DesignAlong, number: int) -> Figure:
+def _readings(along: DesignAlong, curve: ReadingsCurve, number: int, title: str) -> Figure:
     """The output's readings over the input's; below, the design's less those wanted."""
-    place, want = along.wants[number][0], along.readings(number)
     linkage = along.task.draft.linkage
     drive = linkage.drive
-    zeros = along.zeros(number)
-    x = along.ways[number].inputs - zeros[0]
-    if linkage.turns(drive.joint):
-        # on the turn of the readings
-        x = x - math.tau * np.round((x[0] - want.inputs[0]) / math.tau)
-    y = along.outputs(number)
-    at, wanted = want.inputs, want.readings
+    x, y, at, wanted = curve.inputs, curve.outputs, curve.at, curve.wanted
     order = np.argsort(x)
     errors = np.interp(at, x[order], y[order]) - wanted
     (x_unit, across), (y_unit, up) = (shown_in(linkage, column) for column in (drive.joint, drive.output))
@@ -94,7 +88,7 @@ def _readings(along: DesignAlong, number: int) -> Figure:
         greatest=up * met.greatest, rms=up * met.rms, unit=y_unit,
     )  # fmt: skip
     return readings_figure(
-        f"{_title(along)}\n{say('want {number}', number=place + 1)}: {reached}",
+        f"{_title(along)}\n{title}: {reached}",
         [
             (across * x, up * y, {**GENERATED, "label": say("generated")}),
             (across * at, up * wanted, {**mark, "label": say("wanted")}),
@@ -109,29 +103,10 @@ def _readings(along: DesignAlong, number: int) -> Figure:
     )
 
 
-def _places(along: DesignAlong, number: int) -> Figure:
+def _places(along: DesignAlong, curve: PlacesCurve, title: str) -> Figure:
     """The path in space and from three sides, or the frames of poses, and the distance at each."""
-    place, _, one = along.wants[number]
-    way, found = along.places(number), along.stations(number)
-    frames: list[tuple[Floats, str]] = []
-    if isinstance(one, PlacesWanted):
-        wanted = one.places[:, 0]
-        if one.places.shape[1] > 1:
-            frames = [(one.places, OTHER), (found, COMPUTED)]
-    else:
-        # the places on the line through the ends of the way
-        own = along.design.solution.seed.own[number]
-        begin, line = own[:3], own[3:] - own[:3]
-        along_line = (found[:, 0] - begin) @ line / float(line @ line)
-        wanted = begin + along_line[:, None] * line
-    errors = np.linalg.norm(found[:, 0] - wanted, axis=1)
-    page = PathPage(
-        wanted,
-        way[:, 0],
-        errors,
-        f"{_title(along)}, {say('want {number}', number=place + 1)}",
-        frames,
-    )
+    frames = [] if curve.frames is None else list(zip(curve.frames, (OTHER, COMPUTED), strict=True))
+    page = PathPage(curve.wanted, curve.path, curve.errors, f"{_title(along)}, {title}", frames)
     return path_page(along.task.draft.linkage, page)
 
 
@@ -150,7 +125,7 @@ def musts_figure(along: DesignAlong) -> Figure | None:
         seen: set[int] = set()
         for place, _, inputs, values in rooms:
             axes = every[units.index(along.room_unit(place))]
-            label = None if place in seen else short(must_words(task.musts[place], linkage), 60)
+            label = None if place in seen else short(task.musts[place].words(linkage), 60)
             seen.add(place)
             order = np.argsort(inputs)
             colour = COLOURS[place % len(COLOURS)]

@@ -26,8 +26,9 @@ from sevenbar.arrays import Floats
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.contradictions import refuse_contradictions
+from sevenbar.design.task.musts import measure_within, residuals_within
 from sevenbar.design.task.search import EXACT, STARTS, DesignsFound, designed, named
-from sevenbar.design.task.task import DesignTask, FigureMust, FigureWant, Most, Must, Want, residual_unit
+from sevenbar.design.task.task import DesignTask, MeasureWant, Must, SampledWant
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.progress import Progress, silent
 
@@ -113,7 +114,7 @@ def pareto(
     def search(improved: int, musts: Sequence[Must], given: Sequence[ParetoPoint], tries: int) -> int:
         """Designs in which one of the wants is improved."""
         wants = tuple(
-            replace(want, weight=BESIDES) if i in pair and i != improved else want
+            want.weighted(BESIDES) if i in pair and i != improved else want
             for i, want in enumerate(task.wants)
         )
         own = replace(task, wants=wants, musts=(*task.musts, *musts), goal="minimax")
@@ -147,7 +148,7 @@ def pareto(
 
 def _place(task: DesignTask, key: str, given: int | str) -> int:
     """The place of a want among the task's, counted from 0."""
-    names = [want.name if isinstance(want, FigureWant) else "" for want in task.wants]
+    names = [want.name if isinstance(want, MeasureWant) else "" for want in task.wants]
     count = len(task.wants)
     if isinstance(given, str) and given in names:
         return names.index(given)
@@ -163,28 +164,18 @@ def _place(task: DesignTask, key: str, given: int | str) -> int:
 def _must(task: DesignTask, place: int, bound: float) -> Must:
     """That a want's value is at most so great."""
     want = task.wants[place]
-    if not isinstance(want, FigureWant):
-        return Most(place, bound / residual_unit(want, task.draft.linkage))
-    if want.value == "small":
-        return FigureMust(want.name, most=bound)
-    if _is_great(want):
-        return FigureMust(want.name, least=-bound)
-    return FigureMust(want.name, float(want.value) - bound, float(want.value) + bound)
+    if isinstance(want, MeasureWant):
+        return measure_within(want.name, *want.ends(bound))
+    assert isinstance(want, SampledWant)
+    return residuals_within(place, bound / want.residual_unit(task.draft.linkage))
 
 
 def _value(task: DesignTask, place: int, design: TaskDesign) -> float:
     """What a design makes of a want, the less the better: its greatest error, or its measure."""
     want = task.wants[place]
-    if not isinstance(want, FigureWant):
-        return design.met[[i for i, _ in task.sampled].index(place)].greatest
-    value = float(design.figures[want.name])
-    if want.value == "small":
-        return value
-    return -value if _is_great(want) else abs(value - float(want.value))
-
-
-def _is_great(want: Want) -> bool:
-    return isinstance(want, FigureWant) and want.value == "great"
+    if isinstance(want, MeasureWant):
+        return want.loss(float(design.figures[want.name]))
+    return design.met[[i for i, _ in task.sampled].index(place)].greatest
 
 
 def _widest_gap(kept: Sequence[ParetoPoint], bounds: Sequence[tuple[int, float]]) -> tuple[int, float] | None:
@@ -226,7 +217,8 @@ def _front(task: DesignTask, pair: tuple[int, int], kept: Sequence[ParetoPoint])
 
     Of a measure that shall be great the value is its negative before, and the measure itself in the answer.
     """
-    signs = [-1.0 if _is_great(task.wants[place]) else 1.0 for place in pair]
+    wants = [task.wants[place] for place in pair]
+    signs = [-1.0 if isinstance(want, MeasureWant) and want.is_great else 1.0 for want in wants]
     return tuple(
         replace(point, values=(signs[0] * point.values[0], signs[1] * point.values[1]))
         for point in _unbeaten(kept)

@@ -14,12 +14,11 @@ from sevenbar.arrays import Floats
 from sevenbar.design.tables import design_table
 from sevenbar.design.task.front import ParetoFront
 from sevenbar.design.task.report import TaskDesigns, as_dict, task_report
-from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
-from sevenbar.design.task.words import measure_unit, task_facts, want_words
+from sevenbar.design.task.task import DesignTask, MeasureWant
+from sevenbar.design.task.words import task_facts
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, styled
-from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, page
@@ -35,7 +34,8 @@ class FrontFound(TaskDesigns):
     @property
     def axes(self) -> list[tuple[str, str, float]]:
         """Of both wants: a name for tables, the unit, and what 1 of its value is there."""
-        return [_axis(self.task, place) for place in self.front.wants]
+        linkage = self.task.draft.linkage
+        return [self.task.wants[place].axis(place, linkage) for place in self.front.wants]
 
     @property
     def values(self) -> Floats:
@@ -47,16 +47,6 @@ class FrontFound(TaskDesigns):
         """The values of the points by the names that they have in tables."""
         names = (f"{name}_{unit.replace(' ', '_')}" if unit else name for name, unit, _ in self.axes)
         return {name: own.tolist() for name, own in zip(names, self.values.T, strict=True)}
-
-
-def _axis(task: DesignTask, place: int) -> tuple[str, str, float]:
-    want, linkage = task.wants[place], task.draft.linkage
-    if isinstance(want, FigureWant):
-        off = "" if isinstance(want.value, str) else "off_"
-        return f"{off}{want.name}", measure_unit(want.name, linkage), 1.0
-    of_output = isinstance(want, FunctionWant | DwellWant)
-    shown = shown_in(linkage, linkage.drive.output) if of_output else (linkage.length_unit, 1.0)
-    return f"want_{place + 1}_greatest", *shown
 
 
 def front_report(
@@ -136,6 +126,6 @@ def front_figure(found: FrontFound) -> Any:
 def _label(task: DesignTask, place: int, name: str, unit: str) -> str:
     """What an axis says: the measure, or the greatest error and of what."""
     want, own = task.wants[place], f" [{unit}]" if unit else ""
-    if isinstance(want, FigureWant):
+    if isinstance(want, MeasureWant):
         return f"{name.replace('_', ' ')}{own}"
-    return f"greatest error of want {place + 1}{own}\n{short(want_words(want, task.draft.linkage), 62)}"
+    return f"greatest error of want {place + 1}{own}\n{short(want.words(task.draft.linkage), 62)}"

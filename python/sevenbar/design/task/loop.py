@@ -13,14 +13,16 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.description.draft import Draft
 from sevenbar.design.closure import NAMES, output_slopes, outputs
-from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, Most
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.numbers.dimensions import Following
 from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
 from sevenbar.kinematics.numbers.word import Carried
 
-#: Inputs of a turn at which circuits are measured and wants begun: what lies between rows is found there.
+#: Slacks (n, r) at n poses, numbers that must not be negative, and their slopes (n, r, unknowns).
+Slacks = tuple[Floats, Floats]
+
+#: Inputs of a turn at which circuits are measured and wants started: what lies between rows is found there.
 SAMPLES = 72
 
 
@@ -265,13 +267,3 @@ class RssrLoop(TaskLoop):
         by[:, self.output] = np.column_stack([self.all_slopes(values, every), by_input[0]])
         by[:, self.input, -1] = 1.0
         return Here(q, by, none, np.empty((*none.shape, by.shape[-1])))
-
-
-def loop_of(task: DesignTask) -> TaskLoop:
-    """The loop of a task, in closed form where a function of an RSSR is all that is wanted."""
-    draft = task.draft.holding(task.follow)
-    linkage = draft.linkage
-    ends = (linkage.drive.joint, linkage.drive.output) == (linkage.columns[0], linkage.columns[-1])
-    readings = all(isinstance(want, (FunctionWant, DwellWant)) for want in task.wants)
-    plain = linkage.form == "rssr" and ends and readings and all(isinstance(m, Most) for m in task.musts)
-    return (RssrLoop if plain and task.wants else TaskLoop)(draft, task.names)

@@ -20,12 +20,11 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.candidates import Fault
 from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
-from sevenbar.design.task import task as kinds
 from sevenbar.design.task.effort import Effort
-from sevenbar.design.task.loop import Here, TaskLoop, loop_of
-from sevenbar.design.task.musts import FAULTS, Rooms, pose_rooms
+from sevenbar.design.task.loop import Here, RssrLoop, Slacks, TaskLoop
+from sevenbar.design.task.measured import Figures
+from sevenbar.design.task.musts import measure_within
 from sevenbar.design.task.placing import (
     STILL,
     Placing,
@@ -34,27 +33,24 @@ from sevenbar.design.task.placing import (
     rigid_moves,
     rotation_of_vector,
 )
-from sevenbar.design.task.task import DesignTask
+from sevenbar.design.task.task import (
+    DesignTask,
+    MeasureMust,
+    MeasureWant,
+    Must,
+    PoseMust,
+    ResidualMust,
+    SampledWant,
+)
 from sevenbar.design.task.transmitting import AngleRoom, LeastAngle
-from sevenbar.design.task.wants.at_inputs import LineWanted, ReadingsWanted
-from sevenbar.design.task.wants.figures import Figures, figure_left
+from sevenbar.design.task.wanted import Stations, Wanted
 from sevenbar.design.task.wants.places import PlacesWanted
-from sevenbar.design.task.wants.wanted import Stations, Wanted
 
 #: A step after which a passive joint is further away [rad, or of the size] has left its branch.
 LONGEST_STEP = 1.2
 
 #: Poses of a want, with those between its stations, at which musts are held.
 HELD = 73
-
-#: What each kind of want is in a loop.
-WANTED: Mapping[type, Callable[[TaskLoop, Any], Wanted]] = {
-    kinds.FunctionWant: ReadingsWanted,
-    kinds.DwellWant: ReadingsWanted,
-    kinds.PathWant: PlacesWanted,
-    kinds.PoseWant: PlacesWanted,
-    kinds.StraightWant: LineWanted,
-}
 
 #: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
 FLAT = 1e-9
@@ -90,7 +86,7 @@ class TaskValues:
     room: Floats
     room_by: Floats
     placing: Placing
-    least: Mapping[Fault, float]
+    least: Mapping[str, float]
 
 
 class TaskModel:
@@ -102,15 +98,15 @@ class TaskModel:
     def __init__(self, task: DesignTask, margins: Mapping[int, float] | None = None) -> None:
         self.task, self.margins = task, margins or {}
         self.loop = loop = loop_of(task)
-        self.wanted: list[Wanted] = [WANTED[type(want)](loop, want) for _, want in task.sampled]
-        self.figure_wants = [want for want in task.wants if isinstance(want, kinds.FigureWant)]
+        self.wanted: list[Wanted] = [want.in_loop(loop) for _, want in task.sampled]
+        self.figure_wants = [want for want in task.wants if isinstance(want, MeasureWant)]
         #: The places among the task's wants of those at poses.
         self.sampled = [i for i, _ in task.sampled]
-        self.figure_musts = [must for must in task.musts if isinstance(must, kinds.FigureMust)]
+        self.figure_musts = [must for must in task.musts if isinstance(must, MeasureMust)]
         least = task.limits.transmission_lowest
         if least > 0 and not self.wanted:
             # nothing says what is used of the circuit: all of it
-            self.figure_musts.append(kinds.FigureMust("transmission_lowest", least=math.degrees(least)))
+            self.figure_musts.append(measure_within("transmission_lowest", math.degrees(least)))
         names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
         self.figures = Figures(loop, list(dict.fromkeys(names)))
         #: Wants and musts of the least transmission angle in closed form, and the measures worked out.
@@ -120,7 +116,7 @@ class TaskModel:
         names = [want.name for want in self.figure_wants if want not in self.angle_wants]
         names += [must.name for must in self.figure_musts if must not in self.angle_musts]
         self.searched = Figures(loop, list(dict.fromkeys(names)))
-        self.rooms = pose_rooms(loop, task.musts)
+        self.rooms = pose_slacks(loop, task.musts)
         #: What the present start has taken.
         self.effort = Effort()
         self.placed = task.placement != "fixed"
@@ -131,9 +127,9 @@ class TaskModel:
         self.angle = AngleRoom(loop, task.limits) if least > 0 and self.wanted and not closed_form else None
         self.turns = closed_form and task.limits.motion_type in INPUT_TURNS
         #: Wants, by their places among the sampled, whose residuals have been asked to stay small.
-        self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, kinds.Most)]
+        self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, ResidualMust)]
 
-    def _in_line(self, asked: kinds.FigureWant | kinds.FigureMust) -> bool:
+    def _in_line(self, asked: MeasureWant | MeasureMust) -> bool:
         return self.in_line.known and asked.name == "transmission_lowest"
 
     @property
@@ -304,14 +300,15 @@ class TaskProblem:
         values, own = self.values(z), self.own(z)
         here = self.loop.here(values, poses, slopes=slopes)
         parts = []
-        bounds: list[tuple[Fault, Floats, Floats]] = []
-        for one, u, rows, place in zip(self.model.wanted, own, self._rows, self._own, strict=True):
+        bounds: list[tuple[str, Floats, Floats]] = []
+        parts_of = zip(self.model.task.sampled, self.model.wanted, own, self._rows, self._own, strict=True)
+        for (_, want), one, u, rows, place in parts_of:
             seen = here.part(rows).along(one.stations.by)
-            left, by = one.left(seen, u)
+            left, by = one.residuals(seen, u)
             parts.append((left, self._by_all(by, place) if slopes else by))
             if bound := one.bound(seen):
                 by = self._by_all(bound.slack_by, place) if slopes else bound.slack_by
-                bounds.append((bound.fault, np.array([bound.slack]), by[None]))
+                bounds.append((want.fault, bound.slack, by))
         placing = self._placing(z, [left for left, _ in parts])
         lefts, lefts_by = self._placed(z, parts, placing)
         figures = self._figures(values, slopes=slopes)
@@ -319,7 +316,7 @@ class TaskProblem:
             return None
         rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True))) + bounds
         rooms.append(("figure", *figures[1]))
-        least: dict[Fault, float] = {"figure": math.inf}
+        least: dict[str, float] = {"figure": math.inf}
         for fault, own_room, _ in rooms:
             least[fault] = min(least.get(fault, math.inf), float(own_room.min(initial=math.inf)))
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
@@ -418,9 +415,9 @@ class TaskProblem:
 
     def _rooms(
         self, z: Floats, here: Here, wants: Sequence[tuple[Floats, Floats]]
-    ) -> list[tuple[Fault, Floats, Floats]]:
+    ) -> list[tuple[str, Floats, Floats]]:
         """Rooms with their slopes, each with what is at fault where it is missed."""
-        rooms: list[tuple[Fault, Floats, Floats]] = []
+        rooms: list[tuple[str, Floats, Floats]] = []
         if self.model.transmits or self.model.turns:
             rooms += self._transmission(z)  # first, where the goal "transmission" looks for them
         wide = here.along(self._stations.by) if self.model.rooms or self.model.angle else here
@@ -431,7 +428,7 @@ class TaskProblem:
             for place, room in self.model.rooms:
                 values, by = room(wide)
                 values = values - self.model.margins.get(place, 0.0)
-                fault = FAULTS[type(self.model.task.musts[place])]
+                fault = self.model.task.musts[place].fault
                 rooms.append((fault, values.ravel(), self._joined(by.reshape(values.size, -1))))
         for i, one in enumerate(self.model.wanted):
             if one.stations.free:
@@ -462,7 +459,7 @@ class TaskProblem:
         found[:, : self._k] += by[:, : self._k] * self.scales[: self._k]
         return found
 
-    def _transmission(self, z: Floats) -> list[tuple[Fault, Floats, Floats]]:
+    def _transmission(self, z: Floats) -> list[tuple[str, Floats, Floats]]:
         """The transmission angle of an RSSR over what is used, and that its input turns."""
         loop, limits = self.loop, self.model.task.limits
         places = {d.place[1]: i for i, d in enumerate(loop.numbers.dimensions) if d.place[0] == "rssr"}
@@ -474,7 +471,7 @@ class TaskProblem:
             every[:, columns] = by_row
             return self._wide(loop.all_slopes(self.values(z), every))
 
-        found: list[tuple[Fault, Floats, Floats]] = []
+        found: list[tuple[str, Floats, Floats]] = []
         if self.model.transmits and len(self._stations.fixed):
             room, by_row, by_input = transmission_room(row, self._stations.inputs(z), limits)
             by = wide(by_row) + by_input[:, None] * self._stations.by
@@ -484,7 +481,7 @@ class TaskProblem:
             found.append(("motion type", room, wide(by_row)))
         return found
 
-    def _figures(self, values: Floats, *, slopes: bool) -> tuple[Rooms, Rooms] | None:
+    def _figures(self, values: Floats, *, slopes: bool) -> tuple[Slacks, Slacks] | None:
         """Residuals of figures, and their rooms, each with its slopes."""
         model = self.model
         found: tuple[Any, Any] | None = ((), ())
@@ -508,7 +505,7 @@ class TaskProblem:
             for want in model.figure_wants
             # each end a height of its own: the lower of two has a kink where they are equal
             for own in (ends if self.minimax and self._by_ends(want) else read[want.name])
-            for value, by in [figure_left(want, *own)]
+            for value, by in [want.residual(*own)]
         ]
         rooms = [
             (way * (value - end) / unit, way * by / unit)
@@ -524,14 +521,30 @@ class TaskProblem:
             rooms += [((value - least) / max(least, 1.0), by / max(least, 1.0)) for value, by in ends]
         return self._stacked(lefts), self._stacked(rooms)
 
-    def _by_ends(self, want: kinds.FigureWant) -> bool:
+    def _by_ends(self, want: MeasureWant) -> bool:
         """Whether it is the least of two angles that shall be great."""
-        return want in self.model.angle_wants and want.value == "great"
+        return want in self.model.angle_wants and want.is_great
 
-    def _stacked(self, rows: Sequence[tuple[float, Floats]]) -> Rooms:
+    def _stacked(self, rows: Sequence[tuple[float, Floats]]) -> Slacks:
         """Single values with slopes (k,) by the free numbers, as (r,) with those by all unknowns."""
         by = np.array([own for _, own in rows]).reshape(-1, self._k)
         return np.array([value for value, _ in rows]), self._wide(by)
+
+
+def loop_of(task: DesignTask) -> TaskLoop:
+    """The loop of a task, in closed form where output over input of an RSSR is all that is wanted."""
+    draft = task.draft.holding(task.follow)
+    linkage = draft.linkage
+    ends = (linkage.drive.joint, linkage.drive.output) == (linkage.columns[0], linkage.columns[-1])
+    readings = all(isinstance(want, SampledWant) and want.of_output for want in task.wants)
+    bounds = all(isinstance(must, ResidualMust) for must in task.musts)
+    plain = linkage.form == "rssr" and ends and readings and bounds
+    return (RssrLoop if plain and task.wants else TaskLoop)(draft, task.names)
+
+
+def pose_slacks(loop: TaskLoop, musts: Sequence[Must]) -> list[tuple[int, Callable[[Here], Slacks]]]:
+    """What gives the slacks of each must about poses, with its place among the musts."""
+    return [(i, must.slacks(loop)) for i, must in enumerate(musts) if isinstance(must, PoseMust)]
 
 
 def _sense(inputs: Floats) -> float:

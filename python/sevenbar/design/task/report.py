@@ -19,10 +19,9 @@ from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.effort import WHOLE
 from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
-from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust, StraightWant
-from sevenbar.design.task.words import must_words, task_facts, want_words
+from sevenbar.design.task.task import DesignTask, PoseMust
+from sevenbar.design.task.words import task_facts
 from sevenbar.drawing.configuration import configuration
-from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.page import Facts, page
 
@@ -74,22 +73,13 @@ def design_figures(task: DesignTask, design: TaskDesign) -> dict[str, float]:
     """Numbers of a design besides those of its first want: names end in the unit."""
     figures = dict(design.candidate.claim.figures)
     along = DesignAlong(task, design)
-    linkage = task.draft.linkage
-    for number, ((place, want, _), met) in enumerate(zip(along.wants, design.met, strict=True)):
+    for number, ((place, _), met) in enumerate(zip(task.sampled, design.met, strict=True)):
         unit, scale = met.shown
         own = f"want_{place + 1}_" if len(task.wants) > 1 else ""
         if own:
             figures[f"{own}greatest_{unit}"] = met.greatest * scale
             figures[f"{own}rms_{unit}"] = met.rms * scale
-        if isinstance(want, FunctionWant):
-            ends = (("input", linkage.drive.joint), ("output", linkage.drive.output))
-            for (key, column), zero in zip(ends, along.zeros(number), strict=True):
-                of_column, times = shown_in(linkage, column)
-                figures[f"{own}{key}_zero_{of_column}"] = zero * times
-        if isinstance(want, DwellWant):
-            figures[f"{own}level_{unit}"] = along.zeros(number)[1] * scale
-        if isinstance(want, StraightWant):
-            figures[f"{own}travel_{unit}"] = along.travel(number)
+        figures |= {f"{own}{fact.name}_{fact.unit}": fact.value for fact in along.facts(number)}
     figures |= design.figures
     if design.transmission is not None:
         figures["transmission_of_circuit_deg"] = math.degrees(design.transmission)
@@ -197,16 +187,18 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
     """Tables with a line for each design: how well each want is met, what it is, its free numbers."""
     task, designs, unit = found.task, found.found.designs, found.task.draft.linkage.length_unit
     met: list[tuple[str, list[str]]] = []
-    for number, (place, want) in enumerate(task.sampled):
+    alongs = [DesignAlong(task, design) for design in designs]
+    for number, (place, _) in enumerate(task.sampled):
         mets = [design.met[number] for design in designs]
         own, scale = mets[0].shown
         met += [
             (f"want {place + 1}\ngreatest\n[{own}]", [f"{one.greatest * scale:.4g}" for one in mets]),
             (f"want {place + 1}\nRMS\n[{own}]", [f"{one.rms * scale:.4g}" for one in mets]),
         ]
-        if isinstance(want, StraightWant):
-            travels = [f"{DesignAlong(task, design).travel(number):.5g}" for design in designs]
-            met.append((f"want {place + 1}\ntravel\n[{own}]", travels))
+        each = [[f for f in along.facts(number) if f.tabled] for along in alongs]
+        for facts in zip(*each, strict=True):
+            head = f"want {place + 1}\n{facts[0].name}\n[{facts[0].unit}]"
+            met.append((head, [f"{fact.value:.5g}" for fact in facts]))
     for name in dict.fromkeys(name for design in designs for name in design.figures):
         met.append((name.replace("_", "\n"), [f"{design.figures[name]:.5g}" for design in designs]))
     angles = (
@@ -249,8 +241,8 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
         "goal": task.goal,
         "placement": task.placement,
         "limits": task.limits.text(),
-        "wanted": [want_words(want, linkage) for want in task.wants],
-        "must_hold": [must_words(must, linkage) for must in task.musts],
+        "wanted": [want.words(linkage) for want in task.wants],
+        "must_hold": [must.words(linkage) for must in task.musts],
         "free": {one.name: [one.low, one.high] for one in task.free},
         "starts": found.starts,
         "begun": found.found.starts,

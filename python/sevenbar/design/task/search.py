@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,11 +13,12 @@ from sevenbar.design.candidates import Candidate, Refusal, distinct, least_error
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.extra import need_scipy
 from sevenbar.design.task.check import TIGHT, TaskDesign, checked_design, missed_between
-from sevenbar.design.task.musts import FAULTS
+from sevenbar.design.task.musts import MUSTS
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.solve import LOOK, Solved, solved
 from sevenbar.design.task.starts import apart, seeds, seeds_at
-from sevenbar.design.task.task import DesignTask
+from sevenbar.design.task.task import DesignTask, PoseMust
+from sevenbar.design.task.wants import WANTS
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.measures import MEASURES
 from sevenbar.text.progress import Progress, silent
@@ -43,8 +44,8 @@ MISSED, ALIKE, SAME = -0.01, 1e-4, 1e-7
 EXACT = 1e-11
 
 
-#: What may be given up where a kind of fault is the commonest.
-EASE = {
+#: The kinds of faults, and what may be given up where one is the commonest.
+EASE: Mapping[str, str] = {
     "assembly": "wider bounds, more starts, or another start",
     "circuit": "wider bounds, or more starts: the poses lie on two circuits",
     "dead centre": "another joint as the input, or wider bounds",
@@ -53,13 +54,12 @@ EASE = {
     "transmission": "a smaller least transmission angle",
     "size": "a wider range of sizes",
     "motion type": "another motion type, or any",
-    "range": "a wider range of the joint",
-    "cone": "a wider cone, or another seat",
-    "box": "a larger box",
-    "distance": "a smaller distance of the links",
-    "length": "a shorter length of the straight line",
+    **{one.fault: one.ease for one in (*MUSTS, *WANTS) if one.fault},
     "figure": "other ends of the measure",
 }
+
+#: Those of musts about poses.
+POSE_FAULTS = {one.fault for one in MUSTS if issubclass(one, PoseMust)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,7 +257,7 @@ def _take(
 def _answer(model: TaskModel, solution: Solved, most: float) -> TaskDesign | Refusal:
     """What the check says of a solution; a must missed between the poses solved for is held tighter."""
     answer = checked_design(model, solution)
-    missed = answer.room < -TIGHT if isinstance(answer, TaskDesign) else answer.fault in FAULTS.values()
+    missed = answer.room < -TIGHT if isinstance(answer, TaskDesign) else answer.fault in POSE_FAULTS
     margins = missed_between(model, solution) if missed else {}
     if not margins:
         return answer

@@ -11,9 +11,7 @@ from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.passes import InputPass, passes
 from sevenbar.design.task.placing import STILL, Placing
 from sevenbar.design.task.problem import TaskModel, TaskSeed
-from sevenbar.design.task.wants.figures import figure_left
-from sevenbar.design.task.wants.places import PlacesWanted
-from sevenbar.design.task.wants.wanted import Begun
+from sevenbar.design.task.wanted import Start
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.sweep.sampling import sobol_points
 
@@ -86,38 +84,38 @@ def _with_figures(model: TaskModel, seed: TaskSeed) -> list[TaskSeed]:
         return []
     values = dict(zip(model.figures.names, read[0], strict=True))
     none = np.zeros(1)
-    off = sum((w.weight * figure_left(w, values[w.name], none)[0]) ** 2 for w in model.figure_wants)
+    off = sum((w.weight * w.residual(values[w.name], none)[0]) ** 2 for w in model.figure_wants)
     return [replace(seed, error=seed.error + off)]
 
 
 def _on_pass(model: TaskModel, values: Floats, one: InputPass) -> list[TaskSeed]:
     """The wants on one pass, each at its best; the first one, which places the linkage, in all its ways."""
     scaled = model.task.placement == "free with scale"
-    order = sorted(range(len(model.wanted)), key=lambda i: not isinstance(model.wanted[i], PlacesWanted))
-    firsts = model.wanted[order[0]].begun(one, None if model.placed else STILL, scaled=scaled)
+    order = sorted(range(len(model.wanted)), key=lambda i: not model.wanted[i].placeable)
+    firsts = model.wanted[order[0]].starts(one, None if model.placed else STILL, scaled=scaled)
     found: list[TaskSeed] = []
     for first in firsts:
         placing = first.placing or STILL
-        begun = {order[0]: first}
+        chosen = {order[0]: first}
         for i in order[1:]:
-            ways = model.wanted[i].begun(one, placing, scaled=scaled)
+            ways = model.wanted[i].starts(one, placing, scaled=scaled)
             if not ways:
                 break
-            begun[i] = ways[0]
+            chosen[i] = ways[0]
         else:
-            found += _seed(model, values, one, [begun[i] for i in range(len(begun))], placing)
+            found += _seed(model, values, one, [chosen[i] for i in range(len(chosen))], placing)
     return found
 
 
 def _seed(
-    model: TaskModel, values: Floats, one: InputPass, begun: Sequence[Begun], placing: Placing
+    model: TaskModel, values: Floats, one: InputPass, starts: Sequence[Start], placing: Placing
 ) -> list[TaskSeed]:
-    rows = np.concatenate([own.rows for own in begun])
+    rows = np.concatenate([own.rows for own in starts])
     q = one.circuit.q[one.rows[rows]]
-    error = sum(want.weight**2 * own.error for want, own in zip(model.wanted, begun, strict=True))
+    error = sum(want.weight**2 * own.error for want, own in zip(model.wanted, starts, strict=True))
     seed = TaskSeed(
         values,
-        tuple(own.u for own in begun),
+        tuple(own.u for own in starts),
         model.loop.poses(values, q),
         q[0],
         error,

@@ -3,28 +3,41 @@
 Angles [rad] and lengths in the linkage's own unit throughout, but the bounds of free numbers, which are in
 the unit that the description gives each of them in, and figures, which are as people read them (`Measure`).
 
-A want leaves residuals, each relative to its own unit: a radian, or for lengths what its docstring says. With
-n residuals r of a want of weight w, the task makes least
+A want, an objective, leaves residuals, each relative to its own unit: a radian, or for lengths what its
+docstring says. A must is a constraint. With n residuals r of a want of weight w, the task makes least
 
     sum over wants of  (w^2 / n) sum r^2                     goal "least squares"                          (1)
     the greatest  w |r|  of all                              goal "minimax"                                (2)
     1 - sin^2 of the transmission angle, the greatest of all goal "transmission"                           (3)
 
 (3) is for RSSRs of square axes, over the range that is used; what is wanted must then be met (`Most`).
+
+Each kind of want or must is one file in `wants` or `musts`; everything else knows the classes of this module
+alone.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Literal
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.description.values import TableForm
 from sevenbar.design.limits import Limits
+from sevenbar.design.task.flaws import Flaws
+from sevenbar.design.task.loop import Here, Slacks, TaskLoop
+from sevenbar.design.task.wanted import Wanted
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 
 #: What is made least of the residuals.
@@ -32,6 +45,9 @@ Goal = Literal["least squares", "minimax", "transmission"]
 
 #: How the linkage may stand: as described; anywhere in space; anywhere and in any size.
 Placement = Literal["fixed", "free", "free with scale"]
+
+#: The most that residuals are where points are to be met exactly.
+EXACT = 1e-6
 
 
 @dataclass(frozen=True)
@@ -46,170 +62,215 @@ class FreeNumber:
     high: float
 
 
+class WantForm(TableForm):
+    """A table `[[want]]` of a task file: the keys of a kind of want, its first `kind`."""
+
+    #: Other words for the kind.
+    synonyms: ClassVar[tuple[str, ...]] = ()
+
+    def want(self, linkage: Linkage, folder: Path) -> Want:
+        """The want; files lie in `folder`. Raises `RequestError` with the key at fault."""
+        raise NotImplementedError
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether its residuals must vanish, for which several kinds have a key."""
+        return bool(getattr(self, "exact", False))
+
+    def hints(self) -> Iterator[tuple[str, str]]:
+        """What may be a mistake, each with its key."""
+        return iter(())
+
+
+class MustForm(TableForm):
+    """A table `[[must]]` of a task file: the keys of a kind of must, its first `kind`."""
+
+    #: Other words for the kind.
+    synonyms: ClassVar[tuple[str, ...]] = ()
+
+    def must(self, linkage: Linkage, wants: Sequence[Want]) -> Must:
+        """The must of a task with these wants. Raises `RequestError` with the key at fault."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True, eq=False)
-class FunctionWant:
-    """The output as a function of the input: readings of the drive's two joints.
+class Asked(ABC):
+    """What wants and musts have in common."""
 
-    At `input` (n,) the output reads `output` (n,), both [rad, or length], rising or falling in the input. The
-    joints stand at `zeros` (input's, output's) plus the readings; a zero that is `None` is free. Residuals:
-    what the output is off [rad, or relative to the linkage's size].
-    """
+    #: What is at fault where it is missed, and what may be given up then; "" where it never is.
+    fault: ClassVar[str] = ""
+    ease: ClassVar[str] = ""
+    #: What it puts in space, so that the linkage may not be placed anywhere; "" for nothing.
+    in_space: ClassVar[str] = ""
 
-    input: Floats
-    output: Floats
-    zeros: tuple[float | None, float | None] = (0.0, 0.0)
-    weight: float = 1.0
+    @property
+    def points(self) -> tuple[str, ...]:
+        """The names of points that it is about."""
+        return ()
 
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """The names of measures that it is about."""
+        return ()
 
-@dataclass(frozen=True, eq=False)
-class PathWant:
-    """The path of a named point through places (n, 3) in order, the first not repeated where it is `closed`.
+    @abstractmethod
+    def flaws(self, task: DesignTask) -> Flaws:
+        """What contradicts itself, the linkage or another want or must, each with the key it is of."""
 
-    `timing` (n,) [rad, or length] are the inputs at which they are reached, from an unknown start on with
-    `phase`; without timing the inputs are free and follow each other. Residuals: the three parts of the
-    distance, relative to the greatest extent of the places.
-    """
-
-    point: str
-    places: Floats
-    closed: bool = False
-    timing: Floats | None = None
-    phase: bool = False
-    weight: float = 1.0
+    @abstractmethod
+    def words(self, linkage: Linkage) -> str:
+        """What is asked, in a line."""
 
 
-@dataclass(frozen=True, eq=False)
-class PoseWant:
-    """Poses (n, 4, 4) of a link, counted from 1, in order: rotation and shift from its frame to the report's.
+class Want(Asked):
+    """An objective of a design task."""
 
-    The link's frame is that in which its points are written (`[[point]] at`): of a drawn linkage the report's
-    own in the drawn pose. `timing` and `phase` as of a path. Residuals: where the frame's origin and the ends
-    of its three axes, each `arm` long, are off; relative to `arm`, so that an angle counts by the radian.
-    """
+    form: ClassVar[type[WantForm]]
+    weight: float
 
-    link: int
-    poses: Floats
-    arm: float
-    timing: Floats | None = None
-    phase: bool = False
-    weight: float = 1.0
+    def weighted(self, weight: float) -> Want:
+        """The same with another weight."""
+        return replace(self, weight=weight)  # type: ignore[call-arg]
+
+    @abstractmethod
+    def axis(self, place: int, linkage: Linkage) -> tuple[str, str, float]:
+        """Of its value in tables: a name, the unit, and what 1 is there; `place` is that among the wants."""
 
 
-@dataclass(frozen=True)
-class FigureWant:
-    """A measure of the circuit by its name ("swing", "time_ratio", "peak_torque", ..): a value, or the most.
+class SampledWant(Want):
+    """An objective at poses, by residuals (`Wanted`)."""
 
-    `value` is in the unit that the measure is read in (degrees, N m, ..), or "small" or "great". The residual
-    is what it is off, relative to `unit`; for "small" the figure itself, and for "great" `unit / figure`,
-    below the unit `2 - figure / unit`.
-    """
+    #: Whether it reads nothing but input and output; whether its places go with the placing of the linkage.
+    of_output: ClassVar[bool] = False
+    placeable: ClassVar[bool] = False
+
+    @abstractmethod
+    def in_loop(self, loop: TaskLoop) -> Wanted:
+        """Its residuals in a loop, starts, facts and curve."""
+
+    def residual_unit(self, linkage: Linkage) -> float:
+        """What its residuals are relative to [rad, or length]."""
+        turns = self.of_output and linkage.turns(linkage.drive.output)
+        return 1.0 if turns else linkage_size(linkage)
+
+    def input_range(self) -> tuple[float, float] | None:
+        """The least and the greatest input; `None` where the search has to find them."""
+        return None
+
+    def readings_of(self, column: str, linkage: Linkage) -> Floats | None:  # noqa: ARG002
+        """Values (n,) that a column is wanted to take; `None` for others."""
+        return None
+
+    def places_of(self, point: str) -> Floats | None:  # noqa: ARG002
+        """Places (n, 3) in space that a point is wanted to take; `None` for others."""
+        return None
+
+    def axis(self, place: int, linkage: Linkage) -> tuple[str, str, float]:
+        """The greatest error."""
+        unit = shown_in(linkage, linkage.drive.output) if self.of_output else (linkage.length_unit, 1.0)
+        return f"want_{place + 1}_greatest", *unit
+
+    def exact_flaws(self, task: DesignTask, conditions: int, own: int) -> Flaws:
+        """More that must be met exactly than numbers could meet; `own` are the want's own free numbers."""
+        place = [other is self for other in task.wants].index(True)
+        bounds = (must for must in task.musts if isinstance(must, ResidualMust))
+        if not any(must.want == place and must.most <= EXACT for must in bounds):
+            return
+        count = len(task.free) + own
+        if conditions > count:
+            yield (
+                "exact",
+                f"{conditions} conditions are to be met exactly, and {count} numbers are free; leave points "
+                "out, free more numbers, or leave exact out",
+            )
+
+
+class MeasureWant(Want):
+    """An objective that is a measure of the circuit by its `name`."""
 
     name: str
-    value: float | Literal["small", "great"]
-    unit: float = 1.0
-    weight: float = 1.0
+    #: What counts as 1.
+    unit: float
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Its own."""
+        return (self.name,)
+
+    @property
+    @abstractmethod
+    def aim(self) -> float | None:
+        """The value that it shall have; `None` where it is the greater, or the less, the better."""
+
+    @property
+    @abstractmethod
+    def is_great(self) -> bool:
+        """Whether it is the greater the better."""
+
+    @abstractmethod
+    def residual(self, value: float, by: Floats) -> tuple[float, Floats]:
+        """The residual at a value of the measure, and its slopes."""
+
+    @abstractmethod
+    def loss(self, value: float) -> float:
+        """What a value of the measure lacks, in its unit: the less the better."""
+
+    @abstractmethod
+    def ends(self, loss: float) -> tuple[float | None, float | None]:
+        """The least and the most of the measure that lack no more."""
 
 
-@dataclass(frozen=True)
-class DwellWant:
-    """The output rests while the input goes over `inputs` (low, high) [rad, or length].
+class Must(Asked):
+    """A constraint of a design task."""
 
-    It stays at `level`, a free one where that is `None`. Residuals: what it is off at `samples` inputs
-    [rad, or relative to the size]. A tolerated deviation is a `Most` as well.
-    """
+    form: ClassVar[type[MustForm]]
 
-    inputs: tuple[float, float]
-    level: float | None = None
-    samples: int = 41
-    weight: float = 1.0
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The columns whose range it holds."""
+        return ()
 
-
-@dataclass(frozen=True)
-class StraightWant:
-    """A named point moves along a straight line, a free one, while the input goes over a range (low, high).
-
-    `length` is how far it must go at least [length], between the two places farthest along the line; a design
-    that goes less far is refused. Residuals, its distances from the line at `samples` inputs, are relative to
-    it; without one they are relative to the linkage's size, and a point that rests is straight.
-    """
-
-    point: str
-    inputs: tuple[float, float]
-    length: float | None = None
-    samples: int = 41
-    weight: float = 1.0
+    def start_flaws(self, loop: TaskLoop, circuits: Sequence[Circuit], q: Floats) -> Flaws:  # noqa: ARG002
+        """What contradicts the linkage as a start, with its circuits and closed poses (n, columns) of one."""
+        return iter(())
 
 
-#: Wants at poses, and all.
-SampledWant = FunctionWant | PathWant | PoseWant | DwellWant | StraightWant
-Want = SampledWant | FigureWant
+class PoseMust(Must):
+    """A constraint at all poses that are used."""
+
+    @abstractmethod
+    def slacks(self, loop: TaskLoop) -> Callable[[Here], Slacks]:
+        """What gives its slacks at poses: angles [rad], lengths relative to the size."""
+
+    @abstractmethod
+    def turns(self, linkage: Linkage) -> bool:
+        """Whether its slacks are angles."""
+
+    def slack_unit(self, loop: TaskLoop) -> tuple[str, float]:
+        """The unit in which people read its slack, and what 1 of the slack is there."""
+        turns = self.turns(loop.linkage)
+        return ("deg", math.degrees(1.0)) if turns else (loop.linkage.length_unit, float(loop.size))
 
 
-@dataclass(frozen=True)
-class InRange:
-    """A column's value stays within `low` and `high` [rad, or length] at all poses that are used."""
-
-    column: str
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
-class InCone:
-    """The angle of a ball or a U joint from its seat stays below `angle` [rad] at all poses that are used.
-
-    The angle is that between two directions: `seat` (3,), of the link before the joint, and `stud` (3,), of
-    the link after it, each as points of that link are written. One that is `None` goes along the rod, from
-    the joint to the link's other joint.
-    """
-
-    joint: str
-    angle: float
-    seat: tuple[float, float, float] | None = None
-    stud: tuple[float, float, float] | None = None
-
-
-@dataclass(frozen=True)
-class InBox:
-    """Named points and joints stay between the corners `low` and `high` (3,) at all poses that are used."""
-
-    low: tuple[float, float, float]
-    high: tuple[float, float, float]
-    names: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Apart:
-    """Two links, counted from 1, as rods between their joints keep a `least` distance [length]."""
-
-    links: tuple[int, int]
-    least: float
-
-
-@dataclass(frozen=True)
-class FigureMust:
-    """A measure of the circuit by its name stays within `least` and `most`, in the unit it is read in."""
+class MeasureMust(Must):
+    """A constraint of a measure by its `name`, in the unit it is read in."""
 
     name: str
-    least: float | None = None
-    most: float | None = None
+    least: float | None
+    most: float | None
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Its own."""
+        return (self.name,)
 
 
-@dataclass(frozen=True)
-class Most:
-    """The residuals of a want, by its place among the task's, are at most so great, weights left out.
-
-    Those of all its stations, or at the places `at` among them.
-    """
+class ResidualMust(Must):
+    """A constraint of the residuals of a want, by its place among the task's, at some stations or at all."""
 
     want: int
     most: float
-    at: tuple[int, ...] | None = None
-
-
-#: Musts about poses, and all.
-PoseMust = InRange | InCone | InBox | Apart
-Must = PoseMust | FigureMust | Most
+    at: tuple[int, ...] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,6 +285,7 @@ class DesignTask:
 
     >>> import sevenbar as sb
     >>> linkage = sb.load("rssr")
+    >>> from sevenbar.design.task import FunctionWant
     >>> want = FunctionWant(np.radians([60.0, 80.0, 100.0]), np.radians([10.0, 20.0, 35.0]))
     >>> free = (FreeNumber("L1", 200, 300), FreeNumber("M", 500, 900))
     >>> task = DesignTask(Draft.of_linkage(linkage), free, (want,))
@@ -268,24 +330,12 @@ class DesignTask:
     @property
     def sampled(self) -> list[tuple[int, SampledWant]]:
         """The wants at poses, each with its place among all."""
-        return [(i, want) for i, want in enumerate(self.wants) if not isinstance(want, FigureWant)]
+        return [(i, want) for i, want in enumerate(self.wants) if isinstance(want, SampledWant)]
 
-
-def residual_unit(want: Want, linkage: Linkage) -> float:
-    """What a want's residuals are relative to [rad, or length; of a measure as it is read]."""
-    match want:
-        case FigureWant():
-            return want.unit
-        case PathWant():
-            return float(np.ptp(want.places, axis=0).max())
-        case PoseWant():
-            return want.arm
-        case StraightWant(length=length) if length is not None:
-            return length
-        case FunctionWant() | DwellWant() if linkage.turns(linkage.drive.output):
-            return 1.0
-        case _:
-            return linkage_size(linkage)
+    @property
+    def placings(self) -> int:
+        """The freedoms with which the linkage may stand."""
+        return {"fixed": 0, "free": 6, "free with scale": 7}[self.placement]
 
 
 def linkage_size(linkage: Linkage) -> float:

@@ -1,4 +1,4 @@
-"""The least transmission angle of a task's loop, as a room at the poses that are used, with exact slopes."""
+"""The least transmission angle of a task's loop, as a slack at the poses that are used, with exact slopes."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.limits import MARGIN, Limits
-from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.musts import Rooms
+from sevenbar.design.task.loop import Here, Slacks, TaskLoop
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.transmission.angle import coupling_of
 from sevenbar.kinematics.transmission.slopes import AxisPoints
@@ -24,8 +23,8 @@ class AngleRoom:
         self._made, self._places = made, loop.marked(made.points)
         self._least = math.sin(limits.transmission_lowest + MARGIN) ** 2
 
-    def __call__(self, here: Here) -> Rooms:
-        """The rooms (n, 1) at poses, with their slopes."""
+    def __call__(self, here: Here) -> Slacks:
+        """The slacks (n, 1) at poses, with their slopes."""
         sine, _, by, _ = self._made.angle(here.points[:, self._places], here.points_by[:, self._places])
         return (sine**2 - self._least)[:, None], (2 * sine[:, None] * by)[:, None]
 

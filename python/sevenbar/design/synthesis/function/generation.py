@@ -32,10 +32,10 @@ from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.function.precision import reflected
 from sevenbar.design.synthesis.function.starts import ON_BRANCH, Start, chosen, starts
+from sevenbar.design.task import DesignTask, FreeNumber, FunctionWant, Most
 from sevenbar.design.task.loop import RssrLoop
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.solve import solved
-from sevenbar.design.task.task import DesignTask, FreeNumber, FunctionWant, Most
 from sevenbar.design.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.errors import RequestError
 from sevenbar.text.printing import Printed

@@ -12,6 +12,7 @@ from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.path_page import PathPage, path_page
 from sevenbar.design.task.placing import STILL
+from sevenbar.design.task.wanted import PlacesCurve
 from sevenbar.drawing.names import short
 from sevenbar.text.words import say
 
@@ -28,7 +29,13 @@ def drawn(task: PathTask, design: TaskDesign) -> tuple[Floats, Floats]:
     whole = placing.put(circuit.point(task.point.name).position)
     if circuit.closed:
         whole = np.concatenate([whole, whole[:1]])
-    return whole, whole if task.want.closed else DesignAlong(task.design, design).places(0)[:, 0]
+    return whole, whole if task.want.closed else _used(task, design)
+
+
+def _used(task: PathTask, design: TaskDesign) -> Floats:
+    curve = DesignAlong(task.design, design).curve(0)
+    assert isinstance(curve, PlacesCurve)
+    return curve.path
 
 
 def path_figure(task: PathTask, design: TaskDesign) -> Figure:

@@ -16,9 +16,10 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.limits import Limits
+from sevenbar.design.task import DesignTask, FreeNumber, PathWant
 from sevenbar.design.task.contradictions import OPENINGS, closed_poses
 from sevenbar.design.task.loop import TaskLoop
-from sevenbar.design.task.task import DesignTask, FreeNumber, PathWant, Placement, residual_unit
+from sevenbar.design.task.task import Placement
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
@@ -77,7 +78,7 @@ class PathTask:
     @cached_property
     def extent(self) -> float:
         """The greatest extent of the wanted path [length], which errors are parts of."""
-        return residual_unit(self.want, self.draft.linkage)
+        return self.want.residual_unit(self.draft.linkage)
 
 
 Where = str | tuple[int, Sequence[float]]

@@ -17,12 +17,11 @@ from sevenbar.description.gallery import names as gallery_names
 from sevenbar.description.named_files import file_below
 from sevenbar.description.values import TableForm
 from sevenbar.design.limits import Limits
-from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
-from sevenbar.design.task.file.schema import FunctionForm, LimitsForm, TaskForm, check_form
-from sevenbar.design.task.file.tables import must_of, want_of
-from sevenbar.design.task.file.units import amount
-from sevenbar.design.task.task import DesignTask, FreeNumber, Most, Must, Want
-from sevenbar.design.wish import degrees_hint
+from sevenbar.design.task.contradictions import contradictions, start_flaws
+from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form
+from sevenbar.design.task.given import amount
+from sevenbar.design.task.musts import residuals_within
+from sevenbar.design.task.task import EXACT, DesignTask, FreeNumber, Must, Want
 from sevenbar.errors import (
     DescriptionError,
     Problem,
@@ -108,8 +107,8 @@ def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskF
 
 def _hints(form: TaskForm) -> Iterator[str]:
     for i, want in enumerate(form.want):
-        if isinstance(want, FunctionForm) and want.y is not None and (hint := degrees_hint(want.y, want.x)):
-            yield f"want[{i + 1}].y: {hint}"
+        for key, hint in want.hints():
+            yield f"want[{i + 1}].{key}: {hint}"
 
 
 class _Mistakes:
@@ -210,9 +209,9 @@ def _wants(
     exact: list[Must] = []
     for i, one in enumerate(form.want):
         with mistakes.of(f"want[{i + 1}]", type(one)):
-            wants.append(want_of(one, linkage, folder))
-            if getattr(one, "exact", False):
-                exact.append(Most(i, EXACT))
+            wants.append(one.want(linkage, folder))
+            if one.is_exact:
+                exact.append(residuals_within(i, EXACT))
     return wants, exact
 
 
@@ -220,5 +219,5 @@ def _musts(linkage: Linkage, form: TaskForm, wants: list[Want], mistakes: _Mista
     found: list[Must] = []
     for i, one in enumerate(form.must):
         with mistakes.of(f"must[{i + 1}]", type(one)):
-            found.append(must_of(one, linkage, wants))
+            found.append(one.must(linkage, wants))
     return found

@@ -1,59 +1,30 @@
 """What a task file may hold, checked with pydantic: the one model of it, and of the page of its keys.
 
-Angles are in degrees where no unit is given, lengths in the linkage's own unit.
+The keys of each kind of want and must are in its own module. Angles are in degrees where no unit is given,
+lengths in the linkage's own unit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, get_args
+from collections.abc import Iterable, Mapping
+from functools import partial, reduce
+from operator import or_
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
 
-from pydantic import BeforeValidator, Field, StrictBool, ValidationError, WithJsonSchema
+from pydantic import BeforeValidator, Field, ValidationError
 
 from sevenbar.description.mistakes import FileForms
-from sevenbar.description.values import (
-    Angle,
-    Direction,
-    Length,
-    TableForm,
-    Text,
-    Vector,
-    key,
-    one_of,
-    refuse,
-)
+from sevenbar.description.values import Angle, TableForm, Text, key, one_of
 from sevenbar.design.limits import MOTION_TYPES
-from sevenbar.design.task.file.values import (
-    Goal,
-    Link,
-    Links,
-    Matrix,
-    Numbers,
-    Pairs,
-    Places,
-    Points,
-    Samples,
-    Span,
-    Timing,
-    Unit,
-    Value,
-    WantNumber,
-    Weight,
-    Zero,
-)
-from sevenbar.errors import DescriptionError, shown
+from sevenbar.design.task import musts, wants
+from sevenbar.design.task.task import MustForm, WantForm
+from sevenbar.design.task.values import Span, Words
+from sevenbar.errors import DescriptionError
 
 GOALS = ("least squares", "minimax")
 PLACEMENTS = ("fixed", "free", "free with scale")
 
-_OF_INPUT = "degrees, or length"
-
-
-def _words(value: object) -> tuple[str, ...]:
-    found = [value] if isinstance(value, str) else value
-    if not isinstance(found, list) or not found or not all(isinstance(word, str) and word for word in found):
-        raise refuse(f"{shown(value)} are no names; give some in quotes, as in ['A', 'P']")
-    return tuple(found)
+F = TypeVar("F", bound=TableForm)
 
 
 def _flat(value: object) -> object:
@@ -67,184 +38,6 @@ def _flat(value: object) -> object:
             {f"{name}.{key}": one for key, one in inner.items()} if isinstance(inner, dict) else {name: own}
         )
     return found
-
-
-_Words = Annotated[
-    tuple[str, ...], BeforeValidator(_words), WithJsonSchema({"type": "array", "items": {"type": "string"}})
-]
-
-
-class FunctionForm(TableForm):
-    """The output as a function of the input."""
-
-    kind: Annotated[Literal["function"], key("this want")]
-    y: Annotated[Text | None, key("a function of x, as in 'x^2'; or pairs, or a table")] = None
-    x: Annotated[Numbers, key("of y: the range of x; an angle with a unit counts in radians")] = (0.0, 1.0)
-    input: Annotated[
-        Span | None,
-        key("of y: readings of the input over the range of x; left out with output, x itself", _OF_INPUT),
-    ] = None
-    output: Annotated[
-        Span | None, key("of y: readings of the output from the least y to the greatest; y itself", _OF_INPUT)
-    ] = None
-    points: Annotated[
-        Points | None,
-        key("of y: so many points by Chebyshev's spacing are wanted, not all of the range"),
-    ] = None
-    pairs: Annotated[Pairs | None, key("readings of input and output, row by row", _OF_INPUT)] = None
-    table: Annotated[
-        Text | None, key("a CSV file or workbook of pairs: two columns, their units in the header")
-    ] = None
-    input_zero: Annotated[Zero, key("the input's value at the reading 0, or free", _OF_INPUT)] = "free"
-    output_zero: Annotated[Zero, key("the output's value at the reading 0, or free", _OF_INPUT)] = "free"
-    exact: Annotated[StrictBool, key("whether all points must be met exactly")] = False
-    weight: Annotated[Weight, key("how much its residuals count")] = 1.0
-
-
-class PathForm(TableForm):
-    """The path of a named point."""
-
-    kind: Annotated[Literal["path"], key("this want")]
-    point: Annotated[Text, key("the name of the linkage's point")]
-    places: Annotated[
-        Places | None,
-        key("x, y, z row by row, z perhaps left out; closed where the last repeats the first", "length"),
-    ] = None
-    table: Annotated[Text | None, key("a CSV file or workbook of places: columns x, y, z with units")] = None
-    timing: Annotated[
-        Timing | None,
-        key("inputs at which the places are reached; true: those of the table; left out, any", _OF_INPUT),
-    ] = None
-    phase: Annotated[StrictBool, key("whether the inputs count from a free start")] = False
-    exact: Annotated[StrictBool, key("whether all places must be met exactly")] = False
-    weight: Annotated[Weight, key("how much its residuals count")] = 1.0
-
-
-class PoseForm(TableForm):
-    """A pose of a link: the place of its frame's origin, and how the frame is turned."""
-
-    at: Annotated[Vector, key("the place of the origin of the link's frame", "length")]
-    axis: Annotated[Direction, key("about which the frame is turned")] = (0.0, 0.0, 1.0)
-    angle: Annotated[Angle, key("by which it is turned about the axis", "degrees")] = 0.0
-    matrix: Annotated[Matrix | None, key("the rotation, row by row; in place of axis and angle")] = None
-
-
-class PosesForm(TableForm):
-    """Poses of a link, in order."""
-
-    kind: Annotated[Literal["poses"], key("this want")]
-    link: Annotated[Link, key("the link, counted from 1")]
-    arm: Annotated[
-        Length | None,
-        key("the length at which a radian counts as much as it; left out, the linkage's size", "length"),
-    ] = None
-    frame: Annotated[
-        PoseForm | None,
-        key(
-            "a frame on the link, as its points are written, whose poses are given; left out, the link's own"
-        ),
-    ] = None
-    poses: Annotated[tuple[PoseForm, ...] | None, key("tables of at, axis, angle, or at, matrix")] = None
-    table: Annotated[
-        Text | None,
-        key("a CSV file or workbook: x, y, z [length]; turn_x, turn_y, turn_z: axis times angle [deg, rad]"),
-    ] = None
-    timing: Annotated[
-        Timing | None,
-        key("inputs at which the poses are taken; true: those of the table; left out, any", _OF_INPUT),
-    ] = None
-    phase: Annotated[StrictBool, key("whether the inputs count from a free start")] = False
-    exact: Annotated[StrictBool, key("whether all poses must be met exactly")] = False
-    weight: Annotated[Weight, key("how much its residuals count")] = 1.0
-
-
-class FigureForm(TableForm):
-    """A measure of the circuit."""
-
-    kind: Annotated[Literal["figure"], key("this want; measure is the same")]
-    name: Annotated[Text, key("the measure, as in swing, time_ratio, transmission_lowest, peak_torque")]
-    value: Annotated[Goal, key("what it shall be, or 'small', or 'great'", "of the measure")]
-    unit: Annotated[Unit, key("what counts as 1", "of the measure")] = 1.0
-    weight: Annotated[Weight, key("how much its residual counts")] = 1.0
-
-
-class DwellForm(TableForm):
-    """The output stands still."""
-
-    kind: Annotated[Literal["dwell"], key("this want")]
-    range: Annotated[Span, key("of the input", _OF_INPUT)]
-    level: Annotated[Zero, key("the output's value, or free", _OF_INPUT)] = "free"
-    samples: Annotated[Samples, key("inputs of the range that count")] = 41
-    weight: Annotated[Weight, key("how much its residuals count")] = 1.0
-
-
-class StraightForm(TableForm):
-    """A named point goes along a straight line."""
-
-    kind: Annotated[Literal["straight"], key("this want")]
-    point: Annotated[Text, key("the name of the linkage's point")]
-    range: Annotated[Span, key("of the input", _OF_INPUT)]
-    length: Annotated[Length | None, key("how far it must go at least", "length")] = None
-    samples: Annotated[Samples, key("inputs of the range that count")] = 41
-    weight: Annotated[Weight, key("how much its residuals count")] = 1.0
-
-
-class RangeMust(TableForm):
-    """A joint stays within ends."""
-
-    kind: Annotated[Literal["range"], key("this must")]
-    joint: Annotated[Text, key("the joint, or its column")]
-    range: Annotated[Span, key("from where to where it may go", _OF_INPUT)]
-
-
-class ConeMust(TableForm):
-    """A ball or a U joint stays within a cone."""
-
-    kind: Annotated[Literal["cone"], key("this must")]
-    joint: Annotated[Text, key("a ball or a U joint")]
-    angle: Annotated[Angle, key("the greatest angle between seat and stud", "degrees")]
-    seat: Annotated[
-        Direction | None, key("on the link before the joint, as its points are written; left out, its rod")
-    ] = None
-    stud: Annotated[
-        Direction | None, key("on the link after the joint, as its points are written; left out, its rod")
-    ] = None
-
-
-class BoxMust(TableForm):
-    """Points and joints stay in a box."""
-
-    kind: Annotated[Literal["box"], key("this must")]
-    low: Annotated[Vector, key("its least x, y, z in the report frame", "length")]
-    high: Annotated[Vector, key("its greatest x, y, z", "length")]
-    names: Annotated[_Words | None, key("of points and joints; left out, all of them")] = None
-
-
-class ApartMust(TableForm):
-    """Two links keep a distance."""
-
-    kind: Annotated[Literal["apart"], key("this must")]
-    links: Annotated[Links, key("their numbers, counted from 1")]
-    least: Annotated[Length, key("the least distance of the two as rods between their joints", "length")]
-
-
-class FigureMustForm(TableForm):
-    """A measure of the circuit stays within ends."""
-
-    kind: Annotated[Literal["figure"], key("this must; measure is the same")]
-    name: Annotated[Text, key("the measure")]
-    least: Annotated[Value | None, key("the least that it may be", "of the measure")] = None
-    most: Annotated[Value | None, key("the most that it may be", "of the measure")] = None
-
-
-class MostMust(TableForm):
-    """The residuals of a want are small."""
-
-    kind: Annotated[Literal["most"], key("this must")]
-    want: Annotated[WantNumber, key("its place among [[want]], counted from 1")]
-    most: Annotated[
-        Value, key("the most that each of its residuals may be, weights left out", "degrees, or length")
-    ]
 
 
 class LimitsForm(TableForm):
@@ -262,27 +55,34 @@ class LimitsForm(TableForm):
     ] = 0.0
 
 
-WantForm = FunctionForm | PathForm | PosesForm | FigureForm | DwellForm | StraightForm
-MustForm = RangeMust | ConeMust | BoxMust | ApartMust | FigureMustForm | MostMust
-
-
-def _by_kind(forms: Any) -> dict[str, type[TableForm]]:
-    return {get_args(form.model_fields["kind"].annotation)[0]: form for form in get_args(forms)}
+def _by_kind(forms: Iterable[type[F]]) -> dict[str, type[F]]:
+    return {get_args(form.model_fields["kind"].annotation)[0]: form for form in forms}
 
 
 #: The forms of the tables by their kinds.
-WANTS, MUSTS = _by_kind(WantForm), _by_kind(MustForm)
+WANTS = _by_kind(one.form for one in wants.WANTS)
+MUSTS = _by_kind(one.form for one in musts.MUSTS)
 
 
-def _as_figure(value: object) -> object:
-    """A table whose kind is the word of the docs, a measure."""
-    return (
-        {**value, "kind": "figure"} if isinstance(value, dict) and value.get("kind") == "measure" else value
-    )
+def _with_kind(value: object, synonyms: Mapping[str, str]) -> object:
+    """A table whose kind may be another word for it."""
+    if not isinstance(value, dict) or not isinstance(kind := value.get("kind"), str):
+        return value
+    return {**value, "kind": synonyms.get(kind, kind)}
 
 
-_Want = Annotated[WantForm, Field(discriminator="kind"), BeforeValidator(_as_figure)]
-_Must = Annotated[MustForm, Field(discriminator="kind"), BeforeValidator(_as_figure)]
+def _tables(forms: Mapping[str, type[WantForm | MustForm]]) -> Any:
+    """The type of a table that is one of some forms, by its kind."""
+    synonyms = {word: kind for kind, form in forms.items() for word in form.synonyms}
+    named = BeforeValidator(partial(_with_kind, synonyms=synonyms))
+    return Annotated[reduce(or_, forms.values()), Field(discriminator="kind"), named]
+
+
+if TYPE_CHECKING:
+    _Want = WantForm
+    _Must = MustForm
+else:
+    _Want, _Must = _tables(WANTS), _tables(MUSTS)
 
 
 class TaskForm(TableForm):
@@ -311,7 +111,7 @@ class TaskForm(TableForm):
         key("whether the linkage may stand anywhere, perhaps in any size; paths and poses see it"),
     ] = "fixed"
     follow: Annotated[
-        _Words | None, key("dimensions that the file leaves out (L2) and that follow from the others")
+        Words | None, key("dimensions that the file leaves out (L2) and that follow from the others")
     ] = None
     name: Annotated[Text | None, key("of the task, for reports; left out, the linkage's")] = None
 

@@ -15,6 +15,9 @@ from sevenbar.kinematics.loop.rigid import flaw_of_rotation
 from sevenbar.text.expression import constant_of
 from sevenbar.text.ranges import split_range
 
+#: The unit of values that belong to the input or the output, in words.
+OF_INPUT = "degrees, or length"
+
 #: A number, or a text with a unit, as it is written: what it belongs to decides its unit.
 Given = str | float
 
@@ -109,6 +112,13 @@ def _goal(value: object) -> Given:
     return value if value in ("small", "great") else _given(value, example="60, '60deg', 'small' or 'great'")
 
 
+def _words(value: object) -> tuple[str, ...]:
+    found = [value] if isinstance(value, str) else value
+    if not isinstance(found, list) or not found or not all(isinstance(word, str) and word for word in found):
+        raise refuse(f"{shown(value)} are no names; give some in quotes, as in ['A', 'P']")
+    return tuple(found)
+
+
 _ANY: dict[str, Any] = {"type": ["number", "string"]}
 _ENDS = WithJsonSchema({"type": ["string", "array"]})
 _ROWS = WithJsonSchema({"type": "array"})
@@ -141,3 +151,6 @@ Link = Annotated[int, *_counted(1, 1000, "a link")]
 Samples = Annotated[int, *_counted(3, 1000, "a number of samples")]
 Points = Annotated[int, *_counted(3, 100, "a number of points")]
 WantNumber = Annotated[int, *_counted(1, 100, "a want")]
+Words = Annotated[
+    tuple[str, ...], BeforeValidator(_words), WithJsonSchema({"type": "array", "items": {"type": "string"}})
+]

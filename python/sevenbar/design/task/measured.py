@@ -1,22 +1,48 @@
-"""Measures of a circuit as wants and musts: values at any numbers, exact slopes where those exist."""
+"""Measures of a circuit as wants and musts: what may be asked, values at any numbers, exact slopes if any."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
+from sevenbar.design.task.given import amount
 from sevenbar.design.task.loop import SAMPLES, TaskLoop
-from sevenbar.design.task.task import FigureWant
 from sevenbar.design.task.transmitting import LeastAngle
-from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
+from sevenbar.design.task.values import Given
+from sevenbar.errors import DescriptionError, NotCoveredError, RequestError, no_joint, shown, suggestion
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
-from sevenbar.kinematics.measures import circuit_gradient, circuit_mass_gradient, measures_named
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.measures import (
+    EXTENT_MEASURES,
+    FORCE_MEASURES,
+    JOINT_EXTENTS,
+    JOINT_MEASURES,
+    MEASURES,
+    OF_JOINTS,
+    circuit_gradient,
+    circuit_mass_gradient,
+    is_of_forces,
+    measures_named,
+)
 
 #: Step of the differences that stand in for slopes where a measure has none of its own [of a unit].
 STEP = 1e-5
+
+#: Between which values measures lie, in the unit that they are read in.
+BOUNDS = {
+    "swing": (0.0, 360.0),
+    "time_ratio": (1.0, math.inf),
+    "transmission_lowest": (0.0, 180.0),
+    "peak_torque": (0.0, math.inf),
+    "rms_torque": (0.0, math.inf),
+}
+
+#: Inputs of a turn that show whether a measure has a meaning.
+FEW = 12
 
 #: A circuit is the same where its nearest row has no joint further off [rad, or relative to the size].
 SAME_CIRCUIT = 0.5
@@ -119,13 +145,64 @@ class Figures:
         return None if best is None else (motion, best)
 
 
-def figure_left(want: FigureWant, value: float, by: Floats) -> tuple[float, Floats]:
-    """The residual of a figure, and its slopes."""
-    if want.value == "small":
-        return value / want.unit, by / want.unit
-    if want.value == "great":
-        if value < want.unit:
-            # a gap may be negative: less is worse there, too
-            return 2 - value / want.unit, -by / want.unit
-        return want.unit / value, -want.unit / value**2 * by
-    return (value - want.value) / want.unit, by / want.unit
+def measure_unit(name: str, linkage: Linkage) -> str:
+    """The unit in which a measure is read; empty without one."""
+    (measure,) = measures_named([name])
+    return measure.unit(linkage, linkage.drive.output).replace("_", " ")
+
+
+def measure_value(key: str, value: Given, linkage: Linkage, name: str) -> float:
+    """A value of a measure in the unit that it is read in; a number stays as it is."""
+    if not isinstance(value, str):
+        return value
+    try:
+        (measure,) = measures_named([name])
+    except RequestError:
+        # the name is checked with the task
+        return 0.0
+    unit = measure.unit(linkage, linkage.drive.output)
+    return amount(key, value, unit if unit in ("deg", linkage.length_unit) else "")
+
+
+def measure_flaw(linkage: Linkage, name: str) -> str:
+    """Why a measure cannot be wanted; empty for one that can."""
+    try:
+        (measure,) = measures_named([name])
+    except RequestError:
+        numbers = [n for n, m in MEASURES.items() if m.quantity != "word"]
+        known = [*numbers, *FORCE_MEASURES, *EXTENT_MEASURES, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
+        return f"{shown(name)} is not a measure; {suggestion(name, known)}give one of {', '.join(known)}"
+    if measure.quantity == "word":
+        return f"'{name}' is a word, not a number; give limits.motion_type"
+    kind, _, joint = name.partition(":")
+    names = [known.name for known in linkage.joints]
+    if kind in JOINT_MEASURES and joint not in names:
+        return no_joint(joint, names)
+    if is_of_forces(name) and linkage.loading.is_empty:
+        return "nothing acts on the linkage: no body, load or spring; write them into its file"
+    if (
+        name.startswith("transmission")
+        and linkage.form != "rssr"
+        and all(circuit.transmission is None for circuit in linkage.motion(FEW).circuits)
+    ):
+        return "this linkage has no transmission angle; leave it out"
+    if kind in JOINT_EXTENTS:
+        for circuit in linkage.motion(FEW).circuits[:1]:
+            try:
+                measure.value(circuit)
+            except RequestError as error:
+                return str(error).removeprefix("measure: ")
+    return ""
+
+
+def value_flaw(linkage: Linkage, name: str, value: float, key: str = "value") -> str:
+    """Why a measure never has a value, as wanted, or as the `least` or the `most`; empty where it may."""
+    low, high = BOUNDS.get(name, (-math.inf, math.inf))
+    if name == "swing" and linkage.kind not in ("RSSR", "RRRR"):
+        # the output of a longer loop may rock by more than a turn, and a slide by any length
+        high = math.inf
+    if value < low and key != "least":
+        return f"{value:g} cannot be: {name} is never below {low:g}; give another value"
+    if value > high and key != "most":
+        return f"{value:g} cannot be: {name} is never above {high:g}; give another value"
+    return ""
