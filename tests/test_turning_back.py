@@ -8,6 +8,9 @@ import pytest
 
 import adams_reader
 import sevenbar as sb
+from evidence.rewritten.drawing import Drawing
+from evidence.rewritten.families import lattice
+from evidence.rewritten.ways import from_another_joint, from_the_other_end, mirrored
 from sevenbar.drawing.figure import note
 from sevenbar.drawing.plot import configuration, curves, joints
 from sevenbar.errors import RequestError
@@ -253,3 +256,52 @@ def test_velocities_along_a_walk_are_turned_where_the_input_goes_back(index):
             assert np.array_equal(seen[inner], way * circuit.dq[path.rows[inner]], equal_nan=True)
             rises = np.diff(path.input[part])
             assert (np.sign(rises[np.abs(rises) > 1e-9]) == way * math.copysign(1, motion.speed)).all()
+
+
+def written_anew(drawing: Drawing) -> list[Drawing]:
+    return [
+        drawing,
+        from_another_joint(drawing, 2),
+        from_another_joint(drawing, 5),
+        from_the_other_end(drawing),
+        mirrored(drawing),
+    ]
+
+
+def round_and_round(drawing: Drawing) -> sb.Circuit:
+    """The circuit of that loop on which input and output turn fully."""
+    motion = drawing.linkage().motion(36, input="j1", output="j6")
+    return next(circuit for circuit in motion if circuit.motion_type == "double-crank")
+
+
+def test_two_dead_centres_within_a_step_are_found_however_the_loop_is_written():
+    loop = lattice(156, seed=1)
+    for one in written_anew(loop):
+        circuit = round_and_round(one)
+        found = [centre for centre in circuit.dead_centres if centre.kind == "output"]
+        assert len(found) == 6
+        first, second = (
+            min(found, key=lambda centre: abs(centre.input % math.tau - near))
+            for near in (1.88653632, 1.88782919)
+        )
+        # limits are known to the root of rounding, and these nearly are one
+        assert first.input % math.tau == pytest.approx(1.88653632, abs=2e-8)
+        assert second.input % math.tau == pytest.approx(1.88782919, abs=2e-8)
+        assert second.output - first.output == pytest.approx(2.13e-8, abs=1e-10)
+        # the output turns back between them, as exact rows beside have it
+        beside = np.array([1.886, 1.8872, 1.8883])
+        rows = one.linkage().circuit(
+            circuit.q[0], input="j1", output="j6", law=Law.of(np.arange(3.0), beside, 1.0, 0.0)
+        )
+        turned = rows.q[:, circuit.output_column] - first.output
+        here = np.abs((turned + math.pi) % math.tau - math.pi) < 1e-3
+        ratio = (rows.dq[:, circuit.output_column] / rows.dq[:, circuit.input_column])[here]
+        assert np.sign(ratio).tolist() == [-1, 1, -1]
+
+
+def test_a_curve_that_bends_sharply_between_two_change_points_goes_on_beyond_them():
+    for one in written_anew(lattice(156, seed=1)):
+        motion = one.linkage().motion(36, input="j1", output="j6")
+        assert len(motion.circuits) == 3
+        assert all(circuit.closed for circuit in motion)
+        assert len(motion.change_points) == 4

@@ -151,7 +151,7 @@ pub(super) fn change_point(
     if !counts && found.rays.is_empty() {
         return None;
     }
-    found.partner = partners(&found.rays);
+    found.partner = partners(&found.rays, found.lost);
     let hidden = found.rays.iter().map(|r| r.hidden).fold(0.0, f64::max);
     if hidden < widest / LEAST_RADIUS {
         found.cut = found.cut.max(hidden);
@@ -259,8 +259,9 @@ impl ChangePoint {
     }
 }
 
-/// For each way out, the way out that continues it smoothly; pairs nearest in tangent and bend are joined first.
-fn partners(rays: &[Ray]) -> Vec<Option<usize>> {
+/// For each way out, the way out that continues it smoothly; pairs nearest in tangent and bend are joined first. Ways out come in pairs,
+/// so two that are left over are one curve, be it that it bends sharply within the sphere, or has a cusp; not where others are `lost`.
+fn partners(rays: &[Ray], lost: usize) -> Vec<Option<usize>> {
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for i in 0..rays.len() {
         for j in i + 1..rays.len() {
@@ -277,9 +278,11 @@ fn partners(rays: &[Ray]) -> Vec<Option<usize>> {
             (partner[i], partner[j]) = (Some(j), Some(i));
         }
     }
-    // two arms left over are those of a cusp
-    if let [a @ None, b @ None] = partner.as_mut_slice() {
-        (*a, *b) = (Some(1), Some(0));
+    let left: Vec<usize> = (0..rays.len()).filter(|&k| partner[k].is_none()).collect();
+    if let [i, j] = left[..]
+        && (lost == 0 || rays.len() == 2)
+    {
+        (partner[i], partner[j]) = (Some(j), Some(i));
     }
     partner
 }

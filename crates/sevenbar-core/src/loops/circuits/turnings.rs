@@ -27,6 +27,14 @@ const BESIDE: f64 = 1e-3;
 /// Places looked at within a step for a change of a column's direction.
 const LOOKS: usize = 6;
 
+/// Where a rate falls to this part of the greatest in its step it is searched for two zeros near each other: the series at a sixth of the
+/// step has a rate that touches zero to less than a tenth of that.
+const DIPS: f64 = 0.25;
+
+/// Steps of Newton's method to where a rate is least, and the part of that rate that is left for zeros beyond what its series says.
+const DIP_STEPS: usize = 6;
+const DIP_LEFT: f64 = 0.5;
+
 /// A place where a column changes direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turning {
@@ -123,7 +131,7 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
         }
         // the place of the greatest rate in each stretch of one direction, as the series at the nearer end has it
         marks.clear();
-        for look in 0..=LOOKS {
+        let looks: [(f64, f64); LOOKS + 1] = std::array::from_fn(|look| {
             let s = a.step * look as f64 / LOOKS as f64;
             // at the nodes their own rates, so that two steps see one sign of a rate that is zero up to rounding
             let rate = match look {
@@ -132,6 +140,9 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
                 _ if 2 * look < LOOKS => a.rate(column, s),
                 _ => b.rate(column, s - a.step),
             };
+            (s, rate)
+        });
+        for (s, rate) in looks {
             match marks.last_mut() {
                 Some(last) if last.1 * rate >= 0.0 => {
                     if rate.abs() > last.1.abs() {
@@ -142,7 +153,11 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
             }
         }
         if marks.len() < 2 {
-            continue;
+            // two zeros that no look lies between
+            let Some(dip) = dip(chain, (a, b), column, &looks) else {
+                continue;
+            };
+            marks = vec![looks[0], dip, looks[LOOKS]];
         }
         // both ends are known, and the places between are checked
         let count = marks.len();
@@ -166,6 +181,43 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
     }
     found.sort_by_key(|t| t.segment);
     found
+}
+
+/// A place in a step at which a column's rate has another sign than all the `looks`: by Newton's method from the least of these that lies
+/// between greater ones to where the rate is least.
+fn dip(
+    chain: &Chain,
+    (a, b): (&Node, &Node),
+    column: usize,
+    looks: &[(f64, f64); LOOKS + 1],
+) -> Option<(f64, f64)> {
+    let sign = looks[0].1.signum();
+    let rate = |k: usize| sign * looks[k].1;
+    let falls_in = |k: usize| match k {
+        0 => sign * a.rates[1][column] < 0.0,
+        LOOKS => sign * b.rates[1][column] > 0.0,
+        _ => rate(k - 1) > rate(k) && rate(k) < rate(k + 1),
+    };
+    let most = (0..=LOOKS).map(rate).fold(0.0, f64::max);
+    let least = (0..=LOOKS)
+        .filter(|&k| rate(k) < DIPS * most && falls_in(k))
+        .min_by(|&j, &k| rate(j).total_cmp(&rate(k)))?;
+    let mut s = looks[least].0;
+    for _ in 0..DIP_STEPS {
+        let node = curve::ahead(chain, a, s)?;
+        let [rate, slope, bend] = node.rates.map(|order| sign * order[column]);
+        if rate < 0.0 {
+            return Some((s, sign * rate));
+        }
+        // where the series is least, its value is `rate - gain`
+        let gain = slope * slope / (4.0 * bend);
+        let by = -slope / (2.0 * bend) * dot(&node.rates[0], &a.rates[0]);
+        if bend <= 0.0 || gain < DIP_LEFT * rate || !(0.0..=a.step).contains(&(s + by)) {
+            return None;
+        }
+        s += by;
+    }
+    None
 }
 
 /// Of a closed curve that begins among nodes whose rates rounding hides: the rate before these, and the node where it is least.
