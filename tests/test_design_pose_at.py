@@ -159,13 +159,15 @@ def test_slopes_of_its_slacks_are_those_of_differences():
     z = problem.start
     here = problem.at(z)
     problem.take(z)
-    assert len(here.room) == 7
+    assert len(here.slack) == 7
     for k in range(len(z)):
         step = np.zeros(len(z))
         step[k] = 1e-5
         up, down = problem.at(z + step), problem.at(z - step)
-        assert here.left_by[:, k] == pytest.approx((up.left - down.left) / 2e-5, rel=1e-6, abs=1e-6)
-        assert here.room_by[:, k] == pytest.approx((up.room - down.room) / 2e-5, rel=1e-6, abs=1e-6)
+        assert here.residuals_by[:, k] == pytest.approx(
+            (up.residuals - down.residuals) / 2e-5, rel=1e-6, abs=1e-6
+        )
+        assert here.slack_by[:, k] == pytest.approx((up.slack - down.slack) / 2e-5, rel=1e-6, abs=1e-6)
 
 
 def written(folder: Path, body: str) -> Path:
