@@ -21,6 +21,7 @@ KINDS = [*WANTS, *MUSTS]
 #: Words and keys of one kind that mean something else, too: faults of the search, dimensions, columns of tables.
 COMMON = {
     "angle",
+    "box",
     "figure",
     "input",
     "length",

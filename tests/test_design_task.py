@@ -115,17 +115,19 @@ def test_slopes_of_every_want_and_must_are_those_of_differences(wants, more):
     z = problem.start
     here = problem.at(z)
     problem.take(z)
-    gradient, rooms = here.left_by.T @ here.left, here.room_by
-    assert len(here.left) >= 6
+    gradient, rooms = here.residuals_by.T @ here.residuals, here.slack_by
+    assert len(here.residuals) >= 6
     tried = problem.tried(z)
-    assert tried.left == pytest.approx(here.left, abs=1e-12)
-    assert tried.room == pytest.approx(here.room, abs=1e-12)
+    assert tried.residuals == pytest.approx(here.residuals, abs=1e-12)
+    assert tried.slack == pytest.approx(here.slack, abs=1e-12)
     for k in range(len(z)):
         step = np.zeros(len(z))
         step[k] = 1e-5
         up, down = problem.at(z + step), problem.at(z - step)
-        assert gradient[k] == pytest.approx((up.left @ up.left - down.left @ down.left) / 4e-5, abs=1e-6)
-        assert rooms[:, k] == pytest.approx((up.room - down.room) / 2e-5, abs=1e-6)
+        assert gradient[k] == pytest.approx(
+            (up.residuals @ up.residuals - down.residuals @ down.residuals) / 4e-5, abs=1e-6
+        )
+        assert rooms[:, k] == pytest.approx((up.slack - down.slack) / 2e-5, abs=1e-6)
 
 
 def test_places_moved_by_unknowns_have_exact_slopes_for_the_greatest_residual():
@@ -136,8 +138,8 @@ def test_places_moved_by_unknowns_have_exact_slopes_for_the_greatest_residual():
     for k in range(len(z)):
         step = np.zeros(len(z))
         step[k] = 1e-5
-        differences = (problem.at(z + step).left - problem.at(z - step).left) / 2e-5
-        assert here.left_by[:, k] == pytest.approx(differences, abs=1e-7)
+        differences = (problem.at(z + step).residuals - problem.at(z - step).residuals) / 2e-5
+        assert here.residuals_by[:, k] == pytest.approx(differences, abs=1e-7)
 
 
 def test_a_cone_is_the_angle_between_the_cranks_axis_and_the_coupler():

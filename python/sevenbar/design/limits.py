@@ -91,7 +91,7 @@ class Limits:
         return "; ".join(parts) or "none"
 
 
-def transmission_room(row: Floats, inputs: Floats, limits: Limits) -> tuple[Floats, Floats, Floats]:
+def transmission_slack(row: Floats, inputs: Floats, limits: Limits) -> tuple[Floats, Floats, Floats]:
     """sin^2 of the transmission angle less that of its limit at inputs (m,); must not be negative.
 
     With its derivatives by the dimensions (m, 6) and by the input (m,). Where no limit is given the input
@@ -102,7 +102,7 @@ def transmission_room(row: Floats, inputs: Floats, limits: Limits) -> tuple[Floa
     return transmissions(row[None], inputs)[0] - least, by_dimension[0], by_input[0]
 
 
-def turning_room(row: Floats) -> tuple[Floats, Floats]:
+def turning_slack(row: Floats) -> tuple[Floats, Floats]:
     """sin^2 of the transmission angle over a full turn of the input (72,), less a margin, and slopes (72, 6).
 
     Where none is negative the input turns fully.

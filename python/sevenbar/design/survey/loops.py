@@ -171,12 +171,12 @@ def _judged(model: TaskModel, index: int, values: Floats) -> tuple[str, Kept | N
         here = problem.tried(problem.start)
         if here is None:
             continue
-        missed: list[str] = [fault for fault, room in here.least.items() if room < -ROUNDING]
+        missed: list[str] = [fault for fault, slack in here.least.items() if slack < -ROUNDING]
         if limits.size and size_fault(model.loop.drawn(seed.values), limits) is not None:
             missed.insert(0, "size")
         verdict = missed[0] if missed else "found"
-        error = float(np.linalg.norm(here.left))
-        figure = math.hypot(error, *np.minimum(here.room, 0.0))
+        error = float(np.linalg.norm(here.residuals))
+        figure = math.hypot(error, *np.minimum(here.slack, 0.0))
         start = seed.anchor[model.loop.input]
         lowest = motion.circuits[seed.circuit].transmission
         angle = math.nan if lowest is None else lowest.lowest

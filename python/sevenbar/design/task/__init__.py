@@ -15,6 +15,7 @@ from sevenbar.design.task.wants.dwell import DwellWant
 from sevenbar.design.task.wants.figure import FigureWant
 from sevenbar.design.task.wants.function import FunctionWant
 from sevenbar.design.task.wants.path import PathWant
+from sevenbar.design.task.wants.pose_at import PoseAtWant
 from sevenbar.design.task.wants.poses import PoseWant
 from sevenbar.design.task.wants.straight import StraightWant
 
@@ -36,6 +37,7 @@ __all__ = [
     "ParetoFront",
     "ParetoPoint",
     "PathWant",
+    "PoseAtWant",
     "PoseWant",
     "StraightWant",
     "TaskDesign",

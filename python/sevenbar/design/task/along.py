@@ -1,4 +1,4 @@
-"""What a design does along its wants, between stations too: poses, readings, places, rooms of musts."""
+"""What a design does along its wants, between stations too: poses, readings, places, slacks of musts."""
 
 from __future__ import annotations
 
@@ -80,17 +80,17 @@ class DesignAlong:
         """What figures show of it."""
         return self.model.wanted[number].curve(self._used(number))
 
-    def rooms(self) -> list[tuple[int, int, Floats, Floats]]:
-        """The least room of each must about poses along each want: must, want, inputs (n,), rooms (n,).
+    def slacks(self) -> list[tuple[int, int, Floats, Floats]]:
+        """The least slack of each must about poses along each want: must, want, inputs (n,), slacks (n,).
 
-        Rooms in the `room_unit` of the must.
+        Slacks in the `slack_unit` of the must.
         """
         found = []
         for number, way in enumerate(self.ways):
             here = self.loop.here(self.values, way.q)
-            for place, room in pose_slacks(self.loop, self.task.musts):
+            for place, slack in pose_slacks(self.loop, self.task.musts):
                 _, scale = self._unit(place)
-                found.append((place, number, way.inputs, scale * room(here)[0].min(axis=1)))
+                found.append((place, number, way.inputs, scale * slack(here)[0].min(axis=1)))
         return found
 
     def _unit(self, place: int) -> tuple[str, float]:
@@ -98,6 +98,6 @@ class DesignAlong:
         assert isinstance(must, PoseMust)
         return must.slack_unit(self.loop)
 
-    def room_unit(self, place: int) -> str:
-        """The unit of the room of a must about poses: "deg", or the length unit."""
+    def slack_unit(self, place: int) -> str:
+        """The unit of the slack of a must about poses: "deg", or the length unit."""
         return self._unit(place)[0]

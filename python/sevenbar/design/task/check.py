@@ -69,7 +69,7 @@ class TaskDesign:
     `candidate` is that of the first want. `cost` is the root of the weighted mean squares, or the greatest
     weighted residual; `optimality` by how much the conditions of a local optimum are missed, relative;
     `met` how well each want is met at poses, `figures` the measures that are wanted or limited;
-    `room` the least room of a must (infinite where there is none); `placing` where the linkage is;
+    `room` the least slack of a must (infinite where there is none); `placing` where the linkage is;
     `solution` what was solved for, with the inputs and own unknowns of each want.
     """
 
@@ -116,9 +116,9 @@ def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
     figures = _figures(model, motion, motion.circuits[candidate.circuit])
     if isinstance(figures, Refusal):
         return figures
-    room = _room(model, solution, ways, linkage)
-    if isinstance(room, Refusal):
-        return room
+    slack = _slack(model, solution, ways, linkage)
+    if isinstance(slack, Refusal):
+        return slack
     met = tuple(
         Met(
             float(np.abs(w[0].errors).max()),
@@ -134,7 +134,7 @@ def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
         solution.optimality,
         met,
         figures,
-        room,
+        slack,
         solution.seed.placing,
         solution.seed.values,
         solution,
@@ -273,37 +273,37 @@ def missed_between(model: TaskModel, solution: Solved) -> dict[int, float]:
         return {}
     if not all(ways):
         return {}
-    missed = {place: -room for place, room in _used_rooms(model, solution, ways, linkage).items()}
+    missed = {place: -slack for place, slack in _used_slacks(model, solution, ways, linkage).items()}
     if not max(missed.values(), default=0.0) <= NEAR:
         return {}
-    return {place: room for place, room in missed.items() if room > TIGHT}
+    return {place: slack for place, slack in missed.items() if slack > TIGHT}
 
 
-def _used_rooms(
+def _used_slacks(
     model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: Linkage
 ) -> dict[int, float]:
-    """The least room of each must about poses, by its place, over all that is used."""
+    """The least slack of each must about poses, by its place, over all that is used."""
     loop, values = model.loop, solution.seed.values
-    rooms = pose_slacks(loop, model.task.musts)
+    slacks = pose_slacks(loop, model.task.musts)
     least: dict[int, float] = {}
     for one, own, inputs in zip(model.wanted, ways, solution.inputs, strict=True):
-        if not rooms:
+        if not slacks:
             break
         low, high = float(inputs.min()), float(inputs.max())
         dense = np.linspace(low, low + solution.seed.period if one.stations.round else high, DENSE)
         here = loop.here(values, loop.poses(values, _dense(loop, linkage, own[0], dense)))
-        for place, room in rooms:
-            worst = float(room(here)[0].min())
+        for place, slack in slacks:
+            worst = float(slack(here)[0].min())
             # NaN is less than any
             least[place] = worst if not worst >= least.get(place, math.inf) else least[place]
     return least
 
 
-def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: Linkage) -> float | Refusal:
-    """The least room of the musts over all that is used, or which is missed."""
+def _slack(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: Linkage) -> float | Refusal:
+    """The least slack of the musts over all that is used, or which is missed."""
     loop, musts = model.loop, model.task.musts
     least = math.inf
-    for place, worst in _used_rooms(model, solution, ways, linkage).items():
+    for place, worst in _used_slacks(model, solution, ways, linkage).items():
         if not worst >= -MISSED:
             must = musts[place]
             assert isinstance(must, PoseMust)

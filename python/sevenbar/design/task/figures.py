@@ -1,4 +1,4 @@
-"""Figures of a task's designs: each want as it is met, and how much room the musts leave on the way."""
+"""Figures of a task's designs: each want as it is met, and how much slack the musts leave on the way."""
 
 from __future__ import annotations
 
@@ -111,20 +111,20 @@ def _places(along: DesignAlong, curve: PlacesCurve, title: str) -> Figure:
 
 
 def musts_figure(along: DesignAlong) -> Figure | None:
-    """The room that each must about poses leaves over the input; below 0 it is missed. `None` without any."""
-    rooms = along.rooms()
-    if not rooms:
+    """The slack of each must about poses over the input; below 0 it is missed. `None` without any."""
+    slacks = along.slacks()
+    if not slacks:
         return None
     linkage, task = along.task.draft.linkage, along.task
-    units = list(dict.fromkeys(along.room_unit(place) for place, *_ in rooms))
+    units = list(dict.fromkeys(along.slack_unit(place) for place, *_ in slacks))
     joint = linkage.drive.joint
     x_unit, across = shown_in(linkage, joint)
     with styled():
         figure = page_figure(6.4, 2.6 + 2.4 * len(units), pads=(0.05, 0.06))
         every = figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]
         seen: set[int] = set()
-        for place, _, inputs, values in rooms:
-            axes = every[units.index(along.room_unit(place))]
+        for place, _, inputs, values in slacks:
+            axes = every[units.index(along.slack_unit(place))]
             label = None if place in seen else short(task.musts[place].words(linkage), 60)
             seen.add(place)
             order = np.argsort(inputs)

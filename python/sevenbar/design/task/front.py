@@ -118,8 +118,8 @@ def pareto(
             for i, want in enumerate(task.wants)
         )
         own = replace(task, wants=wants, musts=(*task.musts, *musts), goal="minimax")
-        begun = [point.design.values for point in given]
-        found = designed(own, count=1, starts=tries, seed=seed, given=begun)
+        started = [point.design.values for point in given]
+        found = designed(own, count=1, starts=tries, seed=seed, given=started)
         for design in found.designs:
             kept.append(ParetoPoint((_value(task, one, design), _value(task, other, design)), design))
         course.step(f"{len(kept)} points")

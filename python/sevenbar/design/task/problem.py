@@ -1,4 +1,4 @@
-"""A task at its unknowns: residuals and rooms with exact slopes, about poses that are followed.
+"""A task at its unknowns: residuals and slacks with exact slopes, about poses that are followed.
 
 The unknowns z are the free numbers, then the own ones of each want (free inputs, phases, zeros), each
 relative to its unit. Where the linkage may stand anywhere, each evaluation is placed anew. What is left is
@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
+from sevenbar.design.limits import INPUT_TURNS, transmission_slack, turning_slack
 from sevenbar.design.task.effort import Effort
 from sevenbar.design.task.loop import Here, RssrLoop, Slacks, TaskLoop
 from sevenbar.design.task.measured import Figures
@@ -42,7 +42,7 @@ from sevenbar.design.task.task import (
     ResidualMust,
     SampledWant,
 )
-from sevenbar.design.task.transmitting import AngleRoom, LeastAngle
+from sevenbar.design.task.transmitting import AngleSlack, LeastAngle
 from sevenbar.design.task.wanted import Stations, Wanted
 from sevenbar.design.task.wants.places import PlacesWanted
 
@@ -61,7 +61,7 @@ class TaskSeed:
     """A start: numbers (k,), each want's unknowns, poses of all its stations (n, columns), and how far off.
 
     `anchor` (columns,) is a row of the circuit; `error` the sum of weighted mean squares; `period` what the
-    input gains in a round of the circuit, 0 where it does not go round; `circuit` is its number where begun.
+    input gains in a round of the circuit, 0 where it does not go round; `circuit` is its number at the start.
     """
 
     values: Floats
@@ -76,15 +76,15 @@ class TaskSeed:
 
 @dataclass(frozen=True, eq=False)
 class TaskValues:
-    """Residuals (r,) and rooms (c,) at unknowns z, with their slopes (.., unknowns or 0), and the placing.
+    """Residuals (r,) and slacks (c,) at unknowns z, with their slopes (.., unknowns or 0), and the placing.
 
-    `least` has the least room of each kind of must, by what is at fault where it is missed.
+    `least` has the least slack of each kind of must, by what is at fault where it is missed.
     """
 
-    left: Floats
-    left_by: Floats
-    room: Floats
-    room_by: Floats
+    residuals: Floats
+    residuals_by: Floats
+    slack: Floats
+    slack_by: Floats
     placing: Placing
     least: Mapping[str, float]
 
@@ -116,15 +116,15 @@ class TaskModel:
         names = [want.name for want in self.figure_wants if want not in self.angle_wants]
         names += [must.name for must in self.figure_musts if must not in self.angle_musts]
         self.searched = Figures(loop, list(dict.fromkeys(names)))
-        self.rooms = pose_slacks(loop, task.musts)
+        self.slacks = pose_slacks(loop, task.musts)
         #: What the present start has taken.
         self.effort = Effort()
         self.placed = task.placement != "fixed"
         linkage = loop.linkage
         closed_form = linkage.form == "rssr" and loop.input == 0
         self.transmits = closed_form and (task.limits.transmission_lowest > 0 or task.goal == "transmission")
-        #: The room of the transmission angle of any other loop.
-        self.angle = AngleRoom(loop, task.limits) if least > 0 and self.wanted and not closed_form else None
+        #: The slack of the transmission angle of any other loop.
+        self.angle = AngleSlack(loop, task.limits) if least > 0 and self.wanted and not closed_form else None
         self.turns = closed_form and task.limits.motion_type in INPUT_TURNS
         #: Wants, by their places among the sampled, whose residuals have been asked to stay small.
         self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, ResidualMust)]
@@ -140,7 +140,7 @@ class TaskModel:
     @property
     def holds(self) -> bool:
         """Whether anything must hold at poses between the stations."""
-        return bool(self.rooms or self.transmits or self.angle)
+        return bool(self.slacks or self.transmits or self.angle)
 
 
 class TaskProblem:
@@ -171,7 +171,7 @@ class TaskProblem:
         ]
         self._periods = [way * seed.period for way in self._senses]
         self._stations = self._all_stations()
-        if (model.rooms or model.angle) and len(self._poses) < len(self._stations.fixed):
+        if (model.slacks or model.angle) and len(self._poses) < len(self._stations.fixed):
             self._poses = self._between(seed)
         places = [one.places.reshape(-1, 3) for _, one in self._places()]
         self._middle = np.concatenate(places).mean(axis=0) if places else np.zeros(3)
@@ -215,7 +215,7 @@ class TaskProblem:
     def size(self, z: Floats) -> float:
         """The root of the weighted mean squares at z; infinite where there are none."""
         here = self.at(z)
-        return math.inf if here is None else float(np.linalg.norm(here.left))
+        return math.inf if here is None else float(np.linalg.norm(here.residuals))
 
     def values(self, z: Floats) -> Floats:
         """The free numbers (k,)."""
@@ -271,7 +271,7 @@ class TaskProblem:
     # ---- what is left there
 
     def at(self, z: Floats) -> TaskValues | None:
-        """Residuals and rooms at z; `None` where the linkage does not close on its branch."""
+        """Residuals and slacks at z; `None` where the linkage does not close on its branch."""
         key = z.tobytes()
         if key == self._taken[0]:
             # at the edge of where the linkage closes it may not be found twice
@@ -281,11 +281,11 @@ class TaskProblem:
         return self._known[1]
 
     def tried(self, z: Floats) -> TaskValues | None:
-        """Residuals and rooms at z without their slopes, which cost the most."""
+        """Residuals and slacks at z without their slopes, which cost the most."""
         return self._at(z, slopes=False)
 
     def valued(self, z: Floats) -> TaskValues | None:
-        """Residuals and rooms at z, with their slopes only where these are known already."""
+        """Residuals and slacks at z, with their slopes only where these are known already."""
         key = z.tobytes()
         for known in (self._taken, self._known, self._valued):
             if known is not None and known[0] == key:
@@ -304,31 +304,31 @@ class TaskProblem:
         parts_of = zip(self.model.task.sampled, self.model.wanted, own, self._rows, self._own, strict=True)
         for (_, want), one, u, rows, place in parts_of:
             seen = here.part(rows).along(one.stations.by)
-            left, by = one.residuals(seen, u)
-            parts.append((left, self._by_all(by, place) if slopes else by))
+            residuals, by = one.residuals(seen, u)
+            parts.append((residuals, self._by_all(by, place) if slopes else by))
             if bound := one.bound(seen):
                 by = self._by_all(bound.slack_by, place) if slopes else bound.slack_by
                 bounds.append((want.fault, bound.slack, by))
-        placing = self._placing(z, [left for left, _ in parts])
-        lefts, lefts_by = self._placed(z, parts, placing)
+        placing = self._placing(z, [residuals for residuals, _ in parts])
+        each, each_by = self._placed(z, parts, placing)
         figures = self._figures(values, slopes=slopes)
         if figures is None:
             return None
-        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True))) + bounds
-        rooms.append(("figure", *figures[1]))
+        slacks = self._slacks(z, here, list(zip(each, each_by, strict=True))) + bounds
+        slacks.append(("figure", *figures[1]))
         least: dict[str, float] = {"figure": math.inf}
-        for fault, own_room, _ in rooms:
-            least[fault] = min(least.get(fault, math.inf), float(own_room.min(initial=math.inf)))
+        for fault, own_slack, _ in slacks:
+            least[fault] = min(least.get(fault, math.inf), float(own_slack.min(initial=math.inf)))
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
-        left = np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0][0]])
-        room = np.concatenate([own_room for _, own_room, _ in rooms])
-        left_by, room_by = np.empty((len(left), 0)), np.empty((len(room), 0))
+        residuals = np.concatenate([*(w * r for w, r in zip(weights, each, strict=True)), figures[0][0]])
+        slack = np.concatenate([own_slack for _, own_slack, _ in slacks])
+        residuals_by, slack_by = np.empty((len(residuals), 0)), np.empty((len(slack), 0))
         if slopes:
-            by_all = (w * r for w, r in zip(weights, lefts_by, strict=True))
-            left_by = np.concatenate([*by_all, figures[0][1]])
-            room_by = np.concatenate([by for _, _, by in rooms])
-        good = all(np.isfinite(part).all() for part in (left, left_by, room, room_by))
-        return TaskValues(left, left_by, room, room_by, placing, least) if good else None
+            by_all = (w * r for w, r in zip(weights, each_by, strict=True))
+            residuals_by = np.concatenate([*by_all, figures[0][1]])
+            slack_by = np.concatenate([by for _, _, by in slacks])
+        good = all(np.isfinite(part).all() for part in (residuals, residuals_by, slack, slack_by))
+        return TaskValues(residuals, residuals_by, slack, slack_by, placing, least) if good else None
 
     def _by_all(self, by: Floats, place: slice) -> Floats:
         """Slopes (.., k + m) by the free numbers and a want's unknowns as those by all unknowns."""
@@ -362,18 +362,18 @@ class TaskProblem:
         self, z: Floats, parts: Sequence[tuple[Floats, Floats]], placing: Placing
     ) -> tuple[list[Floats], list[Floats]]:
         """Residuals and slopes of every want, those of places as the linkage is placed."""
-        left, slopes = [part[0] for part in parts], [part[1] for part in parts]
+        residuals, slopes = [part[0] for part in parts], [part[1] for part in parts]
         own = self._places()
         for i, one in own:
-            put = placing.put(left[i])
+            put = placing.put(residuals[i])
             by = np.einsum("ij,njk->nik", placing.rotation, slopes[i])
             if self._turned and by.shape[-1]:
                 by[..., -6:] = self._by_moves(z, put)
-            left[i] = (put - one.places.reshape(-1, 3)).ravel() / one.unit
-            slopes[i] = by.reshape(left[i].size, -1) / one.unit
+            residuals[i] = (put - one.places.reshape(-1, 3)).ravel() / one.unit
+            slopes[i] = by.reshape(residuals[i].size, -1) / one.unit
         if self.model.placed and not self._turned and slopes[own[0][0]].size:
             self._project(own, parts, placing, slopes)
-        return left, slopes
+        return residuals, slopes
 
     def _project(
         self,
@@ -413,32 +413,32 @@ class TaskProblem:
 
     # ---- what must hold
 
-    def _rooms(
+    def _slacks(
         self, z: Floats, here: Here, wants: Sequence[tuple[Floats, Floats]]
     ) -> list[tuple[str, Floats, Floats]]:
-        """Rooms with their slopes, each with what is at fault where it is missed."""
-        rooms: list[tuple[str, Floats, Floats]] = []
+        """Slacks with their slopes, each with what is at fault where it is missed."""
+        slacks: list[tuple[str, Floats, Floats]] = []
         if self.model.transmits or self.model.turns:
-            rooms += self._transmission(z)  # first, where the goal "transmission" looks for them
-        wide = here.along(self._stations.by) if self.model.rooms or self.model.angle else here
+            slacks += self._transmission(z)  # first, where the goal "transmission" looks for them
+        wide = here.along(self._stations.by) if self.model.slacks or self.model.angle else here
         if self.model.angle is not None:
             values, by = self.model.angle(wide)
-            rooms.append(("transmission", values.ravel(), self._joined(by.reshape(values.size, -1))))
-        if self.model.rooms:
-            for place, room in self.model.rooms:
-                values, by = room(wide)
+            slacks.append(("transmission", values.ravel(), self._joined(by.reshape(values.size, -1))))
+        if self.model.slacks:
+            for place, slack in self.model.slacks:
+                values, by = slack(wide)
                 values = values - self.model.margins.get(place, 0.0)
                 fault = self.model.task.musts[place].fault
-                rooms.append((fault, values.ravel(), self._joined(by.reshape(values.size, -1))))
+                slacks.append((fault, values.ravel(), self._joined(by.reshape(values.size, -1))))
         for i, one in enumerate(self.model.wanted):
             if one.stations.free:
-                rooms.append(("order", *self._order(z, i)))
+                slacks.append(("order", *self._order(z, i)))
         for i, must in self.model.most:
             at = slice(None) if must.at is None else list(must.at)
-            left, by = wants[i][0][at], wants[i][1][at]
-            height, height_by = self.model.wanted[i].heights(left, by)
-            rooms.append(("error", must.most - height, -height_by))
-        return rooms
+            residuals, by = wants[i][0][at], wants[i][1][at]
+            height, height_by = self.model.wanted[i].heights(residuals, by)
+            slacks.append(("error", must.most - height, -height_by))
+        return slacks
 
     def _order(self, z: Floats, number: int) -> tuple[Floats, Floats]:
         """The ways between free inputs that follow each other, a round at most, in the seed's sense."""
@@ -473,16 +473,16 @@ class TaskProblem:
 
         found: list[tuple[str, Floats, Floats]] = []
         if self.model.transmits and len(self._stations.fixed):
-            room, by_row, by_input = transmission_room(row, self._stations.inputs(z), limits)
+            slack, by_row, by_input = transmission_slack(row, self._stations.inputs(z), limits)
             by = wide(by_row) + by_input[:, None] * self._stations.by
-            found.append(("transmission", room, by))
+            found.append(("transmission", slack, by))
         if self.model.turns:
-            room, by_row = turning_room(row)
-            found.append(("motion type", room, wide(by_row)))
+            slack, by_row = turning_slack(row)
+            found.append(("motion type", slack, wide(by_row)))
         return found
 
     def _figures(self, values: Floats, *, slopes: bool) -> tuple[Slacks, Slacks] | None:
-        """Residuals of figures, and their rooms, each with its slopes."""
+        """Residuals of figures, and their slacks, each with its slopes."""
         model = self.model
         found: tuple[Any, Any] | None = ((), ())
         if model.searched.names:
@@ -500,14 +500,14 @@ class TaskProblem:
             if both is None:
                 return None
             ends, read["transmission_lowest"] = both, [min(both, key=lambda end: end[0])]
-        lefts = [
+        each = [
             (want.weight * value, want.weight * by)
             for want in model.figure_wants
             # each end a height of its own: the lower of two has a kink where they are equal
             for own in (ends if self.minimax and self._by_ends(want) else read[want.name])
             for value, by in [want.residual(*own)]
         ]
-        rooms = [
+        slacks = [
             (way * (value - end) / unit, way * by / unit)
             for must in model.figure_musts
             if must not in model.angle_musts
@@ -518,8 +518,8 @@ class TaskProblem:
         ]
         for must in model.angle_musts:
             least = must.least or 0.0
-            rooms += [((value - least) / max(least, 1.0), by / max(least, 1.0)) for value, by in ends]
-        return self._stacked(lefts), self._stacked(rooms)
+            slacks += [((value - least) / max(least, 1.0), by / max(least, 1.0)) for value, by in ends]
+        return self._stacked(each), self._stacked(slacks)
 
     def _by_ends(self, want: MeasureWant) -> bool:
         """Whether it is the least of two angles that shall be great."""

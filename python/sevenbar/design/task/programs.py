@@ -1,8 +1,8 @@
 """The least greatest of many heights by a sequence of linear programs, each within a reach.
 
-    minimise the greatest height,   with rooms >= 0                                                      (1)
+    minimise the greatest height,   with slacks >= 0                                                      (1)
 
-Heights and rooms are made straight by their exact slopes; a step may go as far as the reach, which grows and
+Heights and slacks are made straight by their exact slopes; a step may go as far as the reach, which grows and
 shrinks with what the last one kept of its promise. A step from which heights bend away is mended once with
 what they were at its end (a second-order correction), so that curved valleys are followed. Where at the end
 one height more than there are unknowns is equal to the greatest, the solution is a corner, and the steps
@@ -28,11 +28,11 @@ FIRST_REACH, MOST_REACH, LEAST_REACH = 0.1, 1.0, 1e-9
 #: Gain of a step, relative to the greatest height, below which it is the last.
 WORTH = 1e-5
 
-#: Weight of a missed room relative to the greatest height, at first and at most, and by how much it rises
-#: where a room would be missed for a lower height: its multiplier is greater.
+#: Weight of a missed slack relative to the greatest height, at first and at most, and by how much it rises
+#: where a slack would be missed for a lower height: its multiplier is greater.
 MISSED, MOST_MISSED, RISE = 100.0, 1e8, 10.0
 
-#: A room missed by more than the least within the reach, relative to what is missed, is missed for a height.
+#: A slack missed by more than the least within the reach, relative to what is missed, is missed for a height.
 TRADED = 1e-6
 
 #: Least unit of heights: what rounding leaves.
@@ -44,25 +44,25 @@ KEPT_LITTLE, KEPT_MOST = 0.1, 0.7
 
 @dataclass(frozen=True, eq=False)
 class MinimaxValues:
-    """Heights (h,) whose greatest is made least, rooms (r,) that must not be negative, and their slopes."""
+    """Heights (h,) whose greatest is made least, slacks (r,) that must not be negative, and their slopes."""
 
     height: Floats
     height_slopes: Floats
-    room: Floats
-    room_slopes: Floats
+    slack: Floats
+    slack_slopes: Floats
 
     @property
     def unit(self) -> float:
-        """The greatest height or missed room, which scales a program: solvers have absolute tolerances."""
+        """The greatest height or missed slack, which scales a program: solvers have absolute tolerances."""
         return max(float(self.height.max()), self.missed, LEAST_UNIT)
 
     @property
     def missed(self) -> float:
-        """By how much the worst room is missed."""
-        return max(float(-self.room.min(initial=0.0)), 0.0)
+        """By how much the worst slack is missed."""
+        return max(float(-self.slack.min(initial=0.0)), 0.0)
 
     def merit(self, unit: float, weight: float) -> float:
-        """The greatest height and the worst missed room by its weight, relative to a unit."""
+        """The greatest height and the worst missed slack by its weight, relative to a unit."""
         return (float(self.height.max()) + weight * self.missed) / unit
 
 
@@ -76,7 +76,7 @@ def lowered(
     """The unknowns (k,) near a start at which (1) is solved; a gain below `worth` ends it.
 
     `heights` gives `None` where there is nothing to measure; a step never leads there. `mended` brings the
-    end of a step to where rooms are kept that bend away.
+    end of a step to where slacks are kept that bend away.
     """
     z, reach, weight = start, FIRST_REACH, MISSED
     now = heights(z)
@@ -116,14 +116,14 @@ def _gained(now: MinimaxValues, then: MinimaxValues | None, weight: float) -> fl
 
 
 def _bent(now: MinimaxValues, then: MinimaxValues, step: Floats) -> MinimaxValues:
-    """The heights and rooms of a place, moved so that its slopes lead to those at the end of a step."""
+    """The heights and slacks of a place, moved so that its slopes lead to those at the end of a step."""
     return replace(
-        now, height=then.height - now.height_slopes @ step, room=then.room - now.room_slopes @ step
+        now, height=then.height - now.height_slopes @ step, slack=then.slack - now.slack_slopes @ step
     )
 
 
 def _weight(now: MinimaxValues, reach: float, weight: float) -> float:
-    """The weight of a missed room, raised until a step misses none that another within the reach keeps."""
+    """The weight of a missed slack, raised until a step misses none that another within the reach keeps."""
     missed = _program(now, reach, weight)[2]
     if missed <= TRADED * now.missed:
         return weight
@@ -141,21 +141,21 @@ def _step(now: MinimaxValues, reach: float, weight: float) -> tuple[Floats, floa
 
 
 def _program(now: MinimaxValues, reach: float, weight: float) -> tuple[Floats, float, float]:
-    """The step (k,) of least greatest height and missed room by its weight, or of room alone; and both."""
+    """The step (k,) of least greatest height and missed slack by its weight, or of slack alone; and both."""
     from scipy.optimize import linprog
 
     unit, count = now.unit, now.height_slopes.shape[1]
     nothing = np.zeros(count), float(now.height.max()), now.missed
     # rows out of reach of every step are left out
-    up, down = (reach * np.abs(by).sum(axis=1) for by in (now.height_slopes, now.room_slopes))
-    tall, near = ~(now.height + up < (now.height - up).max()), ~(now.room > down)
+    up, down = (reach * np.abs(by).sum(axis=1) for by in (now.height_slopes, now.slack_slopes))
+    tall, near = ~(now.height + up < (now.height - up).max()), ~(now.slack > down)
     matrix = np.block(
         [
             [now.height_slopes[tall] / unit, -np.ones((tall.sum(), 1)), np.zeros((tall.sum(), 1))],
-            [-now.room_slopes[near] / unit, np.zeros((near.sum(), 1)), -np.ones((near.sum(), 1))],
+            [-now.slack_slopes[near] / unit, np.zeros((near.sum(), 1)), -np.ones((near.sum(), 1))],
         ]
     )
-    sides = np.concatenate([-now.height[tall], now.room[near]]) / unit
+    sides = np.concatenate([-now.height[tall], now.slack[near]]) / unit
     if not (np.isfinite(matrix).all() and np.isfinite(sides).all()):
         return nothing
     bounds: list[tuple[float, float | None]] = [(-reach, reach)] * count

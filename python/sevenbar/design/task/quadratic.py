@@ -1,6 +1,6 @@
-"""Sequential quadratic programs about a task: rooms are held, and the curvature of valleys is known.
+"""Sequential quadratic programs about a task: slacks are held, and the curvature of valleys is known.
 
-They end where a missed room is no longer missed by less and less, and where all that a start may measure is
+They end where a missed slack is no longer missed by less and less, and where all that a start may measure is
 measured.
 """
 
@@ -28,13 +28,13 @@ from sevenbar.design.task.problem import TaskProblem, TaskValues
 #: Most steps of sequential quadratic programs; for the greatest residual, which begin near their end.
 PROGRAMS, FEWER = 200, 80
 
-#: Unknowns tried by programs, four times as many where they are quick, among which the greatest lack of room
+#: Unknowns tried by programs, four times as many where they are quick, among which the greatest lack of slack
 #: must fall to this part while there is one, and of measures the cost by this part.
 STALLED, FALLS, GAINED = 12, 0.98, 1e-8
 
 
 def programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
-    """The unknowns after sequential quadratic programs, which hold the rooms: better ones, or the same.
+    """The unknowns after sequential quadratic programs, which hold the slacks: better ones, or the same.
 
     Where fewer heights are equal to the greatest than there are unknowns, linear programs go from side to
     side of a valley; these know its curvature. Costs are relative to the first.
@@ -53,8 +53,8 @@ def programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
         return begun, z
     last = first
     ends = list(zip(problem.low, problem.high, strict=True))
-    # bounds are no rooms here; of squares the whole sum counts
-    own = slice(len(first.room) - int(np.isfinite(ends).sum()))
+    # bounds are no slacks here; of squares the whole sum counts
+    own = slice(len(first.slack) - int(np.isfinite(ends).sum()))
     times, per = (1.0, 1.0) if minimax else (2.0, unit)
 
     def at(x: Floats) -> Conditions:
@@ -79,23 +79,23 @@ def programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
             return 1e3
         return float(x[-1]) if minimax else squares(here) / per
 
-    def room(x: Floats) -> Floats:
+    def slack(x: Floats) -> Floats:
         z = unknowns(problem, x)
         here = None if minimax else problem.valued(z)
-        return at(x).room[own] if here is None else here.room
+        return at(x).slack[own] if here is None else here.slack
 
     def slopes(x: Floats) -> Floats:
         problem.take(unknowns(problem, x))
         return times * at(x).gradient / per
 
-    rooms: Any = {"type": "ineq", "fun": room, "jac": lambda x: at(x).room_by[own]}
+    slacks: Any = {"type": "ineq", "fun": slack, "jac": lambda x: at(x).slack_by[own]}
     with np.errstate(all="ignore"), suppress(_StopsError):
         found = minimize(
             cost,
             x,
             jac=slopes,
             bounds=[*ends, (0.0, math.inf)] if minimax else ends,
-            constraints=[rooms] if len(first.room[own]) else [],
+            constraints=[slacks] if len(first.slack[own]) else [],
             method="SLSQP",
             options={"maxiter": FEWER if minimax else PROGRAMS, "ftol": 1e-14},
         )
@@ -116,7 +116,7 @@ class _StopsError(Exception):
 
 @dataclass
 class _Course:
-    """The unknowns of least (lack of room, cost) on the way of programs, and the least of each so far.
+    """The unknowns of least (lack of slack, cost) on the way of programs, and the least of each so far.
 
     `figures`: with measures, and `measured`, those whose motions are what takes time.
     """
@@ -135,7 +135,7 @@ class _Course:
 
     @property
     def stalls(self) -> bool:
-        """Whether a room is missed, and no longer by less and less; or measures leave nothing to gain."""
+        """Whether a slack is missed, and no longer by less and less; or measures leave nothing to gain."""
         stalled = STALLED if self.measured else 4 * STALLED
         if len(self.known) <= stalled:
             return False

@@ -124,8 +124,8 @@ def _facts(found: TaskDesigns) -> list[tuple[str, str]]:
     if found.survey:
         facts += [("drawn", f"{found.starts} linkages, seed {found.seed}"), *found.survey]
     else:
-        begun = f"{found.found.starts} ways to begin from {found.starts + 1} linkages, seed {found.seed}"
-        facts.append(("searched", begun))
+        searched = f"{found.found.starts} ways to begin from {found.starts + 1} linkages, seed {found.seed}"
+        facts.append(("searched", searched))
     if found.found.ended_early:
         count = found.found.ended_early
         early = f"{count} start{'s' * (count != 1)} ended after {WHOLE} measured motions each"
@@ -257,7 +257,7 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
                     {"want": place + 1, "greatest": met.greatest, "rms": met.rms, "unit": met.unit}
                     for (place, _), met in zip(task.sampled, design.met, strict=True)
                 ],
-                "musts": _rooms(task, design),
+                "musts": _slacks(task, design),
                 "ended": design.solution.ended,
                 "values": dict(zip(task.names, map(float, design.values), strict=True)),
             }
@@ -267,12 +267,12 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
     }
 
 
-def _rooms(task: DesignTask, design: TaskDesign) -> list[Mapping[str, Any]]:
-    """The least room of each must about poses, over all wants."""
+def _slacks(task: DesignTask, design: TaskDesign) -> list[Mapping[str, Any]]:
+    """The least slack of each must about poses, over all wants."""
     along = DesignAlong(task, design)
     least: dict[int, float] = {}
-    for place, _, _, values in along.rooms():
+    for place, _, _, values in along.slacks():
         least[place] = min(least.get(place, math.inf), float(values.min()))
     return [
-        {"must": place + 1, "room": room, "unit": along.room_unit(place)} for place, room in least.items()
+        {"must": place + 1, "room": slack, "unit": along.slack_unit(place)} for place, slack in least.items()
     ]

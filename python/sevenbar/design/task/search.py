@@ -36,7 +36,7 @@ ONE, HOPELESS = 1e-3, 2.0
 #: Starts in a row of a task with measures that lead to nothing new, after which the search ends.
 IDLE = 8
 
-#: First ones that miss a room by more are taken last; those whose costs, rooms and numbers differ by less are
+#: Those that miss a slack by more are taken last; those whose costs, slacks and numbers differ by less are
 #: one; seeds of one linkage whose errors differ by less are mirror images.
 MISSED, ALIKE, SAME = -0.01, 1e-4, 1e-7
 
@@ -146,19 +146,19 @@ def designed(
     course = SearchCourse(starts + 1 + len(given) + (TRIED + TAKEN) * count, progress)
     kept: list[TaskDesign] = []
     refusals: list[Refusal] = []
-    begun: list[TaskSeed] = []
+    started: list[TaskSeed] = []
     with course.until_stopped(kept):
-        begun = seeds(model, starts, seed, course.step, [np.asarray(v, dtype=float) for v in given])
-        _search(model, begun, count, course, kept, refusals)
+        started = seeds(model, starts, seed, course.step, [np.asarray(v, dtype=float) for v in given])
+        _search(model, started, count, course, kept, refusals)
     best = distinct(kept, scale_free=False, count=count)
     return DesignsFound(
-        task, named(task, best), tuple(refusals), len(begun), course.unfinished, model.effort.ended
+        task, named(task, best), tuple(refusals), len(started), course.unfinished, model.effort.ended
     )
 
 
 def _search(
     model: TaskModel,
-    begun: Sequence[TaskSeed],
+    started: Sequence[TaskSeed],
     count: int,
     course: SearchCourse,
     kept: list[TaskDesign],
@@ -166,7 +166,7 @@ def _search(
 ) -> None:
     tried: list[Solved] = []
     nearest = math.inf
-    for one in apart(model, _unlike_seeds(model, begun), TRIED * count):
+    for one in apart(model, _unlike_seeds(model, started), TRIED * count):
         look = _first_look(model, one)
         if look is not None:
             nearest = min(nearest, look.cost)
@@ -177,7 +177,7 @@ def _search(
         course.step(f"nearest: {nearest:.3g}" if look else "")
         if _worst(kept, count) < EXACT:
             return
-    tried.sort(key=lambda look: (look.hopeless, look.room < MISSED, look.cost))
+    tried.sort(key=lambda look: (look.hopeless, look.slack < MISSED, look.cost))
     tried = _unlike(model, tried)
     idle, known = 0, (0, math.inf)
     for i, look in enumerate(tried):
@@ -196,15 +196,15 @@ def _search(
         course.step(best, done=int(course.done < course.total))
 
 
-def _unlike_seeds(model: TaskModel, begun: Sequence[TaskSeed]) -> Sequence[TaskSeed]:
+def _unlike_seeds(model: TaskModel, started: Sequence[TaskSeed]) -> Sequence[TaskSeed]:
     """Of circuits of one linkage with the same measures, as those that are mirror images, the first.
 
     Forces and stops may tell mirror images apart, and poses do.
     """
     if model.wanted or not set(model.figures.names) <= set(MEASURES):
-        return begun
+        return started
     kept: list[TaskSeed] = []
-    for one in begun:
+    for one in started:
         like = (np.array_equal(one.values, other.values) for other in kept)
         same = (
             alike and math.isclose(one.error, other.error, rel_tol=SAME)
@@ -216,11 +216,11 @@ def _unlike_seeds(model: TaskModel, begun: Sequence[TaskSeed]) -> Sequence[TaskS
 
 
 def _unlike(model: TaskModel, tried: Sequence[Solved]) -> list[Solved]:
-    """Without those that lead to the same: the same numbers, costs and rooms."""
+    """Without those that lead to the same: the same numbers, costs and slacks."""
     kept: list[Solved] = []
     for look in tried:
-        ways = [look.cost, look.room, *look.seed.values / model.loop.scales]
-        known = ([one.cost, one.room, *one.seed.values / model.loop.scales] for one in kept)
+        ways = [look.cost, look.slack, *look.seed.values / model.loop.scales]
+        known = ([one.cost, one.slack, *one.seed.values / model.loop.scales] for one in kept)
         if not any(np.allclose(ways, other, rtol=ALIKE, atol=ALIKE) for other in known):
             kept.append(look)
     return kept

@@ -1,12 +1,12 @@
-"""The nearest optimum of a task: least squares or the least greatest residual, within bounds and rooms.
+"""The nearest optimum of a task: least squares or the least greatest residual, within bounds and slacks.
 
-Least squares begin with rooms as penalties; then both goals end with Newton's method on the conditions of an
+Least squares begin with slacks as penalties; then both goals end with Newton's method on the conditions of an
 optimum (Karush, Kuhn and Tucker),
 
     grad f = sum y grad c,    y >= 0,    c >= 0,    y c = 0                                              (1)
 
-with c the rooms and the bounds, and f half the sum of squares, or for the greatest residual t itself with
-rooms t - h of every height h. What (1) is missed by shows how good a local optimum was found.
+with c the slacks and the bounds, and f half the sum of squares, or for the greatest residual t itself with
+slacks t - h of every height h. What (1) is missed by shows how good a local optimum was found.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from sevenbar.design.task.optimum import (
     heights,
     lack_of,
     multipliers,
-    rooms_of,
+    slacks_of,
     unknowns,
     with_cost,
 )
@@ -43,20 +43,20 @@ LOOK, WHOLE, LONG = 40, 400, 1200
 #: How much the first steps are held back, relative to the unknowns' sizes; and where that failed.
 FIRST = (1e-3, 1.0)
 
-#: Weights of a missed room, in rounds; and the room kept since a penalty is never met.
+#: Weights of a missed slack, in rounds; and the slack kept since a penalty is never met.
 WEIGHTS, KEPT = (1.0, 10.0, 100.0), 1e-5
 
 #: Gain of a linear program, relative to the greatest height, that is worth another: nobody sees 0.01 deg of a
 #: transmission angle.
 WORTH = {"minimax": 1e-9, "transmission": 1e-4}
 
-#: A room that is missed by more after programs is not kept by smaller steps.
+#: A slack that is missed by more after programs is not kept by smaller steps.
 FAR_OFF = 1e-3
 
 #: Evaluations of least squares where measures must hold.
 NEAR_BY = 40
 
-#: A room that is to be kept exactly is missed by less: rounding.
+#: A slack that is to be kept exactly is missed by less: rounding.
 KEPT_TO = 1e-14
 
 #: Steps of Newton's method at the end, their most [units], and the step of its differences.
@@ -95,9 +95,9 @@ class Solved:
     inputs: tuple[Floats, ...]
     cost: float
     optimality: float
-    room: float
+    slack: float
     ended: Ended = "optimum"
-    #: Whether it misses a room that no step leads to.
+    #: Whether it misses a slack that no step leads to.
     hopeless: bool = False
 
     def poses_of(self, place: int) -> Floats:
@@ -153,18 +153,18 @@ def solved(
 
 
 def _misses(problem: TaskProblem, z: Floats) -> bool:
-    """Whether a room is missed by so much that only another start can keep it."""
+    """Whether a slack is missed by so much that only another start can keep it."""
     here = problem.at(z)
     return here is not None and bool(lack_of(here) > FAR_OFF)
 
 
 def _hopeless(problem: TaskProblem, z: Floats) -> bool:
-    """Whether such a room is missed and has no slope: no step leads to it."""
+    """Whether such a slack is missed and has no slope: no step leads to it."""
     here = problem.at(z)
     if here is None:
         return False
-    missed = here.room < -FAR_OFF
-    return bool((missed & (np.abs(here.room_by).max(axis=1, initial=0.0) == 0.0)).any())
+    missed = here.slack < -FAR_OFF
+    return bool((missed & (np.abs(here.slack_by).max(axis=1, initial=0.0) == 0.0)).any())
 
 
 def _ended(problem: TaskProblem, z: Floats) -> bool:
@@ -180,12 +180,12 @@ def _as_solved(problem: TaskProblem, z: Floats, missed: float) -> Solved | None:
     if here is None:
         return None
     hopeless = _hopeless(problem, z)
-    cost = cost_of(problem, z) if problem.minimax else float(np.linalg.norm(here.left))
-    room = float(here.room.min(initial=math.inf))
+    cost = cost_of(problem, z) if problem.minimax else float(np.linalg.norm(here.residuals))
+    slack = float(here.slack.min(initial=math.inf))
     ended: Ended = "optimum"
     if missed > SAID and cost > EXACT:
         ended = "edge" if _at_edge(problem, z) else "valley"
-    return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room, ended, hopeless)
+    return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, slack, ended, hopeless)
 
 
 def _at_edge(problem: TaskProblem, z: Floats) -> bool:
@@ -194,7 +194,7 @@ def _at_edge(problem: TaskProblem, z: Floats) -> bool:
     if at is None:
         return False
     active, y, _ = multipliers(at)
-    rest = (at.gradient - at.room_by[active].T @ y)[: len(z)]
+    rest = (at.gradient - at.slack_by[active].T @ y)[: len(z)]
     step = BEYOND * rest / max(float(np.abs(rest).max(initial=0.0)), 1e-300)
     return cost_of(problem, problem.within(z - step)) > JUMP * cost_of(problem, z)
 
@@ -220,7 +220,7 @@ def _begun(model: TaskModel, seed: TaskSeed) -> _Squares | None:
 
 
 def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: float) -> _Squares | None:
-    """Least squares with missed rooms as penalties."""
+    """Least squares with missed slacks as penalties."""
     problem = TaskProblem(model, seed)
     z = problem.within(problem.start)
     if problem.at(problem.start) is None:
@@ -231,15 +231,15 @@ def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: fl
             here = problem.tried(z)
             if here is None:
                 return None
-            return np.concatenate([here.left, weight * np.minimum(here.room - KEPT, 0.0)])
+            return np.concatenate([here.residuals, weight * np.minimum(here.slack - KEPT, 0.0)])
 
         def slopes(z: Floats, weight: float = weight) -> Floats | None:
             here = problem.at(z)
             if here is None:
                 return None
             problem.take(z)
-            missed = here.room < KEPT
-            return np.concatenate([here.left_by, weight * missed[:, None] * here.room_by])
+            missed = here.slack < KEPT
+            return np.concatenate([here.residuals_by, weight * missed[:, None] * here.slack_by])
 
         most = min(evaluations, model.effort.left)
         if model.figure_musts:
@@ -252,7 +252,7 @@ def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: fl
             return None
         z, stuck = nearest.z, nearest.end in ("stuck", "closed")
         here = problem.at(z)
-        if here is not None and not (here.room < KEPT).any():
+        if here is not None and not (here.slack < KEPT).any():
             break
         if not model.effort.left or _hopeless(problem, z):
             break
@@ -262,7 +262,7 @@ def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: fl
 def _lowered(problem: TaskProblem) -> Floats:
     def valued(z: Floats) -> MinimaxValues | None:
         here = problem.at(z)
-        return None if here is None else MinimaxValues(*heights(problem, here), *rooms_of(problem, z, here))
+        return None if here is None else MinimaxValues(*heights(problem, here), *slacks_of(problem, z, here))
 
     start, worth = problem.within(problem.start), WORTH[problem.model.task.goal]
     if _exactly(problem.model):
@@ -276,13 +276,13 @@ def _exactly(model: TaskModel) -> bool:
 
 
 def _kept(problem: TaskProblem, z: Floats) -> Floats:
-    """The unknowns near by that keep every room, by Newton's shortest steps on those that are missed."""
+    """The unknowns near by that keep every slack, by Newton's shortest steps on those that are missed."""
     for _ in range(STEPS):
         here = problem.at(z)
-        if here is None or not (here.room < -KEPT_TO).any():
+        if here is None or not (here.slack < -KEPT_TO).any():
             break
-        missed = here.room < 0
-        step = np.linalg.lstsq(here.room_by[missed], here.room[missed], rcond=None)[0]
+        missed = here.slack < 0
+        step = np.linalg.lstsq(here.slack_by[missed], here.slack[missed], rcond=None)[0]
         z = problem.within(z - step)
     return z
 
@@ -291,7 +291,7 @@ def _descended(problem: TaskProblem, z: Floats) -> Floats:
     """The unknowns after Newton's method within a reach, by which narrow valleys are gone down to their end.
 
     Steps solve `min g s + s H s / 2, |s| <= reach` over the unknowns that no bound stops; H by differences of
-    the exact gradient. It ends at a room: there the programs know better.
+    the exact gradient. It ends at a slack: there the programs know better.
     """
     reach = FARTHEST
     at = conditions(problem, z)
@@ -316,7 +316,7 @@ def _descended(problem: TaskProblem, z: Floats) -> Floats:
                 free &= ~stopped
             then_z = problem.within(z + step)
             then = conditions(problem, then_z)
-            kept = then is not None and not (then.room < np.minimum(at.room, 0.0) - ROUNDING).any()
+            kept = then is not None and not (then.slack < np.minimum(at.slack, 0.0) - ROUNDING).any()
             if then is not None and kept and then.cost < at.cost:
                 z, at, reach = then_z, then, min(4 * reach, MOST_REACH)
                 problem.take(z)
@@ -372,19 +372,19 @@ def _settled(problem: TaskProblem, z: Floats) -> tuple[Floats, float]:
 
 
 def _newton(at: Conditions, curved: Floats, active: Integers) -> Floats:
-    """The step of Newton's method with these rooms held at zero."""
-    rows, count = at.room_by[active], len(active)
+    """The step of Newton's method with these slacks held at zero."""
+    rows, count = at.slack_by[active], len(active)
     matrix = np.block([[curved, -rows.T], [rows, np.zeros((count, count))]])
-    sides = np.concatenate([-at.gradient, -at.room[active]])
+    sides = np.concatenate([-at.gradient, -at.slack[active]])
     return np.asarray(np.linalg.lstsq(matrix, sides, rcond=1e-13)[0][: len(curved)])
 
 
 def _curved(problem: TaskProblem, x: Floats, at: Conditions, active: Integers, y: Floats) -> Floats | None:
-    """The second derivatives of f less those of the rooms by their multipliers."""
+    """The second derivatives of f less those of the slacks by their multipliers."""
 
     def pull(point: Floats) -> Floats | None:
         there = conditions(problem, point)
-        return None if there is None else there.gradient - there.room_by[active].T @ y
+        return None if there is None else there.gradient - there.slack_by[active].T @ y
 
     exact = at.curved is not None and at.cost <= EXACT**2 and not len(active)
     found = at.curved if exact else _differences(pull, x)

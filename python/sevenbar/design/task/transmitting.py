@@ -14,7 +14,7 @@ from sevenbar.kinematics.transmission.angle import coupling_of
 from sevenbar.kinematics.transmission.slopes import AxisPoints
 
 
-class AngleRoom:
+class AngleSlack:
     """sin^2 of the transmission angle less that of its limit; must not be negative."""
 
     def __init__(self, loop: TaskLoop, limits: Limits) -> None:

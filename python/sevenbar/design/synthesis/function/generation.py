@@ -269,7 +269,7 @@ def _fitted(
         near = TaskProblem(model, seed)
         values = near.at(near.start)
         if values is not None and not hold:
-            before = math.sqrt(inputs.size) * float(np.abs(values.left).max())
+            before = math.sqrt(inputs.size) * float(np.abs(values.residuals).max())
     found = solved(model, seed, 0)
     if found is None:
         return None
