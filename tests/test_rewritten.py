@@ -1,11 +1,16 @@
 """One linkage written in twenty and more ways: every answer that must agree does (`python -m evidence.rewritten`)."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
 import sevenbar as sb
 from evidence.rewritten.__main__ import compared
+from evidence.rewritten.answers import Answers, differences
 from evidence.rewritten.families import families, lattice
+from evidence.rewritten.reasons import reason
+from evidence.rewritten.ways import Way
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.report import as_dict
 
@@ -52,8 +57,10 @@ def test_there_are_a_hundred_families_and_a_lattice() -> None:
 
 
 @pytest.mark.slow
-def test_a_loop_on_the_lattice_with_circuits_of_equal_ranges_answers_alike() -> None:
-    found = compared(lattice(175, seed=1), seed=1)
+@pytest.mark.parametrize("index", [175, 156])
+def test_a_loop_on_the_lattice_answers_alike(index: int) -> None:
+    # 175: circuits of equal ranges; 156: two dead centres within a step, a sharp bend at a change point
+    found = compared(lattice(index, seed=1), seed=1)
     assert found.moves
     assert found.ways >= 20
     assert found.differences == []
@@ -76,6 +83,29 @@ def test_the_circuit_through_a_pose_is_the_one_it_lies_on() -> None:
         assert (lowest, highest) == pytest.approx(circuit.input_range, abs=1e-9)
 
 
+@pytest.mark.parametrize("loop", ["lattice", "held"])
+def test_a_circuit_asked_for_again_at_other_inputs_has_the_rows_of_one_followed_anew(loop: str) -> None:
+    # one that change points lead to, and one whose constraint is met twice over, followed with a joint held
+    drawn = lattice(156, seed=1) if loop == "lattice" else families()["doubly met constraint that moves"]()
+    again, anew = drawn.linkage(), drawn.linkage()
+    ends = {"input": drawn.input, "output": drawn.output}
+    first = again.motion(36, **ends).circuits[0]
+    row = int(np.nanargmin(first.condition))
+    again.circuit(first.q[row], 36, **ends)
+    law = sb.Law.of(np.arange(4.0), first.input[row] + np.array([0.0, 0.01, 0.03, 0.02]), 1.0, 0.0)
+    for asked in (ends | {"law": law}, ends | {"samples": 72}):
+        one = again.circuit(first.q[row], **asked)
+        other = anew.circuit(first.q[row], **asked)
+        anew = drawn.linkage()
+        assert np.array_equal(one.q, other.q, equal_nan=True)
+        assert np.array_equal(one.dddq, other.dddq, equal_nan=True)
+        assert (one.motion_type, one.input_range, one.output_range) == (
+            other.motion_type,
+            other.input_range,
+            other.output_range,
+        )
+
+
 @pytest.mark.slow
 def test_a_search_that_stops_short_names_the_bound() -> None:
     motion = lattice(124, seed=1).linkage().motion(36, input="j1", output="j7")
@@ -86,3 +116,56 @@ def test_a_search_that_stops_short_names_the_bound() -> None:
 
 def test_a_search_that_went_to_its_end_names_no_bound() -> None:
     assert as_dict(sb.load("rssr").motion(12))["search_bound"] is None
+
+
+def answers(
+    extents: Sequence[float], *, closes: float = 1.0, dead_centres: int = 2, **more: object
+) -> Answers:
+    """Answers with a circuit of each extent."""
+    circuits = [{"closes": closes, "extent of the input": extent} for extent in extents]
+    words = {"circuits": len(circuits), "dead centres": dead_centres, "some not followed": False} | {
+        name.replace("_", " "): value for name, value in more.items() if name not in ("runs_off", "is_change")
+    }
+    plain = circuits if closes else []
+    return Answers(
+        words, [], circuits, {}, bool(more.get("is_change")), bool(more.get("runs_off")), plain=plain
+    )
+
+
+def unexplained(drawn: Answers, written: Answers) -> list[str]:
+    way = Way("anew", sb.load("rssr"), "crank", "rocker")
+    return [
+        line.partition(":")[0]
+        for line in differences(way, drawn, written)
+        if not reason(way, drawn, written, line)
+    ]
+
+
+def test_that_slides_run_off_explains_how_far_they_were_followed_and_nothing_else() -> None:
+    drawn = answers([1.0, 2.0], closes=0.0, runs_off=True)
+    assert unexplained(drawn, answers([1.0, 2.1], closes=0.0, runs_off=True)) == []
+    assert unexplained(drawn, answers([1.0, 2.1], closes=0.0)) == ["open circuit, extent of the input"]
+    more = answers([1.0, 2.0], closes=0.0, runs_off=True, dead_centres=4)
+    assert unexplained(drawn, more) == ["dead centres"]
+    assert unexplained(drawn, answers([1.0], closes=0.0, runs_off=True)) == ["circuits"]
+
+
+def test_that_not_all_was_followed_hides_no_circuit_away_from_change_points() -> None:
+    drawn = answers([1.0, 2.0], is_change=True, some_not_followed=True)
+    broken = answers([1.0, 2.0, 0.5], closes=0.0, is_change=True, some_not_followed=True)
+    broken.plain.extend(drawn.plain)
+    assert unexplained(drawn, broken) == []
+    # one of those that close and pass no change point is lost
+    broken.plain.pop()
+    assert unexplained(drawn, broken) == ["circuits"]
+    # one says so, and has one that the other has not
+    whole = answers([1.0, 3.0, 4.0], is_change=True)
+    assert unexplained(drawn, whole) == ["circuits", "some not followed"]
+    assert unexplained(drawn, answers([1.0, 2.0, 4.0], is_change=True)) == []
+
+
+def test_a_search_explains_circuits_that_it_missed_and_none_that_it_has_alone() -> None:
+    counted = answers([1.0, 2.0], completeness="counted")
+    assert unexplained(counted, answers([2.0], completeness="searched")) == []
+    other = answers([3.0], completeness="searched")
+    assert set(unexplained(counted, other)) == {"completeness", "circuits"}

@@ -21,10 +21,11 @@ import numpy as np
 
 from evidence import ROOT
 from evidence.circumstances import circumstances
-from evidence.rewritten.answers import Answers, answers_of, differences, reason
+from evidence.rewritten.answers import Answers, answers_of, differences
 from evidence.rewritten.drawing import Drawing
 from evidence.rewritten.families import families, lattice
 from evidence.rewritten.page import Compared, keep, recorded, written
+from evidence.rewritten.reasons import reason
 from evidence.rewritten.ways import ways
 from sevenbar.errors import SevenbarError
 
@@ -47,9 +48,8 @@ def compared(one: Drawing, seed: int) -> Compared:
                 first = answers
                 found.moves = bool(answers.circuits)
                 continue
-            why = reason(way, first, answers)
             for difference in differences(way, first, answers):
-                if why:
+                if why := reason(way, first, answers, difference):
                     found.explained.setdefault(why, []).append(difference)
                 else:
                     found.differences.append(difference)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from scipy.optimize import linear_sum_assignment
 
@@ -22,8 +22,11 @@ SAME = 2e-6
 #: Numbers that are roots of roundings: at change points.
 ROUGH = 2e-3
 
-#: Of a circuit, the numbers that are compared.
+#: Of a circuit, the numbers that are compared; whether it closes is 1 or 0.
 Numbers = dict[str, float | None]
+
+#: How numbers of circuits are called that do not close.
+OPEN = "open"
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +40,14 @@ class Answers:
     is_change: bool
     #: Whether some circuit is followed to a distance only, as a slide runs to infinity.
     runs_off: bool = False
+    #: Those of the circuits that close and pass no change point.
+    plain: list[Numbers] = field(default_factory=list)
+    #: Whether it reports a surface of poses that no circuit shows.
+    surface: bool = False
+
+    def near(self, other: Answers, way: Way) -> float:
+        """How nearly numbers of the two agree."""
+        return (ROUGH if self.is_change or other.is_change else SAME) * max(1.0, way.rounding / 10)
 
 
 def answers_of(way: Way) -> Answers:
@@ -72,7 +83,15 @@ def answers_of(way: Way) -> Answers:
     limits = [_input(way, value, turns) for value in motion.limits]
     is_change = bool(len(motion.change_points)) or "change" in motion.motion_type
     numbers = [_circuit(way, one) for one in motion.circuits]
-    return Answers(words, sorted(limits), numbers, four_bar, is_change, runs_off=_runs_off(linkage, motion))
+    plain = [
+        one
+        for one, circuit in zip(numbers, motion.circuits, strict=True)
+        if circuit.closed and circuit.motion_type != "change-point"
+    ]
+    surface = any(point.freedoms > 1 for point in motion.change_points)
+    return Answers(
+        words, sorted(limits), numbers, four_bar, is_change, _runs_off(linkage, motion), plain, surface
+    )
 
 
 def _runs_off(linkage: Linkage, motion: Motion) -> bool:
@@ -94,7 +113,7 @@ def _input(way: Way, value: float, turns: bool) -> float:
 
 
 def _circuit(way: Way, circuit: Circuit) -> Numbers:
-    found: Numbers = {}
+    found: Numbers = {"closes": float(circuit.closed)}
     for name, ends, turns in (
         ("input", circuit.input_range, circuit.input_turns),
         ("output", circuit.output_range, circuit.output_turns),
@@ -123,17 +142,19 @@ def differences(way: Way, drawn: Answers, written: Answers) -> Iterator[str]:
     for word, value in written.words.items():
         if word in drawn.words and value != drawn.words[word]:
             yield f"{word}: {drawn.words[word]!r} as drawn, {value!r} {way.name}"
-    near = (ROUGH if drawn.is_change or written.is_change else SAME) * max(1.0, way.rounding / 10)
+    near = drawn.near(written, way)
     if len(drawn.limits) != len(written.limits):
         yield f"limits: {len(drawn.limits)} as drawn, {len(written.limits)} {way.name}"
     else:
         yield from _apart("limits", drawn.limits, written.limits, near, way)
-    yield from _numbers("four-bar", drawn.four_bar, written.four_bar, near, way)
+    yield from _numbers("four-bar", drawn.four_bar, written.four_bar, near, way.name)
     if drawn.circuits and len(drawn.circuits) == len(written.circuits):
         apart = [[_distance(one, other) for other in written.circuits] for one in drawn.circuits]
         # all pairs at once: of circuits with equal ranges the nearest may be another's
         for i, k in zip(*linear_sum_assignment(apart), strict=True):
-            yield from _numbers("circuit", drawn.circuits[i], written.circuits[k], near, way)
+            one, other = drawn.circuits[i], written.circuits[k]
+            name = "circuit" if one["closes"] or other["closes"] else f"{OPEN} circuit"
+            yield from _numbers(name, one, other, near, way.name)
 
 
 def differs(way: Way, drawn: Answers, written: Answers) -> set[str]:
@@ -141,31 +162,13 @@ def differs(way: Way, drawn: Answers, written: Answers) -> set[str]:
     return {line.partition(":")[0] for line in differences(way, drawn, written)}
 
 
-def reason(way: Way, drawn: Answers, written: Answers) -> str:
-    """Why answers may differ, as docs/not-covered.md has it; empty where they may not."""
-    if "searched" in (drawn.words.get("completeness"), written.words.get("completeness")):
-        return "searched, screws and slides within bounds that count from how it is written"
-    unfollowed = "some not followed"
-    if drawn.is_change and (drawn.words.get(unfollowed) or written.words.get(unfollowed)):
-        if drawn.words[unfollowed] == written.words[unfollowed]:
-            return "both say that not all was followed: curves that touch or coincide are joined in part"
-        if differs(way, drawn, written) - {unfollowed}:
-            return "one says that not all was followed: its curves break off where they touch others"
-    words = differs(way, drawn, written)
-    sure = {drawn.words.get("completeness"), written.words.get("completeness")}
-    if words == {unfollowed} and sure == {"algebraic"}:
-        return "of circuits that are not counted, whether modes on curves that coincide are met is chance"
-    if words == {"completeness"} and sure == {"algebraic", "counted"} and drawn.is_change:
-        return "all else agrees: about change points the count of branch points balances in some ways only"
-    if drawn.runs_off and written.runs_off:
-        return "slides run to infinity, and are followed to a distance from where they are written"
-    if not drawn.circuits and not written.circuits:
-        return "of a structure that shakes, rank and redundant constraints are known to the root of rounding"
-    if way.rounding > 1 and drawn.is_change:
-        return "places far off are rounded as much more, and the root of that counts at change points"
-    if not way.same_ground and {drawn.words.get("idle"), written.words.get("idle")} == {0, 1}:
-        return "beside the ground the turn of a link is a motion of all others as one body"
-    return ""
+def matched(few: list[Numbers], many: list[Numbers], near: float) -> bool:
+    """Whether each of some circuits is another of many, to the numbers that both have."""
+    if not few or len(few) > len(many):
+        return not few
+    apart = [[_distance(one, other) for other in many] for one in few]
+    pairs = zip(*linear_sum_assignment(apart), strict=True)
+    return not any(next(_numbers("", few[i], many[k], near, ""), None) for i, k in pairs)
 
 
 def _apart(name: str, one: list[float], other: list[float], near: float, way: Way) -> Iterator[str]:
@@ -182,13 +185,13 @@ def _gap(one: float, other: float) -> float:
     return min(apart, abs(math.tau - apart)) / max(1.0, abs(one))
 
 
-def _numbers(name: str, one: Numbers, other: Numbers, near: float, way: Way) -> Iterator[str]:
+def _numbers(name: str, one: Numbers, other: Numbers, near: float, way: str) -> Iterator[str]:
     for key in one.keys() & other.keys():
         a, b = one[key], other[key]
         if (a is None) != (b is None):
-            yield f"{name}, {key}: {a} as drawn, {b} {way.name}"
+            yield f"{name}, {key}: {a} as drawn, {b} {way}"
         elif a is not None and b is not None and not abs(a - b) <= near * max(1.0, abs(a)):
-            yield f"{name}, {key}: {a:.9g} as drawn, {b:.9g} {way.name}"
+            yield f"{name}, {key}: {a:.9g} as drawn, {b:.9g} {way}"
 
 
 def _distance(one: Numbers, other: Numbers) -> float:

@@ -138,7 +138,16 @@ class Loop:
     def rows(self, course: Course) -> tuple[_Floats, _Integers, _Integers, _Floats, _Floats, Rows]: ...
     def circuit_through(
         self, pose: _Floats, input: int, output: int, samples: int, speed: float, law: _Floats | None = None
-    ) -> RawCircuit | float | list[int] | None: ...
+    ) -> tuple[RawCircuit, Followed] | float | list[int] | None: ...
+    def circuit_again(
+        self,
+        followed: Followed,
+        input: int,
+        output: int,
+        samples: int,
+        speed: float,
+        law: _Floats | None = None,
+    ) -> RawCircuit: ...
     def point(self, rows: Rows, link: int, at: _Floats) -> _Floats: ...
 
 _Three = tuple[int, int, int]
@@ -266,6 +275,10 @@ class Course:
     def statuses(self) -> list[int]: ...
     @property
     def residual(self) -> float | None: ...
+
+@final
+class Followed:
+    """A circuit as its loop followed it, which makes rows of it at any inputs."""
 
 @final
 class RawCircuit:

@@ -80,7 +80,7 @@ mod _core {
     #[pymodule_export]
     use super::numbers::{Carried, LoopWord, Numbers, Product};
     #[pymodule_export]
-    use super::rows::{Course, Rows};
+    use super::rows::{Course, Followed, Rows};
     #[pymodule_export]
     use super::rssr::Rssr;
     #[pymodule_export]

@@ -1,6 +1,6 @@
 //! Any single loop, for Python.
 
-use crate::rows::{Course, Rows};
+use crate::rows::{Course, Followed, Rows};
 use crate::values::{RawCircuit, RawFound, RawMotion, RawSearch, RowArrays, change_point};
 use crate::working::working;
 use crate::{CoreError, in_rows, law_rows};
@@ -209,7 +209,7 @@ impl Loop {
         ))
     }
 
-    /// The one circuit through a pose (columns,); else how far the loop is from closing, the columns that move with the input at rest,
+    /// The one circuit through a pose (columns,), and as it was followed; else how far the loop is from closing, the columns that move with the input at rest,
     /// or nothing where no motion could be followed.
     #[pyo3(signature = (pose, input, output, samples, speed, law=None))]
     #[expect(clippy::too_many_arguments)]
@@ -233,11 +233,43 @@ impl Loop {
         })?
         .ok_or_else(|| no_input(input))?;
         Ok(match through {
-            Through::Circuit(circuit) => RawThrough::Circuit(Py::new(py, self.circuit(py, *circuit)?)?),
+            Through::Circuit(circuit, followed) => RawThrough::Circuit((
+                Py::new(py, self.circuit(py, *circuit)?)?,
+                Py::new(py, Followed(*followed))?,
+            )),
             Through::Apart(gap) => RawThrough::Apart(gap),
             Through::InputRests(moving) => RawThrough::InputRests(moving),
             Through::Still => RawThrough::Still(()),
         })
+    }
+
+    /// A circuit that was followed over this input and output, once more at other inputs.
+    #[pyo3(signature = (followed, input, output, samples, speed, law=None))]
+    #[expect(clippy::too_many_arguments)]
+    fn circuit_again(
+        &self,
+        py: Python<'_>,
+        followed: &Followed,
+        input: usize,
+        output: usize,
+        samples: usize,
+        speed: f64,
+        law: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<RawCircuit> {
+        let law = law_rows(law);
+        let circuit = working(py, || {
+            loops::circuit_again(
+                &self.0,
+                &followed.0,
+                input,
+                output,
+                samples,
+                speed,
+                law.as_deref(),
+            )
+        })?
+        .ok_or_else(|| no_input(input))?;
+        self.circuit(py, circuit)
     }
 
     /// A point of a link along rows of a circuit with three derivatives by time, (4, n, 3), in the report frame; `link` counts from 0,
@@ -257,7 +289,7 @@ impl Loop {
 /// What goes through a pose.
 #[derive(IntoPyObject)]
 enum RawThrough {
-    Circuit(Py<RawCircuit>),
+    Circuit((Py<RawCircuit>, Py<Followed>)),
     Apart(f64),
     InputRests(Vec<usize>),
     Still(()),

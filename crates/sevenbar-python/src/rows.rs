@@ -25,6 +25,10 @@ impl Course {
     }
 }
 
+/// A circuit as its loop followed it, which makes rows of it at any inputs.
+#[pyclass(frozen, module = "sevenbar._core")]
+pub(crate) struct Followed(pub loops::Followed);
+
 /// Rows of a circuit, of which their loop tells the points of any link; pickled as their numbers.
 #[pyclass(frozen, module = "sevenbar._core")]
 pub(crate) struct Rows(pub loops::Rows);

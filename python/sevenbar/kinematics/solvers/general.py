@@ -56,6 +56,8 @@ class GeneralLoop:
             linkage.drawn_pose if linkage.drawn_pose.any() else None,
         )  # fmt: skip
         self._found: dict[int, Mobility] = {}
+        #: The circuit followed last, by the pose, input and output that it was asked for.
+        self._last: tuple[tuple[bytes, int, int], _core.Followed] | None = None
         held = (parts.columns[joint] for word, joint, _ in self._core.idle if "between-balls" not in word)
         for column in held:
             if linkage.drawn_pose[column]:
@@ -209,12 +211,19 @@ class GeneralLoop:
     ) -> Circuit:
         """The one circuit through a pose (columns,)."""
         table = None if law is None else law.table
+        asked, last = (pose.tobytes(), column, output), self._last
+        if last is not None and last[0] == asked:
+            # the same once more, as searches along a circuit ask: what was followed is known
+            again = self._core.circuit_again(last[1], column, output, samples, speed, table)
+            return self._circuit(0, again, (column, output), speed, law)
         raw = self._solve(
             column, partial(self._core.circuit_through, pose, column, output, samples, speed, table)
         )
         match raw:
-            case _core.RawCircuit():
-                return self._circuit(0, raw, (column, output), speed, law)
+            case tuple() as found:
+                circuit, followed = found
+                self._last = (asked, followed)
+                return self._circuit(0, circuit, (column, output), speed, law)
             case float():
                 raise RequestError(
                     f"pose: the loop does not close near it (closure error {raw * self.size:.3g} "

@@ -44,7 +44,7 @@ impl Circuit {
         }
         self.rows.still = Some(still);
         if let Some(course) = &mut self.course {
-            course.still = Some(still);
+            course.followed.still = Some(still);
         }
         self
     }
@@ -81,17 +81,46 @@ impl Limits {
     }
 }
 
-/// A circuit on a grid of inputs whose rows are computed when they are wanted, and may be dropped again.
+/// A circuit as it was followed, on which rows at any inputs are made.
 #[derive(Clone, Debug)]
-pub struct Course {
+pub struct Followed {
     curve: Curve,
     input: usize,
     passes: Vec<Pass>,
     limits: Vec<Node>,
+    pub(super) still: Option<Still>,
+}
+
+impl Followed {
+    pub(super) fn of(passes: &Passes) -> Self {
+        Self {
+            curve: passes.curve.clone(),
+            input: passes.input,
+            passes: passes.passes.clone(),
+            limits: passes.limits.clone(),
+            still: None,
+        }
+    }
+
+    /// The passes, of the chain that they were followed in.
+    pub(super) fn passes<'a>(&self, chain: &'a Chain) -> Passes<'a> {
+        Passes {
+            chain,
+            curve: self.curve.clone(),
+            input: self.input,
+            passes: self.passes.clone(),
+            limits: self.limits.clone(),
+        }
+    }
+}
+
+/// A circuit on a grid of inputs whose rows are computed when they are wanted, and may be dropped again.
+#[derive(Clone, Debug)]
+pub struct Course {
+    followed: Followed,
     grid: (f64, f64),
     offsets: Vec<f64>,
     speed: f64,
-    still: Option<Still>,
     /// What the rows were when they were computed first.
     pub tally: Tally,
 }
@@ -99,22 +128,15 @@ pub struct Course {
 impl Course {
     /// The rows, to the last bit those that were dropped.
     pub fn rows(&self, linkage: &Loop) -> Rows {
-        let linkage = followed(linkage, self.still);
-        let rows = linkage.reduced.chain.as_ref().map(|chain| {
-            let passes = Passes {
-                chain,
-                curve: self.curve.clone(),
-                input: self.input,
-                passes: self.passes.clone(),
-                limits: self.limits.clone(),
-            };
-            grid_rows(&passes, self.grid)
-        });
+        let still = self.followed.still;
+        let linkage = followed(linkage, still);
+        let chain = linkage.reduced.chain.as_ref();
+        let rows = chain.map(|chain| grid_rows(&self.followed.passes(chain), self.grid));
         Rows {
             rows: rows.unwrap_or_default(),
             offsets: self.offsets.clone(),
             speed: self.speed,
-            still: self.still,
+            still,
         }
     }
 }
@@ -209,14 +231,10 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
         let tally = rows.tally(linkage);
         rows.rows = Vec::new();
         Course {
-            curve: curve.clone(),
-            input: passes.input,
-            passes: passes.passes.clone(),
-            limits: passes.limits.clone(),
+            followed: Followed::of(passes),
             grid,
             offsets: rows.offsets.clone(),
             speed: rows.speed,
-            still: None,
             tally,
         }
     });

@@ -1,6 +1,6 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
-use super::circuit::{Circuit, Limit, Limits, Wanted, circuit, grid};
+use super::circuit::{Circuit, Followed, Limit, Limits, Wanted, circuit, grid};
 use super::met_twice::{Held, HeldMotions, held_at};
 use super::passes::Passes;
 use crate::loops::branch_points::counting::Uncounted;
@@ -9,8 +9,8 @@ use crate::loops::circuits::found::{Found, Search};
 use crate::loops::circuits::known_curves::Curves;
 use crate::loops::circuits::on_curve::lies_on;
 use crate::loops::circuits::search::curves;
-use crate::loops::description::described_loop::Loop;
-use crate::loops::description::holding::column_at_rest;
+use crate::loops::description::described_loop::{Column, Loop};
+use crate::loops::description::holding::{self, column_at_rest};
 use crate::loops::description::joint_values::{configuration, joint_values};
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::rotations::short_way;
@@ -60,8 +60,8 @@ pub struct Motion {
 /// What goes through a pose.
 #[derive(Clone, Debug)]
 pub enum Through {
-    /// The loop closes near the pose, and moves.
-    Circuit(Box<Circuit>),
+    /// The loop closes near the pose, and moves: its circuit, and what makes rows of it at other inputs.
+    Circuit(Box<Circuit>, Box<Followed>),
     /// It does not close near it; how far it is from closing, relative to the size or radians.
     Apart(f64),
     /// It closes and no motion could be followed.
@@ -139,10 +139,7 @@ fn held_motions(linkage: &Loop, curves: &Curves, wished: &[usize], first_only: b
 fn followed(linkage: &Loop, mut curves: Curves, asked: &Asked) -> Option<Motion> {
     let Asked { samples, speed, law, keep, .. } = *asked;
     let chain = linkage.reduced.chain.as_ref()?;
-    let driver = linkage.inner(asked.input)?;
-    let follower = linkage
-        .inner(asked.output)
-        .or_else(|| column_at_rest(linkage, asked.output))?;
+    let (driver, follower) = ends(linkage, asked.input, asked.output)?;
     let own = std::mem::take(&mut curves.curves);
     let rests = |c: &Curve| c.rests(driver.inner);
     let moving = own.iter().any(rests).then(|| moving(linkage, &own));
@@ -293,10 +290,7 @@ pub fn circuit_through(
     law: Option<&[[f64; 4]]>,
 ) -> Option<Through> {
     let chain = linkage.reduced.chain.as_ref()?;
-    let driver = linkage.inner(input)?;
-    let follower = linkage
-        .inner(output)
-        .or_else(|| column_at_rest(linkage, output))?;
+    let (driver, follower) = ends(linkage, input, output)?;
     let rough = configuration(linkage, values);
     let Some(Settled { at: pose, .. }) = polish(chain, driver.inner, &rough, PUT_RIGHT).filter(|s| s.agrees)
     else {
@@ -318,7 +312,10 @@ pub fn circuit_through(
         }
         let found = circuit_through(&linkage, values, input, output, samples, speed, law)?;
         return Some(match found {
-            Through::Circuit(circuit) => Through::Circuit(Box::new(circuit.holding(still, &linkage, output))),
+            Through::Circuit(circuit, mut followed) => {
+                followed.still = Some(still);
+                Through::Circuit(Box::new(circuit.holding(still, &linkage, output)), followed)
+            }
             other => other,
         });
     };
@@ -328,10 +325,56 @@ pub fn circuit_through(
     let Some(passes) = Passes::new(chain, curve, driver.inner) else {
         return Some(Through::Still);
     };
-    let grid = grid(chain, std::slice::from_ref(&passes), samples);
-    let wanted = Wanted { driver, follower, grid, speed, law, keep: true };
-    let circuit = circuit(linkage, &passes, &wanted);
-    Some(Through::Circuit(Box::new(circuit)))
+    let circuit = on_passes(linkage, &passes, (driver, follower), samples, speed, law);
+    Some(Through::Circuit(
+        Box::new(circuit),
+        Box::new(Followed::of(&passes)),
+    ))
+}
+
+/// A circuit that was followed, once more at other inputs; `None` where a column is no joint of one freedom.
+pub fn circuit_again(
+    linkage: &Loop,
+    known: &Followed,
+    input: usize,
+    output: usize,
+    samples: usize,
+    speed: f64,
+    law: Option<&[[f64; 4]]>,
+) -> Option<Circuit> {
+    let own = holding::followed(linkage, known.still);
+    let chain = own.reduced.chain.as_ref()?;
+    let ends = ends(&own, input, output)?;
+    let circuit = on_passes(&own, &known.passes(chain), ends, samples, speed, law);
+    Some(match known.still {
+        Some(still) => circuit.holding(still, &own, output),
+        None => circuit,
+    })
+}
+
+/// Input and output as the chain has them; an output that rests where a joint is held is the next.
+fn ends(linkage: &Loop, input: usize, output: usize) -> Option<(Column, Column)> {
+    let follower = linkage
+        .inner(output)
+        .or_else(|| column_at_rest(linkage, output))?;
+    Some((linkage.inner(input)?, follower))
+}
+
+/// The circuit of passes that stand by themselves, with its rows.
+fn on_passes(
+    linkage: &Loop,
+    passes: &Passes,
+    (driver, follower): (Column, Column),
+    samples: usize,
+    speed: f64,
+    law: Option<&[[f64; 4]]>,
+) -> Circuit {
+    let grid = grid(passes.chain, std::slice::from_ref(passes), samples);
+    circuit(
+        linkage,
+        passes,
+        &Wanted { driver, follower, grid, speed, law, keep: true },
+    )
 }
 
 /// Of the curves that were found from a pose the one it lies on, not one beyond a change point; where several meet there one on which

@@ -1,0 +1,156 @@
+"""Why answers may differ, as docs/not-covered.md has it: each reason explains some answers, and no others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from evidence.rewritten.answers import OPEN, Answers, differs, matched
+from evidence.rewritten.ways import Way
+
+UNFOLLOWED, COMPLETENESS = "some not followed", "completeness"
+
+#: What is counted of circuits, and said of all together.
+COUNTS = frozenset(
+    (
+        "motion type",
+        "circuits",
+        "types of circuits",
+        "circuits that close",
+        "dead centres",
+        "limits",
+        "change points",
+    )
+)
+
+#: Numbers of circuits by the first words of their differences.
+NUMBERS = ("closes", "extent of the input", "extent of the output", "swing", "time ratio")
+OF_CIRCUITS = frozenset(f"circuit, {name}" for name in NUMBERS)
+OF_OPEN = frozenset(f"{OPEN} circuit, {name}" for name in NUMBERS)
+
+
+@dataclass(frozen=True)
+class Reason:
+    """A sentence, the first words of the differences that it explains, and when it holds."""
+
+    why: str
+    explains: frozenset[str]
+    holds: Callable[[Way, Answers, Answers], bool]
+
+
+def _searched(way: Way, drawn: Answers, written: Answers) -> bool:
+    """Whether the one that is searched, or one of two, has nothing that the other has not."""
+    searched = [one.words.get(COMPLETENESS) == "searched" for one in (drawn, written)]
+    within = (searched[0] and _within(way, drawn, written)) or (searched[1] and _within(way, written, drawn))
+    return within or (any(searched) and not drawn.circuits and not written.circuits)
+
+
+def _within(way: Way, less: Answers, more: Answers) -> bool:
+    """Whether each circuit that closes is one of the other's, to its numbers."""
+    closing = [one for one in less.circuits if one["closes"]]
+    return matched(closing, more.circuits, less.near(more, way))
+
+
+def _plain_alike(way: Way, one: Answers, other: Answers) -> bool:
+    """Whether both have the same circuits away from change points, to their numbers."""
+    near = one.near(other, way)
+    return len(one.plain) == len(other.plain) and matched(one.plain, other.plain, near)
+
+
+def _both_unfollowed(way: Way, drawn: Answers, written: Answers) -> bool:
+    change = drawn.is_change or written.is_change
+    return change and _unfollowed(drawn) and _unfollowed(written) and _plain_alike(way, drawn, written)
+
+
+def _one_unfollowed(way: Way, drawn: Answers, written: Answers) -> bool:
+    """Whether the one that says so has no circuit away from change points that the other has not."""
+    if not (drawn.is_change or written.is_change) or _unfollowed(drawn) == _unfollowed(written):
+        return False
+    less, more = (drawn, written) if _unfollowed(drawn) else (written, drawn)
+    return matched(less.plain, more.circuits, less.near(more, way))
+
+
+def _unfollowed(one: Answers) -> bool:
+    return bool(one.words.get(UNFOLLOWED))
+
+
+def _sure(drawn: Answers, written: Answers) -> set[object]:
+    return {drawn.words.get(COMPLETENESS), written.words.get(COMPLETENESS)}
+
+
+def _nothing_but(what: str) -> Callable[[Way, Answers, Answers], bool]:
+    return lambda way, drawn, written: differs(way, drawn, written) == {what}
+
+
+#: In the order in which they are asked.
+REASONS = (
+    Reason(
+        "searched, screws and slides within bounds that count from how it is written",
+        COUNTS | OF_OPEN | {COMPLETENESS, UNFOLLOWED},
+        _searched,
+    ),
+    Reason(
+        "both report a surface of poses; whether a mode on it is met besides is chance",
+        frozenset((UNFOLLOWED,)),
+        lambda _, drawn, written: drawn.surface and written.surface,
+    ),
+    Reason(
+        "both say that not all was followed: curves that touch or coincide are joined in part",
+        COUNTS | OF_CIRCUITS | OF_OPEN | {COMPLETENESS},
+        _both_unfollowed,
+    ),
+    Reason(
+        "one says that not all was followed: its curves break off where they touch others",
+        COUNTS | OF_CIRCUITS | OF_OPEN | {COMPLETENESS, UNFOLLOWED},
+        _one_unfollowed,
+    ),
+    Reason(
+        "of circuits that are not counted, whether modes on curves that coincide are met is chance",
+        frozenset((UNFOLLOWED,)),
+        lambda way, drawn, written: (
+            _nothing_but(UNFOLLOWED)(way, drawn, written) and _sure(drawn, written) == {"algebraic"}
+        ),
+    ),
+    Reason(
+        "all else agrees: about change points the count of branch points balances in some ways only",
+        frozenset((COMPLETENESS,)),
+        lambda way, drawn, written: (
+            _nothing_but(COMPLETENESS)(way, drawn, written)
+            and _sure(drawn, written) == {"algebraic", "counted"}
+            and drawn.is_change
+        ),
+    ),
+    Reason(
+        "slides run to infinity, and are followed to a distance from where they are written",
+        OF_OPEN,
+        lambda _, drawn, written: drawn.runs_off and written.runs_off,
+    ),
+    Reason(
+        "of a structure that shakes, rank and redundant constraints are known to the root of rounding",
+        frozenset(("redundant", "finite", "change points", COMPLETENESS)),
+        lambda _, drawn, written: not drawn.circuits and not written.circuits,
+    ),
+    Reason(
+        "places far off are rounded as much more, and the root of that counts at change points",
+        COUNTS,
+        lambda way, drawn, written: (
+            way.rounding > 1 and drawn.is_change and written.is_change and _plain_alike(way, drawn, written)
+        ),
+    ),
+    Reason(
+        "beside the ground the turn of a link is a motion of all others as one body",
+        COUNTS | {COMPLETENESS, UNFOLLOWED, "finite", "idle"},
+        lambda way, drawn, written: (
+            not way.same_ground and {drawn.words.get("idle"), written.words.get("idle")} == {0, 1}
+        ),
+    ),
+)
+
+
+def reason(way: Way, drawn: Answers, written: Answers, difference: str) -> str:
+    """Why two answers may differ in this; empty where they may not."""
+    what = difference.partition(":")[0]
+    for one in REASONS:
+        if what in one.explains and one.holds(way, drawn, written):
+            return one.why
+    return ""
