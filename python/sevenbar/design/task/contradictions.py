@@ -302,9 +302,9 @@ def _path(task: DesignTask, want: kinds.PathWant) -> Flaws:
 
 def _poses(task: DesignTask, want: kinds.PoseWant) -> Flaws:
     linkage = task.draft.linkage
-    count = len(linkage.joints)
-    if not 1 <= want.link < count:
-        yield "link", f"{want.link} is no moving link; give 1 to {count - 1}, link {count} is the ground"
+    ground = linkage.graph.ground
+    if want.link not in linkage.graph.moving:
+        yield "link", f"{want.link} is no moving link; give 1 to {ground - 1}, link {ground} is the ground"
         return
     yield from _idle(linkage, want.link, "a pose of it")
     yield from not_positive("arm", want.arm, "length")
@@ -382,13 +382,13 @@ _FLAWS: Mapping[type, Callable[[DesignTask, Any], Flaws]] = {
 
 def _point(linkage: Linkage, name: str) -> Flaws:
     known = {point.name: point.link for point in linkage.points}
-    moving = [point for point, link in known.items() if link < len(linkage.joints)]
+    moving = [point for point, link in known.items() if link in linkage.graph.moving]
     if name not in known:
         has = (
             f"this linkage has {', '.join(moving)}" if moving else "the linkage names none, so add one to it"
         )
         yield "point", f"no point {shown(name)}; {suggestion(name, known)}{has}"
-    elif known[name] == len(linkage.joints):
+    elif known[name] == linkage.graph.ground:
         yield "point", f"'{name}' is on the ground, which stands still; give one of {', '.join(moving)}"
     else:
         for key, message in _idle(linkage, known[name], "a path on it"):

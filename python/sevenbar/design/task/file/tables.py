@@ -218,7 +218,7 @@ def must_of(form: schema.MustForm, linkage: Linkage, wants: Sequence[Want]) -> M
             return kinds.InCone(form.joint, form.angle, form.seat, form.stud)
         case schema.BoxMust():
             # all points and joints that are not of the ground alone
-            points = [point.name for point in linkage.points if point.link < len(linkage.joints)]
+            points = [point.name for point in linkage.points if point.link in linkage.graph.moving]
             every = tuple(dict.fromkeys([*points, *(joint.name for joint in linkage.joints)]))
             return kinds.InBox(form.low, form.high, form.names or every)
         case schema.ApartMust():
