@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sevenbar.arrays import short_way
-from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.kinematics.loop.rigid import inverse, pose
 
 
@@ -36,12 +36,12 @@ def worst_miss(answer, wanted):
     """
     linkage, worst = answer.linkage, 0.0
     columns = linkage.columns
-    first = frames_of(linkage, np.zeros((1, len(columns))))[0, 1]
+    first = poses(linkage, np.zeros((1, len(columns))))[0, 1]
     size = max(np.ptp([joint["at"] for joint in answer.draft.raw["joint"]], axis=0))
     for x, y, goal in zip(answer.claim.inputs, answer.claim.outputs, wanted, strict=True):
         modes = linkage.assembly_modes(x)
         nearest = np.abs(short_way(modes.q[:, linkage.places[-1]][:, 0] - y)).argmin()
-        there = frames_of(linkage, modes.q[[nearest]])[0, 1] @ inverse(first)
+        there = poses(linkage, modes.q[[nearest]])[0, 1] @ inverse(first)
         off = np.abs(there - goal)
         off[:3, 3] /= size
         worst = max(worst, float(off.max()))

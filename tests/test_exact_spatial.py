@@ -12,7 +12,7 @@ from sevenbar.design.exact.bennett import factor, norm_of, times
 from sevenbar.design.exact.given import poses_given
 from sevenbar.design.exact.lines import places
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.circuits import poses as circuit_poses
 from sevenbar.kinematics.loop.rigid import about, inverse, pose, unit
 
 
@@ -48,7 +48,7 @@ def test_linkages_cccc_have_two_freedoms_and_no_verdict():
     found = cc_dyads(poses)
     answer = found.answers[0]
     # at the values of all joints, link 2 has the wanted poses
-    there = frames_of(answer.linkage, answer.poses)[:, 1]
+    there = circuit_poses.poses(answer.linkage, answer.poses)[:, 1]
     assert there @ inverse(there[0]) == pytest.approx(poses @ inverse(poses[0]), abs=1e-9)
     assert answer.verdict is None
     assert answer.fault is None

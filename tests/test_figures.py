@@ -17,7 +17,7 @@ from sevenbar.description.gallery import names
 from sevenbar.drawing import output_curves, paths, plot, skeleton
 from sevenbar.drawing.animate import animate
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.kinematics.loop.rigid import inverse, pose
 
 
@@ -32,7 +32,7 @@ def test_the_joints_values_lead_to_the_links_places(motions: dict[str, sb.Motion
     motion = motions[name]
     for circuit in motion:
         rows = np.flatnonzero(~np.isnan(circuit.q).any(axis=1))
-        given = frames_of(motion.linkage, circuit.q[rows])
+        given = poses(motion.linkage, circuit.q[rows])
         for i, own in enumerate(motion.linkage.point_frames[:-1]):
             x, y, z = map(float, inverse(own)[:3, 3])
             turn, place = (
@@ -48,12 +48,14 @@ def test_drawn_links_are_rigid_and_meet_in_the_joints(motions: dict[str, sb.Moti
     slide = {i for i, joint in enumerate(motion.linkage.joints) if joint.kind in "PCHE"}
     for circuit in motion:
         frame = skeleton.skeleton(motion, circuit)
-        for link in frame.links:
+        for link in frame.polylines:
             for a, b in pairwise(link):
                 lengths = np.linalg.norm(frame.places[:, a] - frame.places[:, b], axis=1)
                 assert np.nanmax(np.abs(lengths - np.nanmean(lengths))) < 1e-9 * max(circuit.size, 1.0)
-        for i, (link, after) in enumerate(zip(frame.links, (*frame.links[1:], frame.links[0]), strict=True)):
-            if (i + 1) % len(frame.links) not in slide:
+        for i, (link, after) in enumerate(
+            zip(frame.polylines, (*frame.polylines[1:], frame.polylines[0]), strict=True)
+        ):
+            if (i + 1) % len(frame.polylines) not in slide:
                 gap = np.abs(frame.places[:, link[-1]] - frame.places[:, after[0]])
                 assert np.nanmax(gap) < 1e-9 * max(circuit.size, 1.0)
 

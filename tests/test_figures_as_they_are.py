@@ -87,7 +87,7 @@ def test_a_spherical_loop_lies_on_the_sphere_of_its_farthest_point() -> None:
     motion = linkage.motion(samples=36)
     frame = skeleton(motion, motion.circuits[0])
     radius = math.sqrt(60**2 + 40**2 + 30**2)
-    links = np.concatenate([frame.places[:, list(link)] for link in frame.links], axis=1)
+    links = np.concatenate([frame.places[:, list(link)] for link in frame.polylines], axis=1)
     np.testing.assert_allclose(np.linalg.norm(links, axis=2), radius, rtol=1e-9)
     entries = [text.get_text() for text in plot.configuration(motion).legends[0].get_texts()]
     assert "sphere, radius 78.1 mm" in entries

@@ -37,6 +37,33 @@ CORE_IMPORTERS = {
     "sweep/run",
 }
 
+#: Who knows in which order the joints of a loop follow each other; docs/design.md says why these. All others
+#: take links and joints as a graph.
+ORDER_KNOWN_TO = {
+    # makes a description's fixed transforms
+    "description/forms",
+    # the loop as a value, its graph, and the poses of its links
+    "kinematics/loop/geometry",
+    "kinematics/loop/graph",
+    "kinematics/circuits/poses",
+    # the loop by its numbers
+    "kinematics/numbers/lengths",
+    "kinematics/numbers/word",
+    # the joints as the core takes them, and places along a link
+    "kinematics/solvers/general",
+    "kinematics/solvers/link_places",
+}
+
+#: Joints counted, a joint by its neighbour's number, what is fixed between joints by a link's number; `links`
+#: of a four-bar, a pose and a must are others, by name or number.
+ORDER_OF_JOINTS = re.compile(
+    r"\blen\((?!reason\.)[^()]*\bjoints\)"
+    r"|\bjoints\[[^\],]*[-+%:][^\],]*\]"
+    r"|(?<!\bbar)(?<!\bpose)(?<!\bmust)(?<!\})\.links\["
+    r"|\.(?:drawn_)?transforms\b(?! import)"
+    r"|\.drawn_ground\b"
+)
+
 NOT_IN_THE_CORE = re.compile(
     r"\b(pyo3|numpy)\b"
     r"|\bstd::(fs|io|time|env|net|process)\b"
@@ -83,6 +110,46 @@ def imported_from_core(python: str) -> set[str]:
             elif source in {"sevenbar", "."} and any(alias.name == "_core" for alias in node.names):
                 names.add("_core")
     return names
+
+
+def test_the_order_of_joints_is_known_to_the_modules_listed_only():
+    knowing = {
+        file.relative_to(PACKAGE).with_suffix("").as_posix()
+        for file in PYTHON_FILES
+        if ORDER_OF_JOINTS.search(file.read_text(encoding="utf-8"))
+    }
+    assert knowing == ORDER_KNOWN_TO
+    assert len(ORDER_KNOWN_TO) <= 8
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "count = len(self.linkage.joints)",
+        "after = loop.joints[(i + 1) % count]",
+        "last = linkage.joints[-1]",
+        "for joint in linkage.joints[:-1]:",
+        "frame = linkage.links[link - 1]",
+        "way = motion.linkage.links[0]",
+        "size = loop.transforms[:, :3, 3]",
+    ],
+)
+def test_a_reading_of_the_order_of_joints_is_seen(line):
+    assert ORDER_OF_JOINTS.search(line)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "bar.links[name]",
+        "pose.links[link]",
+        "len(reason.joints)",
+        "linkage.joints[joint].name",
+        "graph.joints",
+    ],
+)
+def test_what_is_no_order_of_joints_is_none(line):
+    assert not ORDER_OF_JOINTS.search(line)
 
 
 @pytest.mark.slow

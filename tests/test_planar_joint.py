@@ -15,7 +15,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.path.generation import path_generation
-from sevenbar.drawing.skeleton import frames_of
+from sevenbar.drawing.skeleton import poses
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.export import export
 from sevenbar.export.layout import arrange
@@ -99,7 +99,7 @@ def test_a_point_behind_a_planar_joint_and_the_frames_of_the_core_and_of_the_ste
     motion = linkage.motion(24, input="j0" if kinds[0] == "R" else "j1")
     circuit = motion.circuits[0]
     rows = np.flatnonzero(circuit.status == "ok")
-    frames = frames_of(linkage, circuit.q[rows])
+    frames = poses(linkage, circuit.q[rows])
     for link in range(len(linkage.links)):
         own = linkage.point_frames[link] @ np.array([0.3, -0.2, 0.7, 1.0])
         want = (frames[:, link] @ own)[:, :3]
@@ -176,7 +176,7 @@ def test_the_disc_of_a_planar_joint_holds_its_slipper_in_every_pose() -> None:
     (disc,) = (solid for solid in assembly.parts[0].add if isinstance(solid, Rod) and flat(solid))
     axis = (disc.end - disc.start) / length_of(disc)
     for row in motion.circuits[0].q:
-        plate, slipper = frames_of(motion.linkage, row[None])[0, :2]
+        plate, slipper = poses(motion.linkage, row[None])[0, :2]
         # the slipper's own place, from the plate that carries the disc
         away = np.linalg.solve(plate, slipper[:, 3])[:3] - disc.end
         assert np.linalg.norm(away - (away @ axis) * axis) < disc.radius - 0.7 * assembly.unit

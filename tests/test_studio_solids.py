@@ -46,7 +46,7 @@ def ends(found: tuple[Floats, Floats, Floats]) -> tuple[Floats, Floats]:
 def test_each_link_has_tubes_from_joint_to_joint_in_every_pose(name: str) -> None:
     _, frame, made = planned(name)
     start, end = ends(poses(made, frame.places)["cylinder"])
-    for a, b in (pair for way in frame.links for pair in pairwise(way)):
+    for a, b in (pair for way in frame.polylines for pair in pairwise(way)):
         if np.linalg.norm(frame.places[:, a] - frame.places[:, b], axis=1).max() < 1e-9 * frame.span:
             continue
         off = np.maximum(
@@ -111,7 +111,7 @@ def test_the_ground_stays_where_only_the_moving_places_are_unknown() -> None:
     _, frame, made = planned("rssr")
     lost = frame.places[0].copy()
     # both feet of the two balls
-    lost[[*frame.links[1], frame.links[0][-1], frame.links[2][0]]] = np.nan
+    lost[[*frame.polylines[1], frame.polylines[0][-1], frame.polylines[2][0]]] = np.nan
     *_, scale = poses(made, lost)["cylinder"]
     grounded = ~made.solids["moves"][made.shapes["cylinder"]]
     assert (scale[grounded] > 0).all()
@@ -138,7 +138,7 @@ def test_what_slides_stays_on_its_rail_between_the_ends(name: str, slider: str) 
     for i, joint in enumerate(motion.linkage.joints):
         if joint.kind not in "PH":
             continue
-        foot = frame.links[i - 1][-1] if i == last else frame.links[i][0]
+        foot = frame.polylines[i - 1][-1] if i == last else frame.polylines[i][0]
         assert np.abs(blocks - frame.places[:, foot, None]).max(axis=(0, 2)).min() < 1e-12 * frame.span
         way = end - start
         length = np.linalg.norm(way, axis=2, keepdims=True)
@@ -160,7 +160,8 @@ def test_the_nut_turns_once_on_its_thread_for_each_pitch_it_moves() -> None:
     seen = rotated(nut, (1, 0, 0))
     turned = np.unwrap(np.arctan2(np.sum(seen * y, axis=1), np.sum(seen * x, axis=1)))
     slid = np.sum(
-        (frame.places[:, frame.links[index][0]] - frame.places[:, frame.links[index - 1][-1]]) * z, axis=1
+        (frame.places[:, frame.polylines[index][0]] - frame.places[:, frame.polylines[index - 1][-1]]) * z,
+        axis=1,
     )
     assert np.ptp(slid) > 0.05 * frame.span
     pitch = motion.linkage.joints[index].pitch
@@ -207,7 +208,7 @@ def test_a_plan_from_one_circuit_serves_the_poses_of_the_others() -> None:
     for circuit in motion.circuits[1:3]:
         other = skeleton.skeleton(motion, circuit)
         start, end = ends(poses(made, other.places[3])["cylinder"])
-        for a, b in (pair for way in first.links for pair in pairwise(way)):
+        for a, b in (pair for way in first.polylines for pair in pairwise(way)):
             off = np.linalg.norm(start - other.places[3, a], axis=1)
             off += np.linalg.norm(end - other.places[3, b], axis=1)
             assert off.min() < 1e-11 * first.span

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.kinematics.transmission.angle import coupling_of
 from textbook_loops import (
     four_bar_joints,
@@ -209,7 +209,7 @@ def test_through_a_ball_beside_other_joints_the_force_is_square_to_what_they_do(
 
     def place(q):
         """The ball as a point of the link that the input and the cylinder carry, drawn with all at zero."""
-        return (frames_of(found, q[None])[0, 1] @ found.point_frames[1] @ ball_at)[:3]
+        return (poses(found, q[None])[0, 1] @ found.point_frames[1] @ ball_at)[:3]
 
     defined = 0
     for circuit in found.motion(24):

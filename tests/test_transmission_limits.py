@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.circuits.poses import poses
 from textbook_loops import linkage, moved, rotation, slider_crank_joints, spherical_joints
 
 Z = [0, 0, 1]
@@ -116,7 +116,7 @@ def test_where_the_output_stands_still_with_the_input_the_angle_has_its_limit():
     motion = found.motion(360, input="in", output="out")
     # the force is along the rod from the cross to the ball: its angle has no other extremes than the rod's
     for circuit in motion:
-        frames = frames_of(found, circuit.q)
+        frames = poses(found, circuit.q)
         ball, cross = (
             np.array([*joint["at"], 1.0]) for joint in (found.description["joint"][k] for k in (1, 2))
         )

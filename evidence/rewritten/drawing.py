@@ -73,10 +73,10 @@ def drawing(name: str, *joints: tuple[Any, ...]) -> Drawing:
 
 def redrawn(linkage: Linkage, row: int) -> Drawing:
     """A linkage without universal joints as drawn at a row of its first circuit."""
-    from sevenbar.kinematics.circuits.poses import frames_along, joint_frames
+    from sevenbar.kinematics.circuits.poses import joint_frames, poses_along
 
     circuit = linkage.motion(36).circuits[0]
-    before, _ = joint_frames(linkage, frames_along(linkage, circuit, np.array([row])))
+    before, _ = joint_frames(linkage, poses_along(linkage, circuit, np.array([row])))
     made = []
     for joint, frame in zip(linkage.joints, before[0], strict=True):
         axis = (frame[:3, 2].copy(),) if joint.kind != "S" else ()

@@ -37,11 +37,11 @@ def axodes(
     from sevenbar.reporting.screws import axodes_report
 
     loaded = opened(linkage, agree)
-    count = len(loaded.joints)
-    against = count if relative_to is None else relative_to
-    links = list(dict.fromkeys(link or [n for n in range(1, count + 1) if n not in (against, count)]))
+    ground = loaded.graph.ground
+    against = ground if relative_to is None else relative_to
+    links = list(dict.fromkeys(link or [n for n in loaded.graph.moving if n != against]))
     for name, value in (*(("link", n) for n in links), ("relative-to", against)):
-        whole_number(f"--{name}", value, 1, count, "a link", ", the last is the ground")
+        whole_number(f"--{name}", value, 1, ground, "a link", ", the last is the ground")
     if against in links:
         raise RequestError(f"--relative-to: link {against} is one of --link; give another")
     report = axodes_report(links, relative_to)

@@ -371,7 +371,7 @@ def _points(linkage: sb.Linkage, asked: str | tuple[int, Place] | None) -> Place
             raise RequestError(f"--point: no point {shown(asked)}; this linkage has {known}")
         return {asked: named[asked]}
     link, (u, v, w) = asked
-    whole_number("--link", link, 1, len(linkage.joints), "a link", ", the last is the ground")
+    whole_number("--link", link, 1, linkage.graph.ground, "a link", ", the last is the ground")
     return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
 
 

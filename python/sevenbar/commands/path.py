@@ -104,7 +104,7 @@ def path(
 
 def missing_point(linkage: Linkage) -> str:
     """Which point to give where none is."""
-    names = [point.name for point in linkage.points if point.link < len(linkage.joints)]
+    names = [point.name for point in linkage.points if point.link in linkage.graph.moving]
     return f"give --point {' or '.join(names)}" if names else "the file names none, so add one to it"
 
 

@@ -20,6 +20,7 @@ from sevenbar.description.written import (
     unknown_link,
 )
 from sevenbar.errors import Problem, shown
+from sevenbar.kinematics.loop.graph import loop_graph
 from sevenbar.kinematics.loop.joints import JOINT_KINDS, KINDS, READ_KINDS, ROW_KINDS, no_reading
 
 #: The keys of the three ways to write a linkage: a file has one of them.
@@ -63,9 +64,10 @@ def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
     elif key == "link":
         tables = [(i, t) for i, t in enumerate(entries(raw, key), 1) if t.get("joint", "R") in ROW_KINDS]
         problems = [Problem(f"link[{i}].{name}", m) for i, t in tables for name, m in _wrong_row_keys(t)]
-    countable = FEWEST_JOINTS <= len(joints) <= MOST_JOINTS
+    number = len(loop_graph(joints).joints)
+    countable = FEWEST_JOINTS <= number <= MOST_JOINTS
     if isinstance(raw[key], list) and not countable:
-        count = f"a loop of {len(joints)} joint{'' if len(joints) == 1 else 's'}"
+        count = f"a loop of {number} joint{'' if number == 1 else 's'}"
         problems.append(Problem(key, f"{count} is not taken; give {FEWEST_JOINTS} to {MOST_JOINTS}"))
     taken: set[str] = set()
     for joint in joints:

@@ -65,7 +65,7 @@ def held_of(draft: Draft, moved: Collection[str]) -> HeldDimensions:
     lengths = [d for d in (*draft.lengths, *every) if d.drawn]
     if any(d.name in moved for d in lengths):
         # of a drawing whose lengths change, what other joints are drawn for
-        ends = 0, len(draft.linkage.joints) - 1
+        ends = draft.linkage.graph.standing
         every = [*lengths, *(d for d in every if d.place[1] in ends and not d.drawn)]
     own = [d for d in every if d.name not in moved]
     return HeldDimensions(

@@ -107,10 +107,13 @@ def _of_circuit(table: TextTable, circuit: int | None) -> TextTable:
 
 def _places(table: TextTable, linkage: Linkage, column: int, joint: str | None) -> dict[str, int]:
     """The column of each quantity, known by its unit; by its name, too, where several have such a unit."""
-    name, kind = linkage.columns[column], linkage.column_kinds[column]
-    owners = [joint.name for joint in linkage.joints for _ in joint.columns]
+    own = linkage.each_column[column]
+    name, owner = own.name, linkage.joints[own.joint].name
     heads = [table.name_and_unit(place) for place in range(len(table.names))]
-    sorts = {"time": ("time", 0), **{quantity: (kind, order) for order, quantity in enumerate(QUANTITIES)}}
+    sorts = {
+        "time": ("time", 0),
+        **{quantity: (own.kind, order) for order, quantity in enumerate(QUANTITIES)},
+    }
     found = {}
     for quantity, sort in sorts.items():
         fitting = table.columns_of(sort)
@@ -119,10 +122,10 @@ def _places(table: TextTable, linkage: Linkage, column: int, joint: str | None) 
                 i for i, (head, unit) in enumerate(heads) if not unit and head.lower() in ("t", "time")
             ]
         if len(fitting) > 1:
-            what = {"value": "angle" if linkage.turns(column) else "position"}.get(quantity, quantity)
-            words = (name, owners[column], "input", what) if joint is None else (joint,)
-            own = {word.lower() for word in (*words, "time", "t")}
-            named = [place for place in fitting if heads[place][0].lower() in own]
+            what = {"value": "angle" if own.turns else "position"}.get(quantity, quantity)
+            words = (name, owner, "input", what) if joint is None else (joint,)
+            known = {word.lower() for word in (*words, "time", "t")}
+            named = [place for place in fitting if heads[place][0].lower() in known]
             if len(named) != 1:
                 several = ", ".join(table.labels[place] for place in fitting)
                 motion = table.column("circuit") is not None
@@ -134,7 +137,7 @@ def _places(table: TextTable, linkage: Linkage, column: int, joint: str | None) 
             fitting = named
         if fitting:
             found[quantity] = fitting[0]
-    _refuse_what_is_missing(table, found, name, turns=linkage.turns(column))
+    _refuse_what_is_missing(table, found, name, turns=own.turns)
     return found
 
 

@@ -13,6 +13,7 @@ from sevenbar.forces.acting import Load, Spring
 from sevenbar.forces.bodies import SHAPES, Body, Solid, tensor_of
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.dynamics.link_bodies import flaw_in_plane
+from sevenbar.kinematics.loop.graph import loop_graph
 from sevenbar.text.units import LENGTHS, MASSES
 
 
@@ -94,7 +95,7 @@ def load_contradictions(
 
 
 def _on_ground(place: str, link: int, joints: Sequence[Written], why: str) -> list[Problem]:
-    if link == len(joints):
+    if joints and link == loop_graph(joints).ground:
         message = f"link {link} is the ground; {why}, or give 1 to {link - 1}"
         return [Problem(f"{place}.link", message)]
     return unknown_link(f"{place}.link", link, joints)

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from sevenbar.errors import Problem, no_joint, shown
+from sevenbar.kinematics.loop.graph import loop_graph
 from sevenbar.kinematics.loop.joints import KINDS, column_names
 
 #: Words that people use for the ground where a joint's kind should stand.
@@ -135,9 +136,9 @@ def named_column(name: str, joints: Sequence[Written]) -> tuple[str, str]:
 
 def unknown_link(place: str, link: int, joints: Sequence[Written]) -> list[Problem]:
     """What is wrong with the number of a link that a loop of these joints does not have."""
-    if link <= len(joints) or not joints:
+    if not joints or link <= (ground := loop_graph(joints).ground):
         return []
-    return [Problem(place, f"{shown(link)} is not a link; give 1 to {len(joints)}, the last is the ground")]
+    return [Problem(place, f"{shown(link)} is not a link; give 1 to {ground}, the last is the ground")]
 
 
 def entries(raw: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:

@@ -199,13 +199,13 @@ def located(motion: Motion, inputs: Floats, outputs: Floats, whole: Floats | Non
 
     With `whole` (n, columns) by those of all joints, but the turns of balls.
     """
-    balls = [joint.row.is_ball for joint in motion.linkage.joints for _ in joint.columns]
     count = len(inputs)
     best = Ways(np.full(count, -1), np.full(count, -1), np.full(count, np.nan), np.full(count, np.inf))
     for circuit in motion.circuits:
         columns = [circuit.input_column, circuit.output_column]
         if whole is not None:
-            columns += [c for c, ball in enumerate(balls) if not ball and c not in columns]
+            others = [column.number for column in motion.linkage.each_column if column.is_output]
+            columns += [column for column in others if column not in columns]
         turning = motion.linkage.turning[columns]
         rows = circuit.q[:, columns]
         poses = np.column_stack([inputs, outputs]) if whole is None else whole[:, columns]

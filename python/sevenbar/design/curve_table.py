@@ -47,7 +47,7 @@ def read_curve(
     inputs = None
     place = _input(table, input_joint)
     if place is not None:
-        kind = linkage.column_kinds[linkage.columns.index(input_joint)]
+        kind = linkage.column_of(input_joint).kind
         example = "deg" if linkage.turns(input_joint) else unit
         inputs = numbers[place] = table.sized(place, (kind, 0), unit, what="input", example=example)
     table.refuse_gaps(numbers, "leave the row out")

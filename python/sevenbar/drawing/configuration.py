@@ -25,7 +25,7 @@ from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
-from sevenbar.kinematics.circuits.poses import frames_of, walk
+from sevenbar.kinematics.circuits.poses import poses, walk
 from sevenbar.kinematics.circuits.timed_walk import TimedWalk
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.ranges.reach import Reach, drawn_row, used_reach
@@ -70,7 +70,7 @@ def configuration(
     """
     chosen = chosen_circuit(motion, circuit)
     if positions is None:
-        positions = 6 if len(motion.linkage.joints) < 5 else 3
+        positions = 6 if motion.linkage.graph.ground < 5 else 3
     positions = whole_number("positions", positions, 1, 100, "a count")
     frame = skeleton(motion, chosen)
     way = TimedWalk(motion, chosen)
@@ -166,18 +166,18 @@ def modes_overview(
     slide = not linkage.turns(first)
     value = f"{modes.input:.6g} {linkage.length_unit}" if slide else f"{math.degrees(modes.input):.6g}°"
     ends = linkage.columns[first], linkage.columns[second]
-    poses = skeleton_of(linkage, frames_of(linkage, modes.q))
+    frame = skeleton_of(linkage, poses(linkage, modes.q))
     across = min(count, 2 if count < 5 else 4)
     down = math.ceil(count / across)
     with styled(style):
         given = None if ax is None else given_axes(ax, count, "one for each mode")
-        seen = view_of(view, linkage, shown_places(poses), given[0] if given else None)
-        box = frame_box(poses, seen)
+        seen = view_of(view, linkage, shown_places(frame), given[0] if given else None)
+        box = frame_box(frame, seen)
         if given:
             for axes, index in zip(given, range(count), strict=True):
                 space = ViewAxes(axes, seen)
-                page.prepare(space, poses, None)
-                _draw_mode(space, poses, index, ends, 1.0)
+                page.prepare(space, frame, None)
+                _draw_mode(space, frame, index, ends, 1.0)
                 if title:
                     axes.set_title(say("mode {number}", number=index))
             return given[0].figure.figure  # type: ignore[no-any-return]
@@ -190,7 +190,7 @@ def modes_overview(
             joint=shown_name(ends[0]), value=value,
         )  # fmt: skip
         top = page.write_title(figure, title_text(title, named))
-        foot = page.write_legend(figure, keys(one_pose(poses, 0), ends, seen) if legend else [])
+        foot = page.write_legend(figure, keys(one_pose(frame, 0), ends, seen) if legend else [])
         width, height = figure.get_size_inches()
         heading = 0.026 * letters()
         if figsize is None:
@@ -206,8 +206,8 @@ def modes_overview(
             # the last row in the middle
             left += (across - min(across, count - row * across)) * side[0] / 2
             space = ViewAxes(page.own_axes(figure, seen), seen)
-            page.prepare(space, poses, (left, bottom, side[0], side[1] - heading))
-            _draw_mode(space, poses, index, ends, SMALLER if across > 2 else 0.85)
+            page.prepare(space, frame, (left, bottom, side[0], side[1] - heading))
+            _draw_mode(space, frame, index, ends, SMALLER if across > 2 else 0.85)
             middle, above = left + side[0] / 2, bottom + side[1] - heading + page.EDGE / 2
             space.heading(say("mode {number}", number=index), middle, above)
     return figure

@@ -108,7 +108,7 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
         "poses": _plain((poses - centre) / size),
         "links": [
             {"at": list(places), "colour": colour}
-            for places, colour in zip(frame.links, [*links, GROUND], strict=True)
+            for places, colour in zip(frame.polylines, [*links, GROUND], strict=True)
         ],
         "marks": marks,
         "stays": [{"at": list(stay), "colour": colour} for stay, colour in stays(frame, ends)],

@@ -61,7 +61,7 @@ def stage(space: ViewAxes, frame: Skeleton, ends: tuple[str, str], *, around: Sk
             if place not in frame.far:
                 look = {"lw": 0.8, "zorder": 1} if colour == PATH else {"lw": 1.2, "zorder": 2}
                 space.line(smooth_line(frame.places[:, place]), color=colour, **look)
-    ground = frame.pose(0)[list(frame.links[-1])]
+    ground = frame.pose(0)[list(frame.along(frame.graph.ground))]
     space.line(ground, color=paler(GROUND, 0.35), lw=3.4, zorder=2, solid_capstyle="round")
     rails = _ground_rails(frame)
     for rail in rails.values():
@@ -100,8 +100,7 @@ def draw_box(space: ViewAxes, frame: Skeleton, box: Box) -> None:
 
 def _ground_rails(frame: Skeleton) -> dict[int, Floats]:
     """The ends (2, 3) of rails on the ground, by the joint."""
-    still = (0, len(frame.joints) - 1)
-    pose = frame.pose(0)
+    pose, still = frame.pose(0), frame.graph.standing
     return {i: pose[list(ends)] for i, word, ends in frame.marks if word == "rail" and i in still}
 
 
@@ -110,12 +109,13 @@ def _feet(frame: Skeleton) -> list[tuple[Floats, list[Floats]]]:
     pose, size = frame.pose(0), 0.05 * frame.span
     rails = _ground_rails(frame)
     feet = []
-    for joint, place in ((0, frame.links[-1][-1]), (len(frame.joints) - 1, frame.links[-1][0])):
+    ground = frame.graph.ground
+    for joint in frame.graph.standing:
         axes = [ends for i, word, ends in frame.marks if i == joint and word in ("cylinder", "arm")]
         if not axes or joint in rails:
             continue
-        start, end = pose[list(axes[-1 if joint else 0])]
-        centre, side = pose[place], unit(end - start)
+        start, end = pose[list(axes[-frame.graph.side(joint, ground)])]
+        centre, side = pose[frame.foot(joint, ground)], unit(end - start)
         away = float(side @ (centre - np.nanmean(frame.places[:, : frame.solid], axis=(0, 1))))
         side = side * math.copysign(1.0, away if abs(away) > 0.1 * frame.span else -side[2] or 1.0)
         u, foot = perpendicular(side), centre + 1.7 * size * side
@@ -132,7 +132,8 @@ def _flat_feet(space: ViewAxes, frame: Skeleton, rails: dict[int, Floats]) -> No
     pose, size = frame.pose(0), frame.span
     right, up = space.view.screen
     middle = np.nanmean(frame.places[:, : frame.solid], axis=(0, 1))
-    for joint, place in ((0, frame.links[-1][-1]), (len(frame.joints) - 1, frame.links[-1][0])):
+    for joint in frame.graph.standing:
+        place = frame.foot(joint, frame.graph.ground)
         if joint in rails:
             start, end = rails[joint]
             along = unit(end - start)
@@ -187,16 +188,17 @@ def _draw_sphere(space: ViewAxes, sphere: DrawnSphere) -> None:
 def paths(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[int, str]]:
     """The places whose paths are drawn, and the colour of each: named points, then joints that carry none.
 
-    The far ends of the first and the last moving link have their link's colour where it is that of input or
-    output, all other joints a pale one.
+    The far ends of links on the ground have their link's colour where it is that of input or output, all
+    other joints a pale one.
     """
-    colours = link_colours(frame.linkage, ends)[0]
+    colours, graph = link_colours(frame.linkage, ends)[0], frame.graph
     found = [(place, POINT_COLOURS[i % len(POINT_COLOURS)]) for i, place in enumerate(frame.points)]
-    runs = {0: colours[0], len(frame.inner) - 1: colours[-1]}
-    for i, place in enumerate(frame.inner):
+    grounded = graph.neighbours(graph.ground)
+    for joint, place in zip(frame.between_moving, frame.inner, strict=True):
         apart = np.abs(frame.places[:, list(frame.points)] - frame.places[:, [place]])
         if not (np.nanmax(apart, axis=(0, 2)) < SAME * frame.span).any():
-            found.append((place, PATH if runs.get(i, COUPLER) == COUPLER else runs[i]))
+            runs = [colours[link - 1] for link in graph.between[joint] if link in grounded]
+            found.append((place, runs[-1] if runs and runs[-1] != COUPLER else PATH))
     return found
 
 
@@ -207,14 +209,13 @@ def view(frame: Skeleton) -> tuple[float, float]:
 
 def link_colours(linkage: Loop, ends: tuple[str, str]) -> tuple[list[str], list[str]]:
     """The colours of the moving links and of the joints, from the columns of input and output."""
-    owner = {column: i for i, joint in enumerate(linkage.joints) for column in joint.columns}
-    count = len(linkage.joints)
-    links, joints = [COUPLER] * (count - 1), [JOINT] * count
+    graph = linkage.graph
+    links, joints = [COUPLER for _ in graph.moving], [JOINT for _ in graph.joints]
     # the output first, so that the input wins a link that both move
     for column, colour in zip(ends[::-1], (OUTPUT, INPUT), strict=True):
-        joint = owner[column]
+        joint = linkage.column_of(column).joint
         joints[joint] = colour
-        links[min(joint, count - 2)] = colour
+        links[graph.moving_link(joint) - 1] = colour
     return links, joints
 
 
@@ -247,7 +248,7 @@ def bars(
     if not ghost:
         for stay, colour in stays(frame, ends):
             add(stay, color=colour, lw=width / 3)
-    for places, colour in zip(frame.links[:-1], colours, strict=True):
+    for places, colour in zip(map(frame.along, frame.graph.moving), colours, strict=True):
         ink = stroke() * (width + 1.4 * scale)
         outline = [] if ghost else [withStroke(linewidth=ink, foreground="#202020"), Normal()]
         add(places, color=paler(colour, FAINT) if ghost else colour, lw=width, path_effects=outline)

@@ -14,8 +14,9 @@ from sevenbar.drawing.names import joint_label, short
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.kinematics.circuits.poses import at_row, frames_along, frames_of, joint_frames, walk
+from sevenbar.kinematics.circuits.poses import at_row, joint_frames, poses, poses_along, walk
 from sevenbar.kinematics.loop.geometry import Loop, Point
+from sevenbar.kinematics.loop.graph import Graph
 from sevenbar.kinematics.solvers.plane_and_sphere import sphere_of
 
 #: Half the length of a joint's drawn axis and of its cylinder, and how far a plate and a rail reach past what
@@ -44,9 +45,10 @@ class DrawnSphere:
 class Skeleton:
     """The places of a loop in poses, in the report frame [length]: its joints and links, then named points.
 
-    `places` (n, k, 3), `names` of each; `links` holds the places along each link, the ground's last; `marks`
-    what is drawn of each joint: its number, a word and the places it joins. `joints` are the places of the
-    joints, `points` those of the named points, `stays` the places that tie each point to its link, `owners`
+    `places` (n, k, 3), `names` of each; `polylines` holds the places along each link, the ground's last;
+    `marks` what is drawn of each joint: its number, a word and the places it joins. `feet` are the places of
+    each joint on the link before it and on the link after it, `points` those of the named points, `stays` the
+    places that tie each point to its link, `owners`
     that link's place among `links`. `extent` [length] is what the sizes of the marks are shares of. `reach`
     is how far joints slide, least and most, by the joint's number: across its axis (2,), or along it (1,).
     `sphere` is that of a spherical loop.
@@ -55,9 +57,9 @@ class Skeleton:
     linkage: Loop
     places: Floats
     names: tuple[str, ...]
-    links: tuple[tuple[int, ...], ...]
+    polylines: tuple[tuple[int, ...], ...]
     marks: tuple[tuple[int, str, tuple[int, ...]], ...]
-    joints: tuple[int, ...]
+    feet: tuple[tuple[int, int], ...]
     points: tuple[int, ...]
     stays: tuple[tuple[int, int, int], ...]
     owners: tuple[int, ...]
@@ -75,19 +77,42 @@ class Skeleton:
         return len(self.names) - len(self.points)
 
     @property
+    def graph(self) -> Graph:
+        """Its links and joints."""
+        return self.linkage.graph
+
+    def along(self, link: int) -> tuple[int, ...]:
+        """The places along a link."""
+        return self.polylines[link - 1]
+
+    def foot(self, joint: int, link: int) -> int:
+        """The place of a joint on one of its links."""
+        return self.feet[joint][self.graph.side(joint, link)]
+
+    @property
+    def joints(self) -> tuple[int, ...]:
+        """The places of the joints, on the links after them."""
+        return tuple(after for _, after in self.feet)
+
+    @property
     def standing(self) -> tuple[int, ...]:
         """The joints that stand still."""
-        return (self.joints[0], self.joints[-1])
+        return tuple(self.joints[joint] for joint in self.graph.standing)
+
+    @property
+    def between_moving(self) -> tuple[int, ...]:
+        """The numbers of the joints between moving links."""
+        return tuple(joint for joint in self.graph.joints if joint not in self.graph.standing)
 
     @property
     def inner(self) -> tuple[int, ...]:
-        """The joints between moving links, whose paths are drawn."""
-        return self.joints[1:-1]
+        """The places of the joints between moving links, whose paths are drawn."""
+        return tuple(self.joints[joint] for joint in self.between_moving)
 
     @property
     def lines(self) -> list[tuple[int, int]]:
         """Pairs of places with a line between, that labels should keep off."""
-        ends = [pair for link in self.links for pair in pairwise(link)]
+        ends = [pair for line in self.polylines for pair in pairwise(line)]
         ends += [(places[0], places[-1]) for _, word, places in self.marks if word != "axis"]
         return ends + [pair for stay in self.stays for pair in pairwise(stay)]
 
@@ -126,22 +151,19 @@ class Skeleton:
 def skeleton_of(
     linkage: Loop, frames: Floats, points: Sequence[Point] = (), *, like: Skeleton | None = None
 ) -> Skeleton:
-    """The places of a loop from the frames (n, moving links, 4, 4) of its links in n poses.
+    """The places of a linkage from the frames (n, links, 4, 4) of its links in n poses.
 
     Each joint is drawn where its axis was placed, each link from joint to joint; in Denavit-Hartenberg rows
     along the offset, then along the common normal. `like` is that of the whole motion where the
     frames show only a part of it.
     """
-    rows, count = len(frames), len(linkage.joints)
+    rows, graph = len(frames), linkage.graph
     before, after = joint_frames(linkage, frames)
     origins = np.concatenate([before[..., :3, 3], after[..., :3, 3]])
     spread = _extent(origins)
     in_rows = linkage.in_rows
     at = [linkage.point_frames[point.link - 1] @ (*point.at, 1.0) for point in points]
-    carried = [
-        (after[:, point.link - 1] @ place if point.link < count else np.broadcast_to(place, (rows, 4)))[:, :3]
-        for point, place in zip(points, at, strict=True)
-    ]
+    carried = [(frames[:, point.link - 1] @ place)[:, :3] for point, place in zip(points, at, strict=True)]
     sphere = like.sphere if like else _sphere(linkage, carried)
     places: list[Floats] = []
 
@@ -162,8 +184,8 @@ def skeleton_of(
         if sphere:
             near, far = _on_sphere(sphere, near, first), _on_sphere(sphere, far, second)
         feet.append((add(near), add(far)))
-        last = i == count - 1
-        # what slides; the other side has the rail, of the last joint the ground
+        last = graph.between[i][1] == graph.ground
+        # what slides; the other side has the rail, of a joint that leads to the ground the ground
         slider, way = (near, first) if last else (far, second)
 
         def along(middle: Floats, axis: Floats, half: float, to: Floats | None = None) -> tuple[int, int]:
@@ -210,20 +232,22 @@ def skeleton_of(
             marks.append((i, shape, along(slider, way, BLOCK)))
         else:
             marks.append((i, shape, (feet[i][1],)))
-    for i in range(count):
-        start, end = feet[i][1], feet[(i + 1) % count][0]
-        inner: tuple[int, ...] = ()
-        if sphere:
-            inner = tuple(add(place) for place in _arc_between(sphere, places[start], places[end]))
-        elif in_rows:
-            corner = _corner(after[:, i], places[start], places[end])
-            bends = len(like.links[i]) > 2 if like else _bends(corner, places[start], places[end])
-            inner = (add(corner),) if bends else ()
-        links.append((start, *inner, end))
+    for link in graph.links:
+        steps = [feet[joint][graph.side(joint, link)] for joint in graph.joints_of(link)]
+        line = steps[:1]
+        for start, end in pairwise(steps):
+            if sphere:
+                line += [add(place) for place in _arc_between(sphere, places[start], places[end])]
+            elif in_rows:
+                corner = _corner(after[:, graph.joints_of(link)[0]], places[start], places[end])
+                bends = len(like.along(link)) > 2 if like else _bends(corner, places[start], places[end])
+                line += [add(corner)] if bends else []
+            line.append(end)
+        links.append(tuple(line))
     solid = len(places)
     named = [""] * solid
-    for i in range(count):
-        rides = i == count - 1 and linkage.joints[i].row.rides
+    for i, joint in enumerate(linkage.joints):
+        rides = graph.between[i][1] == graph.ground and joint.row.rides
         named[feet[i][0 if rides else 1]] = joint_label(linkage, i)
     for point, place in zip(points, carried, strict=True):
         add(place)
@@ -233,9 +257,9 @@ def skeleton_of(
         linkage,
         np.stack(places, axis=1),
         tuple(named),
-        links=tuple(links),
+        polylines=tuple(links),
         marks=tuple(marks),
-        joints=tuple(foot for _, foot in feet),
+        feet=tuple(feet),
         points=own,
         stays=tuple(
             (links[point.link - 1][0], place, links[point.link - 1][-1])
@@ -272,7 +296,12 @@ def _sphere(linkage: Loop, named: Sequence[Floats]) -> DrawnSphere | None:
     found = sphere_of(linkage) if set(linkage.kind) == {"R"} else None
     if found is None:
         return None
-    free = not named and all(np.abs(frame[:3, 3]).max() <= 1e-9 for frame in linkage.links)
+    at = (
+        linkage.joint_on(j, link)[:3, 3]
+        for link in linkage.graph.moving
+        for j in linkage.graph.joints_of(link)
+    )
+    free = not named and all(np.abs(place).max() <= 1e-9 for place in at)
     # a point keeps its distance from the centre, while a joint may be drawn anywhere on its axis
     away = [np.nanmax(np.linalg.norm(places - found.centre, axis=1), initial=0.0) for places in named]
     farthest = float(max(away, default=0.0))
@@ -298,7 +327,7 @@ def _arc_between(sphere: DrawnSphere, start: Floats, end: Floats) -> list[Floats
 
 def skeleton(motion: Motion, circuit: Circuit) -> Skeleton:
     """The places of the linkage along the walk of a circuit."""
-    frames = frames_along(motion.linkage, circuit, walk(circuit).rows)
+    frames = poses_along(motion.linkage, circuit, walk(circuit).rows)
     if np.isnan(frames).any(axis=(1, 2, 3)).all():
         raise RequestError(
             f"circuit: circuit {circuit.index} has no pose at the inputs of the law; nothing to draw"
@@ -309,7 +338,7 @@ def skeleton(motion: Motion, circuit: Circuit) -> Skeleton:
 def places_of(q: Floats, frame: Skeleton) -> Floats:
     """The places (n, k, 3) of poses given by joint values (n, columns), in the order of those of `frame`."""
     linkage = frame.linkage
-    return skeleton_of(linkage, frames_of(linkage, q), linkage.added_points, like=frame).places
+    return skeleton_of(linkage, poses(linkage, q), linkage.added_points, like=frame).places
 
 
 def one_pose(frame: Skeleton, row: int) -> Skeleton:

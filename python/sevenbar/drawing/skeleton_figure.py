@@ -19,7 +19,7 @@ from sevenbar.drawing.space import ViewAxes, fit, seen_size, set_limits
 from sevenbar.drawing.style import page_size, styled
 from sevenbar.drawing.view import Asked, view_of
 from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
-from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.kinematics.circuits.timed_walk import TimedWalk
 from sevenbar.kinematics.ranges.reach import drawn_row, used_reach
 
@@ -61,9 +61,7 @@ def skeleton(
         frame.places[0] = whole.pose(_row(motion, TimedWalk(motion, chosen)))
     else:
         pose = chosen.at(at)
-        frame = skeleton_of(
-            motion.linkage, frames_of(motion.linkage, pose.q[None]), motion.linkage.added_points
-        )
+        frame = skeleton_of(motion.linkage, poses(motion.linkage, pose.q[None]), motion.linkage.added_points)
     ends = motion.input, motion.output
     with styled(style):
         if ax is not None:

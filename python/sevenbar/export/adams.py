@@ -12,7 +12,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
-from sevenbar.export.adams_file import Column, CommandFile, number, word_of
+from sevenbar.export.adams_file import AdamsColumn, CommandFile, number, word_of
 from sevenbar.export.adams_forces import add_forces
 from sevenbar.export.mass import MASSLESS, BodyMass, has_masses, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, foot_of, length_of
@@ -98,8 +98,12 @@ class _LinkageFile(CommandFile):
         """Whether a cross is a part of its own: not where a Hooke joint holds it."""
         if body < self.count:
             return True
-        crosses = [i for i, joint in enumerate(self.linkage.joints) if joint.row.has_cross]
-        return not self._hooke(crosses[body - self.count])
+        return not self._hooke(self._crosses[body - self.count])
+
+    @property
+    def _crosses(self) -> list[int]:
+        """The joints with a cross, whose bodies follow the links."""
+        return [i for i, joint in enumerate(self.linkage.joints) if joint.row.has_cross]
 
     def _hooke(self, i: int) -> bool:
         joint = self.linkage.joints[i]
@@ -179,10 +183,11 @@ class _LinkageFile(CommandFile):
         self.say(f"geometry create shape {kind}", **own)
 
     def _joint(self, i: int, word: str) -> None:
-        joint, before = self.linkage.joints[i], (i - 1) % self.count
+        joint = self.linkage.joints[i]
+        before, after = (link - 1 for link in self.linkage.graph.between[i])
         row = joint.row
         j_side = before, inverse(self.pose.frames[before]) @ self.pose.near[i]
-        i_side = i, inverse(self.pose.frames[i]) @ self.pose.far[i]
+        i_side = after, inverse(self.pose.frames[after]) @ self.pose.far[i]
         if row.has_cross:
             self._universal(i, word, j_side, i_side)
             return
@@ -196,18 +201,18 @@ class _LinkageFile(CommandFile):
             pitch = number(self.scale * joint.pitch)
             self._constrain("screw", f"{word}_thread", *found[1:], pitch=pitch)
         if not joint.row.is_ball:
-            self.columns |= {column: Column(*found, step) for column, step in row.named(joint.name)}
+            self.columns |= {column: AdamsColumn(*found, step) for column, step in row.named(joint.name)}
 
     def _universal(self, i: int, word: str, j_side: Side, i_side: Side) -> None:
         joint = self.linkage.joints[i]
-        body = self.count + sum(other.row.has_cross for other in self.linkage.joints[:i])
+        body = self.count + self._crosses.index(i)
         if self._hooke(i):
             # its crosspiece: y of the J marker and x of the I marker
             square, near, far = self.assembly.frames[body, :3, 0], self.pose.near[i], self.pose.far[i]
             first, second = near[:3, 2], far[:3, 2]
             turn_j = np.stack([np.cross(first, square), first, square], axis=1)
             turn_i = np.stack([second, np.cross(square, second), square], axis=1)
-            sides = ((j_side[0], matrix(turn_j, near[:3, 3])), (i, matrix(turn_i, far[:3, 3])))
+            sides = ((j_side[0], matrix(turn_j, near[:3, 3])), (i_side[0], matrix(turn_i, far[:3, 3])))
             self._connect("hooke", word, *((b, inverse(self.pose.frames[b]) @ frame) for b, frame in sides))
             return
         tilt = joint.before(joint.row.steps[-1])
@@ -215,7 +220,7 @@ class _LinkageFile(CommandFile):
         for k, (column, step, sides) in enumerate(
             zip(joint.columns, joint.row.steps, sides_of_steps, strict=True), 1
         ):
-            self.columns[column] = Column(*self._connect("revolute", f"{word}_{k}", *sides), step)
+            self.columns[column] = AdamsColumn(*self._connect("revolute", f"{word}_{k}", *sides), step)
 
     def _connect(self, kind: str, word: str, j_side: Side, i_side: Side) -> tuple[str, str, str]:
         """A joint between markers on two bodies; returns its name and those of the markers I and J."""

@@ -14,7 +14,7 @@ from sevenbar.text.units import LENGTHS
 
 
 @dataclass(frozen=True)
-class Column:
+class AdamsColumn:
     """A column of a joint in the file: the joint, its markers I and J, and its step."""
 
     joint: str
@@ -41,8 +41,8 @@ class CommandFile:
 
     def __init__(self, assembly: Assembly) -> None:
         self.assembly, self.pose, self.linkage = assembly, assembly.pose, assembly.pose.linkage
-        #: How many joints the linkage has, and so how many bodies before the crosses of universal joints.
-        self.count = len(self.linkage.joints)
+        #: How many links, the bodies before the crosses of universal joints.
+        self.count = self.linkage.graph.ground
         own = self.linkage.length_unit
         # ADAMS has no micrometres
         self.unit = "mm" if own == "um" else own
@@ -52,7 +52,7 @@ class CommandFile:
         self.model = "." + word_of(self.linkage.name, "linkage")
         self.lines: list[str] = []
         #: What each column is in the file; none for turns of Hooke joints and balls.
-        self.columns: dict[str, Column] = {}
+        self.columns: dict[str, AdamsColumn] = {}
 
     def say(self, keywords: str, **parameters: str) -> None:
         """Writes a command: keywords, and parameters by their names."""

@@ -37,8 +37,7 @@ def _marker(file: CommandFile, link: int, word: str, at: Three | None) -> str:
 
 def _add_load(file: CommandFile, name: str, load: Load, drive: str) -> None:
     marker = _marker(file, load.link, name, load.at)
-    ground = len(file.linkage.joints) - 1
-    axes = marker if load.axes == "link" else file.marker(ground, f"{name}_axes", np.eye(4))
+    axes = marker if load.axes == "link" else file.marker(file.count - 1, f"{name}_axes", np.eye(4))
     share = _share(file, load, drive)
     values: list[float] = [*load.force, *(np.array(load.torque) / file.metre)]
     functions = [f"{share}{number(x)}" for x in values]

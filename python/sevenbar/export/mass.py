@@ -74,7 +74,8 @@ def drawn_bodies(linkage: Linkage, circuit: int) -> list[tuple[float, Floats, Fl
     circuit.
     """
     assembly = arrange(take(linkage.motion(), circuit))
-    return [(one.mass, one.centre, one.inertia) for one in drawn_masses(assembly)[: len(linkage.links)]]
+    every = drawn_masses(assembly)[: len(linkage.graph.moving)]
+    return [(one.mass, one.centre, one.inertia) for one in every]
 
 
 def _sum(solids: Sequence[Solid], density: float) -> BodyMass:

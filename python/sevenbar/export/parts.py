@@ -147,18 +147,20 @@ def hub_height(pose: Pose) -> float:
 
 def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
     """All parts in a pose, each joint at its seat."""
-    linkage = pose.linkage
-    count = len(linkage.joints)
+    linkage, graph = pose.linkage, pose.linkage.graph
     colours = _link_colours(pose)
     lines = pose.polylines()
     builds = [_Build(f"link_{k}", k - 1, colour) for k, colour in enumerate(colours, 1)]
-    builds.append(_Build("ground", count - 1, GROUND))
+    builds.append(_Build("ground", graph.ground - 1, GROUND))
     frames, bodies = list(pose.frames), [build.name for build in builds]
     extra: list[Part] = []
-    feet = [(lines[i - 1][-1], lines[i][0]) for i in range(count)]
-    ends: list[list[Floats]] = [[line[0], line[-1]] for line in lines]
+    places = pose.places.places[0]
+    feet = [(places[near], places[far]) for near, far in pose.places.feet]
+    # where the arms of the links before and after each joint end
+    ends: list[Sequence[Floats]] = [*feet]
+    sides = [[builds[link - 1] for link in pair] for pair in graph.between]
     for i, joint in enumerate(linkage.joints):
-        before, after, seat = builds[i - 1], builds[i], seats[i]
+        (before, after), seat = sides[i], seats[i]
         if joint.row.is_ball:
             continue
         if joint.row.has_cross:
@@ -166,23 +168,24 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
             extra.append(replace(cross, body=len(frames), name=f"cross_{_word(joint.name)}"))
             frames.append(frame)
             bodies.append(f"cross_{_word(joint.name)}")
-            ends[i - 1][1], ends[i][0] = middles
+            ends[i] = middles
         else:
             # what is long stands on the ground where it can
-            way = 1 if i != count - 1 else -1
+            way = 1 if graph.between[i][1] != graph.ground else -1
             pairs = (before, after)[::way], (pose.near[i], pose.far[i])[::way], feet[i][::way]
             carried = _Carried(*pairs, pose, i, seat, unit, way)
             shafts, middles = carried.plane() if joint.row.has_plane else carried.axial()
             name, body = f"shaft_{_word(joint.name)}", carried.builds[0].body
             extra += [Part(name, body, (shaft,), (), JOINT) for shaft in shafts]
-            ends[i - 1][1], ends[i][0] = middles[::way]
-    arms = [
-        np.vstack([first, _bent(line, first, last, linkage.base[:3, 3]), last])
-        for line, (first, last) in zip(lines, ends, strict=True)
-    ]
+            ends[i] = middles[::way]
+    arms = []
+    for link, line in zip(graph.links, lines, strict=True):
+        first, last = (ends[joint][graph.side(joint, link)] for joint in graph.joints_of(link))
+        arms.append(np.vstack([first, _bent(line, first, last, linkage.base[:3, 3]), last]))
     for i, joint in enumerate(linkage.joints):
         if joint.row.is_ball:
-            _ball_joint(builds[i - 1], builds[i], pose, i, (arms[i - 1], arms[i]), unit)
+            (before, after), (first, last) = sides[i], (arms[link - 1] for link in graph.between[i])
+            _ball_joint(before, after, pose, i, (first, last), unit)
     for build, arm in zip(builds, arms, strict=True):
         build.arm(arm, unit)
     parts = [build.part() for build in builds]
@@ -371,8 +374,7 @@ def _ball_joint(
 
 def _mean_arm(pose: Pose, i: int, arm: Floats) -> Floats:
     """The mean direction (3,) of the arm before ball i as seen from the link after it, in this pose."""
-    count = len(pose.frames)
-    before, after = (i - 1) % count, i
+    before, after = (link - 1 for link in pose.linkage.graph.between[i])
     here = pose.frames[after, :3, :3]
     local = pose.frames[before, :3, :3].T @ arm
     seen = pose.others[:, before, :3, :3] @ local
@@ -399,10 +401,12 @@ def _moved(part: Part, frame: Floats) -> Part:
 def _link_colours(pose: Pose) -> list[str]:
     """The figures' colours of the moving links; of neighbours of one colour one is lighter."""
     colours, _ = link_colours(pose.linkage, (pose.motion.input, pose.motion.output))
-    for k in range(1, len(colours)):
-        if colours[k] == colours[k - 1]:
-            lighter = [round(0.55 * c + 0.45 * 255) for c in bytes.fromhex(colours[k][1:])]
-            colours[k] = "#" + bytes(lighter).hex().upper()
+    graph = pose.linkage.graph
+    for link in graph.moving:
+        own = colours[link - 1]
+        if own in (colours[other - 1] for other in graph.neighbours(link) if other < link):
+            lighter = [round(0.55 * c + 0.45 * 255) for c in bytes.fromhex(own[1:])]
+            colours[link - 1] = "#" + bytes(lighter).hex().upper()
     return colours
 
 

@@ -13,7 +13,7 @@ from sevenbar.drawing.skeleton import Skeleton, skeleton_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable, chosen_circuit
-from sevenbar.kinematics.circuits.poses import frames_along, joint_frames
+from sevenbar.kinematics.circuits.poses import joint_frames, poses_along
 from sevenbar.kinematics.loop.law import Law
 
 #: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.
@@ -53,7 +53,7 @@ class Pose:
 
     def polylines(self) -> list[Floats]:
         """The places (k, 3) along each link, the ground's last, from the joint before it to the one after."""
-        return [self.places.places[0, list(link)] for link in self.places.links]
+        return [self.places.places[0, list(line)] for line in self.places.polylines]
 
 
 def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int | None = None) -> Pose:
@@ -79,11 +79,11 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
         agree=motion.agree,
     ).circuits[circuit]
     rows = np.flatnonzero(exact.branch == (branch or 0))
-    frames = frames_along(linkage, exact, rows[:1])
+    frames = poses_along(linkage, exact, rows[:1])
     q = exact.q[rows[0]] if rows.size else np.array([math.nan])
     if np.isnan(frames).any() or np.isnan(q).any():
         raise _no_pose(motion, chosen, at)
-    valid = frames_along(linkage, chosen, np.arange(len(chosen.time)))
+    valid = poses_along(linkage, chosen, np.arange(len(chosen.time)))
     # this pose among them, so that there is one at least
     valid = np.concatenate([frames, valid[~np.isnan(valid).any(axis=(1, 2, 3))]])
     picked = np.unique(np.linspace(0, len(valid) - 1, SAMPLED).astype(int))
@@ -95,8 +95,8 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
         circuit=chosen,
         branch=branch or 0,
         q=q,
-        frames=np.concatenate([frames[0], [np.eye(4)]]),
-        others=np.concatenate([valid[picked], np.broadcast_to(np.eye(4), (len(picked), 1, 4, 4))], axis=1),
+        frames=frames[0],
+        others=valid[picked],
         near=near,
         far=far,
         travel=np.stack([np.nanmin(slid, axis=1), np.nanmax(slid, axis=1)], axis=1),
@@ -106,7 +106,7 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
 
 def extent_of(pose: Pose) -> float:
     """The size [length] that drawn parts are shares of: the extent of all places along the circuit."""
-    return max(pose.places.span, skeleton_of(pose.linkage, pose.others[:, :-1]).span)
+    return max(pose.places.span, skeleton_of(pose.linkage, pose.others).span)
 
 
 def _no_pose(motion: Motion, circuit: Circuit, at: float) -> RequestError:

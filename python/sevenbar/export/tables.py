@@ -143,10 +143,7 @@ def note(motion: Motion, units: Units, *, flat: bool = False) -> dict[str, Any]:
             "time": "s",
             "rates": f"rad/s, rad/s^2, rad/s^3 of turns; {length}/s, {length}/s^2, {length}/s^3 of slides",
         },
-        "columns": [
-            {"name": name, "kind": kind}
-            for name, kind in zip(linkage.columns, linkage.column_kinds, strict=True)
-        ],
+        "columns": [{"name": column.name, "kind": column.kind} for column in linkage.each_column],
         "input": motion.input,
         "output": motion.output,
         "speed": None if motion.law is not None else speed,

@@ -31,12 +31,14 @@ def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> 
     """
     linkage = assembly.pose.linkage
     scale = LENGTHS[linkage.length_unit]
-    count = len(linkage.joints)
+    graph = linkage.graph
+    (closing,) = graph.closing
+    open_end, _ = graph.between[closing]
     robot = Xml.Element("robot", name=linkage.name)
     robot.append(
         Xml.Comment(
-            f" The tree of a closed loop: the joint '{linkage.joints[-1].name}' between "
-            f"{assembly.bodies[count - 2]} and ground closes it and is in '{loop_file(path).name}'. "
+            f" The tree of a closed loop: the joint '{linkage.joints[closing].name}' between "
+            f"{assembly.bodies[open_end - 1]} and ground closes it and is in '{loop_file(path).name}'. "
             "Lengths in metres, angles in radians. ".replace("--", "-")
         )
     )
@@ -49,12 +51,16 @@ def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> 
         material = Xml.SubElement(robot, "material", name=_material(colour))
         Xml.SubElement(material, "color", rgba=f"{channels} 1")
     weights = masses(assembly)
-    heaviest = max(weights[: count - 1], key=lambda one: one.mass)
+    heaviest = max(weights[: len(graph.moving)], key=lambda one: one.mass)
     _add_link(robot, assembly, assembly.bodies.index("ground"), "ground", None, scale)
-    parent, mount = "ground", linkage.base
-    cross = count
-    for i, joint in enumerate(linkage.joints[:-1]):
-        name = assembly.bodies[i]
+    cross = graph.ground
+    for i in graph.tree:
+        joint, (before, after) = linkage.joints[i], graph.between[i]
+        name, parent, mount = (
+            assembly.bodies[after - 1],
+            assembly.bodies[before - 1],
+            linkage.joint_on(i, before),
+        )
         q = np.vstack([assembly.pose.circuit.q, assembly.pose.q])[:, linkage.places[i]]
         steps = joint.steps(q)
         names = [column for column, _ in joint.row.named(joint.name)]
@@ -74,7 +80,7 @@ def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> 
             if step.driven:
                 Xml.SubElement(element, "mimic", joint=joint.name, multiplier=_number(scale * joint.advance))
             if last:
-                _add_link(robot, assembly, i, name, weights[i], scale)
+                _add_link(robot, assembly, after - 1, name, weights[after - 1], scale)
             elif joint.row.has_cross:
                 _add_link(robot, assembly, cross, child, weights[cross], scale)
             else:
@@ -82,8 +88,6 @@ def write_urdf(assembly: Assembly, path: Path, _progress: Progress = silent) -> 
                 _add_link(robot, assembly, None, child, light, scale)
             parent, mount = child, np.eye(4)
         cross += joint.row.has_cross
-        if i < count - 2:
-            mount = linkage.links[i]
     Xml.indent(robot)
     text = '<?xml version="1.0" encoding="utf-8"?>\n' + Xml.tostring(robot, encoding="unicode") + "\n"
     path.write_text(text, encoding="utf-8")
@@ -99,10 +103,11 @@ def loop(assembly: Assembly, path: Path) -> dict[str, Any]:
     """The joint that closes the loop, and a pose in which it does; lengths in metres, angles in radians."""
     linkage = assembly.pose.linkage
     scale = LENGTHS[linkage.length_unit]
-    joint = linkage.joints[-1]
-    count = len(linkage.joints)
+    (closing,) = linkage.graph.closing
+    joint = linkage.joints[closing]
     factors = np.where(linkage.turning, 1.0, scale)
-    frames = {assembly.bodies[count - 2]: linkage.links[-1], "ground": linkage.ground}
+    between = linkage.graph.between[closing]
+    frames = {assembly.bodies[link - 1]: linkage.joint_on(closing, link) for link in between}
     columns, angle = joint.columns, joint.angle
     if joint.backwards:
         # as written: the link from the ground, about the axes as drawn; of U the ground has the second

@@ -320,7 +320,7 @@ class Linkage(Solvable):
         The rule is given under "Idle spin" in docs/theory.md.
         """
         if self.kind == "RSSR":
-            return {self.joints[1].name: self.links[0][2, :3]}
+            return {self.joints[1].name: self.joint_on(1, 1)[2, :3]}
         return self._general.spin_axes()
 
     @property

@@ -86,7 +86,8 @@ def _of_circuit(linkage: Loop, circuit: Circuit) -> Iterator[Row]:
         yield (number, bend, *ends(cone.least, cone.greatest, degrees), middle, stop)
     for one in (known(lambda: circuit.clearances) or ()) if stops.radii else ():
         if one.radii:
-            pair = say("links {first} and {second}", first=one.links[0], second=one.links[1])
+            first, second = one.links
+            pair = say("links {first} and {second}", first=first, second=second)
             left = say("{gap} left", gap=length(one.gap))
             if one.missed:
                 left = say("{gap} left, or {missed} less", gap=length(one.gap), missed=length(one.missed))

@@ -68,9 +68,10 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     linkage = motion.linkage
     facts = [("loop", joints_text(linkage))]
     if linkage.form == "rows":
-        count = len(linkage.joints) - 1
-        before = say("link {number}", number=count) if count > 1 else say("the link before it")
-        last = linkage.joints[-1].name
+        closing, _ = linkage.graph.joints_of(linkage.graph.ground)
+        number, _ = linkage.graph.between[closing]
+        before = say("link {number}", number=number) if number > 1 else say("the link before it")
+        last = linkage.joints[closing].name
         facts.append(
             ("last joint", say("{joint} counts the ground relative to {link}", joint=last, link=before))
         )

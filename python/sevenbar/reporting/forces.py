@@ -127,7 +127,7 @@ def drive_fact(found: CircuitForces) -> str:
 def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     """All that a report says of forces above the table of joints."""
     forces, linkage = found.forces, found.motion.linkage
-    sliding = [column for column in linkage.columns if not linkage.turns(column)]
+    sliding = [column.name for column in linkage.each_column if not column.turns]
     facts = [(say("circuit"), drive_fact(found)), *force_words.acting_facts(forces, sliding)]
     facts += force_words.part_facts(forces, found.others)
     facts += _law_facts(found)

@@ -37,7 +37,7 @@ def text(found: PoseForces) -> RenderableType:
     """The forces in each pose as a page."""
     linkage = found.linkage
     pose, forces = found.poses[0]
-    sliding = [column for column in linkage.columns if not linkage.turns(column)]
+    sliding = [column.name for column in linkage.each_column if not column.turns]
     facts = Facts()
     value = Shown(linkage.unit_of(pose.input))(pose[pose.input])
     facts.add(say("pose"), say("{joint} = {value}", joint=pose.input, value=value))
@@ -65,8 +65,8 @@ def _parts(found: PoseForces) -> Iterator[RenderableType]:
             number=pose.branch,
         )
         joints = ", ".join(
-            f"{name} {Shown(linkage.unit_of(name))(value)}"
-            for name, value in zip(linkage.columns, pose.q, strict=True)
+            f"{column.name} {Shown(column.unit)(value)}"
+            for column, value in zip(linkage.each_column, pose.q, strict=True)
         )
         facts.add(where, joints)
         if pose.status != "ok":

@@ -107,15 +107,14 @@ def stops_dict(pose: OnePose) -> dict[str, Any]:
 
 def rates_sheets(linkage: Loop, poses: Sequence[tuple[str, OnePose | None]], room: int) -> list[Sheet]:
     """The rates of some poses, each by its number: joints, points, links, transmission."""
-    unit = linkage.length_unit
     known = [(name, pose) for name, pose in poses if pose is not None]
     first = [name for name, _ in known]
     sheets = []
     for order, end in ((1, "/s"), (2, "/s²")):
         rates = np.array([joint_rates(linkage, pose, order) for _, pose in known])
         columns = [
-            (f"{name}\n[{'rad' if turns else unit}{end}]", [_cell(x) for x in own])
-            for name, turns, own in zip(linkage.columns, linkage.turning, rates.T, strict=True)
+            (f"{column.name}\n[{column.unit}{end}]", [_cell(x) for x in own])
+            for column, own in zip(linkage.each_column, rates.T, strict=True)
         ]
         sheets += wide_sheets([(say("mode"), first)], columns, room)
     sheets += _vectors(linkage, known, room)
@@ -217,9 +216,8 @@ def _(pose: OnePose) -> str:
     linkage = pose._linkage
 
     def shown(values: Floats, end: str) -> str:
-        units = (linkage.unit_of(column) + end for column in linkage.columns)
-        each = zip(linkage.columns, values, units, strict=True)
-        return ", ".join(f"{name} {six_digits(x + 0.0)} {unit}" for name, x, unit in each)
+        each = zip(linkage.each_column, values, strict=True)
+        return ", ".join(f"{column.name} {six_digits(x + 0.0)} {column.unit}{end}" for column, x in each)
 
     def vector(values: Floats) -> str:
         return f"({', '.join(six_digits(x + 0.0) for x in values)})"
@@ -232,8 +230,8 @@ def _(pose: OnePose) -> str:
         (
             "joints",
             ", ".join(
-                f"{name} {Shown(linkage.unit_of(name))(x)}"
-                for name, x in zip(linkage.columns, pose.q, strict=True)
+                f"{column.name} {Shown(column.unit)(x)}"
+                for column, x in zip(linkage.each_column, pose.q, strict=True)
             ),
         ),
         ("velocity", shown(joint_rates(linkage, pose, 1), "/s")),

@@ -109,8 +109,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
 
 
 def _columns(linkage: Loop) -> list[dict[str, str]]:
-    kinds = zip(linkage.columns, linkage.column_kinds, strict=True)
-    return [{"name": name, "kind": kind} for name, kind in kinds]
+    return [{"name": column.name, "kind": column.kind} for column in linkage.each_column]
 
 
 def _circuit_dict(circuit: Circuit) -> dict[str, Any]:

@@ -66,7 +66,7 @@ def _(linkage: Linkage) -> str:
 def _rows(linkage: Linkage) -> str:
     """Denavit-Hartenberg rows: which numbers there are of each link."""
     words = dict.fromkeys(name.partition("_")[0] for name in linkage.dimensions)
-    return f"{' '.join(words)} of {len(linkage.joints)} links" if words else ""
+    return f"{' '.join(words)} of {linkage.graph.ground} links" if words else ""
 
 
 @text_of.register(Modes)

@@ -83,7 +83,7 @@ def _as_dict(links: Sequence[int], relative_to: int | None, motion: Motion) -> d
         "format": 1,
         "linkage": {"name": linkage.name, "kind": linkage.kind},
         "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
-        "relative_to": len(linkage.joints) if relative_to is None else relative_to,
+        "relative_to": linkage.graph.ground if relative_to is None else relative_to,
         "circuits": [
             {
                 "links": [
@@ -99,8 +99,7 @@ def _as_dict(links: Sequence[int], relative_to: int | None, motion: Motion) -> d
 def _text(links: Sequence[int], relative_to: int | None, motion: Motion) -> RenderableType:
     linkage = motion.linkage
     unit = linkage.length_unit
-    count = len(linkage.joints)
-    other = "the ground" if relative_to in (None, count) else f"link {relative_to}"
+    other = "the ground" if relative_to in (None, linkage.graph.ground) else f"link {relative_to}"
     heads = ("link", "circuit", "axis", f"pitch\n[{unit}/rad]", "rate\n[rad/s]", f"slide rate\n[{unit}/s]")
     rows = []
     for link in links:

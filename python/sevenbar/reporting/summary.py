@@ -103,9 +103,9 @@ def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
     unit = linkage.length_unit
     count = len(modes)
     columns = [(say("residual\n[{unit}]", unit=unit), [f"{residual:.1e}" for residual in modes.residual])]
-    for name, turns, q in reversed(list(zip(linkage.columns, linkage.turning, modes.q.T, strict=True))):
-        numbers = np.round(np.degrees(q) if turns else q, 3) + 0.0  # no -0
-        head = f"{name}\n[{'deg' if turns else unit}]"
+    for column, q in reversed(list(zip(linkage.each_column, modes.q.T, strict=True))):
+        numbers = np.round(np.degrees(q) if column.turns else q, 3) + 0.0  # no -0
+        head = f"{column.name}\n[{column.shown[0]}]"
         columns.append((head, [f"{x:.3f}" for x in numbers]))
     return wide_sheets([(say("mode"), [f"{i}" for i in range(count)])], columns[::-1], room)
 
@@ -162,7 +162,7 @@ def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
             for key in kept
         ]
         named = f"{joint.kind} {joint.name}"
-        if place == len(linkage.joints):
+        if place == linkage.graph.ground:
             named = say("{joint} (ground)", joint=named)
         rows.append((f"{place}", named, *cells))
     heads = (say("link"), say("joint before it"), *(columns[key] for key in kept))

@@ -166,7 +166,7 @@ class Simulation(Printed):
 def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
     """What an engine made of a course, beside what Sevenbar says."""
     linkage, circuit = course.motion.linkage, course.circuit
-    bodies = _links(linkage, model, record, len(course.lead))
+    bodies = _links(model, record, len(course.lead))
     values = joint_values(linkage, bodies)
     closed = np.zeros_like(values.gap)
     theory = JointValues(course.q, circuit.dq[course.rows], circuit.ddq[course.rows], closed, closed)
@@ -190,13 +190,13 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
     return replace(found, differences=tuple(_differences(found)))
 
 
-def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> BodyStates:
+def _links(model: Prototype, record: Record, first: int) -> BodyStates:
     """The links of a record from one row on, the ground last; crosses left out."""
     kept = [number for number, body in enumerate(model.bodies) if body.link]
     rows = len(record.time) - first
 
     def with_ground(name: str) -> Floats:
-        ground = linkage.ground if name == "frames" else np.zeros(3)
+        ground = np.eye(4) if name == "frames" else np.zeros(3)
         own = np.broadcast_to(ground, (rows, 1, *ground.shape))
         return np.concatenate([getattr(record, name)[first:, kept], own], axis=1)
 

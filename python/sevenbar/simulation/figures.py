@@ -82,10 +82,12 @@ def joints_figure(run: Simulation) -> Figure:
         unit, convert = ("rad", np.degrees) if turns else (linkage.length_unit, np.asarray)
         label = say("turns [{unit}]", unit="deg") if turns else say("slides [{unit}]", unit=unit)
         curves = [
-            _Curve(name, convert(own), convert(other), np.abs(other - own), circuit_colour(column))
-            for column, name in enumerate(linkage.columns)
-            for own, other in [(run.theory.q[:, column], run.engine.q[:, column])]
-            if linkage.turns(column) == turns
+            _Curve(
+                column.name, convert(own), convert(other), np.abs(other - own), circuit_colour(column.number)
+            )
+            for column in linkage.each_column
+            for own, other in [(run.theory.q[:, column.number], run.engine.q[:, column.number])]
+            if column.turns == turns
         ]
         rows.append(_Row(label, unit, curves, in_degrees=turns))
     keys = [(shown_name(name, 20), circuit_colour(column)) for column, name in enumerate(linkage.columns)]

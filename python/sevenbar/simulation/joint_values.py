@@ -73,7 +73,7 @@ def joint_values(linkage: Loop, bodies: BodyStates) -> JointValues:
     columns: list[_Values] = []
     apart: list[tuple[Floats, Floats]] = []
     for i, joint in enumerate(linkage.joints):
-        before, after = _sides(linkage, bodies, i)
+        before, after = (_side(linkage, bodies, i, link) for link in linkage.graph.between[i])
         turn = np.swapaxes(before.frame[:, :3, :3], 1, 2) @ after.frame[:, :3, :3]
         way = after.frame[:, :3, 3] - before.frame[:, :3, 3]
         own = _columns(joint, turn, way, before, after)
@@ -86,16 +86,12 @@ def joint_values(linkage: Loop, bodies: BodyStates) -> JointValues:
     return JointValues(q, dq, ddq, gap, tilt)
 
 
-def _sides(linkage: Loop, bodies: BodyStates, i: int) -> tuple[_Side, _Side]:
-    """Joint i on the link before it and on the link after it."""
-    after = _Side(*(states[:, i] for states in vars(bodies).values()))
-    if i == 0:
-        rows = len(bodies.frames)
-        return _Side(np.broadcast_to(linkage.base, (rows, 4, 4)), *[np.zeros((rows, 3))] * 4), after
-    link = linkage.links[i - 1]
-    _, velocity, acceleration = bodies.point(i - 1, link[:3, 3])
-    frame, spins = bodies.frames[:, i - 1] @ link, (bodies.spin[:, i - 1], bodies.spin_rate[:, i - 1])
-    return _Side(frame, velocity, acceleration, *spins), after
+def _side(linkage: Loop, bodies: BodyStates, joint: int, link: int) -> _Side:
+    """A joint on one of its links."""
+    on, body = linkage.joint_on(joint, link), link - 1
+    _, velocity, acceleration = bodies.point(body, on[:3, 3])
+    spins = bodies.spin[:, body], bodies.spin_rate[:, body]
+    return _Side(bodies.frames[:, body] @ on, velocity, acceleration, *spins)
 
 
 def _columns(joint: Joint, turn: Floats, way: Floats, before: _Side, after: _Side) -> list[_Values]:

@@ -173,17 +173,12 @@ class _Tree:
 
     def close(self, where: Cut) -> None:
         """Adds all bodies, from the ground up to the cut on both sides, and what closes the loop there."""
-        model, joints = self._model, self._model.connections
-        world = self.elements[GROUND]
-        forward = range(where.connection + where.weld)
-        backward = reversed(range(where.connection + 1, len(joints)))
-        for way, numbers_there in ((1.0, forward), (-1.0, backward)):
-            parent = world
-            for number in numbers_there:
-                parent = self._add(parent, joints[number], number, way)
-        closing = joints[where.connection]
+        model = self._model
+        self._grow(GROUND, where)
+        closing = model.connections[where.connection]
         if where.weld:
-            mark(world, "ground_side", closing.frame_after, model)
+            self._add(self.elements[closing.before], closing, where.connection, 1.0)
+            mark(self.elements[GROUND], "ground_side", closing.frame_after, model)
             kind, sites, more = (
                 "weld",
                 ("ground_side", "loop_end"),
@@ -194,6 +189,17 @@ class _Tree:
             mark(self.elements[closing.before], sites[0], closing.frame_before, model)
             mark(self.elements[closing.after], sites[1], closing.frame_after, model)
         add(self._equality, kind, name="loop", site1=sites[0], site2=sites[1], **more)
+
+    def _grow(self, body: int, where: Cut) -> None:
+        """Adds all bodies beyond one that is placed, except the joint where the loop is cut."""
+        for number, joint in enumerate(self._model.connections):
+            ends = joint.before, joint.after
+            if number == where.connection or body not in ends:
+                continue
+            child, way = (joint.after, 1.0) if body == joint.before else (joint.before, -1.0)
+            if child not in self.elements:
+                self._add(self.elements[body], joint, number, way)
+                self._grow(child, where)
 
     def _add(self, parent: Element, joint: Connection, number: int, way: float) -> Element:
         """Adds the body after a joint, or with `way` -1 the one before it, read as the same joint.

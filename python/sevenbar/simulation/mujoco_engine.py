@@ -97,7 +97,9 @@ class MujocoForces:
             kind = self._engine.mjtConstraint.mjCNSTR_EQUALITY
             rows = (data.efc_type == kind) & (data.efc_id == self._own.equality("loop").id)
             return np.concatenate([-data.efc_force[rows], np.zeros(3)])
-        backwards = number > where.connection
+        above = 0 if joint.after == GROUND else self._bodies[joint.after]
+        closes = number == where.connection or joint.before == GROUND
+        backwards = not closes and self._own.body_parentid[self._bodies[joint.before]] == above
         child = joint.before if backwards else joint.after
         # past the last joint a bare body is welded to the ground, which bears its weight
         body = self._own.body("loop_end_body").id if child == GROUND else self._bodies[child]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import permutations
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError, RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
-from sevenbar.kinematics.circuits.poses import frames_along
+from sevenbar.kinematics.circuits.poses import poses_along
 from sevenbar.kinematics.loop.joints import JointKind, kind_row
 from sevenbar.kinematics.loop.rigid import about, inverse
 from sevenbar.simulation.acting import PlacedLoading, acting
@@ -119,7 +119,7 @@ class PrescribedMotion:
 
 @dataclass(frozen=True, eq=False)
 class Prototype:
-    """Bodies, joints and drive; joint k lies between body k - 1 and body k, the ground before and after all.
+    """Bodies, the joints between them, and the drive.
 
     `size` [length] is that of the linkage. `values` (k, 6) holds what each joint has slid along x, y, z
     [length] and turned about them [rad] at the start and `rates` (k, 6) how fast that grows; NaN where a
@@ -163,7 +163,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
 
     Raises `NotCoveredError` for an idle freedom that is not the spin of a link between two balls.
     """
-    frames = frames_along(linkage, circuit, np.array([row]))[0]
+    frames = poses_along(linkage, circuit, np.array([row]))[0]
     # rates of a row are given for the input at the motion's own speed, whatever the pass
     share = speed / circuit.dq[row, circuit.input_column]
     bodies: list[MovingBody] = []
@@ -171,23 +171,24 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
     values: list[Floats] = []
     rates: list[Floats] = []
     drive: PrescribedMotion | None = None
-    links, columns = {len(linkage.joints): GROUND}, dict[str, tuple[int, int]]()
+    graph = linkage.graph
+    links, columns = {graph.ground: GROUND}, dict[str, tuple[int, int]]()
     seats = []
-    before = GROUND
-    last = len(linkage.joints) - 1
 
-    def link_body(i: int) -> MovingBody:
-        own = frames[i]
-        place = inverse(linkage.point_frames[i]) @ np.array([0.0, 0.0, 0.0, 1.0])
-        velocity = circuit.written_point(i + 1, (place[0], place[1], place[2])).velocity[row]
-        spin = circuit.link_motion(i + 1).velocity[row]
-        return MovingBody(f"link_{i + 1}", i + 1, own, share * velocity, share * spin)
+    def link_body(link: int) -> MovingBody:
+        own = frames[link - 1]
+        place = inverse(linkage.point_frames[link - 1]) @ np.array([0.0, 0.0, 0.0, 1.0])
+        velocity = circuit.written_point(link, (place[0], place[1], place[2])).velocity[row]
+        spin = circuit.link_motion(link).velocity[row]
+        return MovingBody(f"link_{link}", link, own, share * velocity, share * spin)
 
     for i, joint in enumerate(linkage.joints):
         own = linkage.places[i]
         steps = joint.steps(circuit.q[row, own][None])
         paces = [share * pace[0] for _, pace in joint.steps(circuit.dq[row, own][None])]
-        frame_before = linkage.base if i == 0 else linkage.links[i - 1]
+        link_before, link_after = graph.between[i]
+        before = links[link_before]
+        frame_before, frame_after = (linkage.joint_on(i, link) for link in graph.between[i])
         first = len(connections)
         seats.append(first)
         if joint.row.has_cross:
@@ -205,13 +206,10 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
             name, kind = joint.columns[-1], second.letter
         else:
             name, kind = joint.name, joint.kind
-        if i < last:
-            bodies.append(link_body(i))
-            after, frame_after = len(bodies) - 1, np.eye(4)
-            links[i + 1] = after
-        else:
-            after, frame_after = GROUND, linkage.ground
-        both = frame_before, frame_after
+        if link_after not in links:
+            bodies.append(link_body(link_after))
+            links[link_after] = len(bodies) - 1
+        after, both = links[link_after], (frame_before, frame_after)
         connections.append(
             Connection(name, kind, before, after, *both, joint.advance, joint.backwards, joint.to_drawn)
         )
@@ -227,7 +225,6 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
             if column == circuit.input_column and not step.driven:
                 drive = PrescribedMotion(number, step.number, float(q[0]), speed)
             column += not step.driven
-        before = after
     if drive is None:
         raise RequestError(f"input: column {circuit.input_column} is no joint of this linkage")
     return Prototype(
@@ -252,8 +249,9 @@ def _spin_rules(
     """The rule of the idle spin of each link between two balls: its y stays across an axis before."""
     axes = linkage.spin_axes
     rules = []
-    for joint, following in pairwise(connections):
-        if joint.name not in axes or not (joint.row.is_ball and following.row.is_ball):
+    for joint, following in permutations(connections, 2):
+        linked = joint.after == following.before != GROUND
+        if joint.name not in axes or not (linked and joint.row.is_ball and following.row.is_ball):
             continue
         body = bodies[joint.after]
         line = body.frame[:3, :3] @ following.frame_before[:3, 3]

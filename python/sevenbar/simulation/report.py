@@ -143,8 +143,8 @@ def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
     linkage, unit = run.linkage, run.linkage.length_unit
     who = ("sevenbar", run.record.engine.lower())
     found: dict[str, npt.NDArray[Any]] = {"row": np.arange(len(run.time)), "time_s": run.time}
-    for index, name in enumerate(linkage.columns):
-        slides = not linkage.turns(index)
+    for column in linkage.each_column:
+        name, index, slides = column.name, column.number, not column.turns
         for order, quantity in enumerate(("q", "dq", "ddq")):
             for side, joints in zip(who, (run.theory, run.engine), strict=True):
                 head = joint_column(name, slides=slides, order=order, length=unit, angle="deg", who=side)

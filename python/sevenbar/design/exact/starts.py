@@ -51,10 +51,11 @@ def exact_starts(task: DesignTask, count: int, seed: int = 0) -> list[Floats]:
     bounds = {name: (d.value, d.value) for name, d in numbers.items()}
     bounds |= {one.name: (one.low, one.high) for one in task.free}
     ends, names = np.array(turning), ["xyz"[k] for k in PLANES[axis]]
-    joints = [joint.name for joint in linkage.joints]
+    graph = linkage.graph
+    pairs = [(joint, *graph.others_of(graph.moving_link(joint), joint)) for joint in graph.standing]
     sides = []
-    for pair in ((joints[0], joints[1]), (joints[3], joints[2])):
-        own = [f"{joint}.{name}" for joint in pair for name in names]
+    for pair in pairs:
+        own = [f"{linkage.joints[joint].name}.{name}" for joint in pair for name in names]
         low, high = np.array([bounds[name] for name in own]).T
         off = np.maximum(np.maximum(low - ends, ends - high), 0.0).max(axis=1) / linkage_size(linkage)
         within = np.flatnonzero(off <= OFF)

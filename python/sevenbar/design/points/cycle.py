@@ -144,10 +144,10 @@ def cycle_of(
     constant speed where rates are needed, and rows without a value.
     """
     chosen = chosen_circuit(motion, circuit)
-    count = len(motion.linkage.joints)
-    if link == count:
-        raise RequestError(f"link: {link} is the ground, which stands still; give 1 to {count - 1}")
-    whole_number("link", link, 1, count - 1, "a link")
+    ground = motion.linkage.graph.ground
+    if link == ground:
+        raise RequestError(f"link: {link} is the ground, which stands still; give 1 to {ground - 1}")
+    whole_number("link", link, 1, ground - 1, "a link")
     if motion.law is None and order != "position" and not chosen.goes_round:
         raise RequestError(_unbounded(motion, chosen))
     branches = int(chosen.branch.max(initial=0)) + 1

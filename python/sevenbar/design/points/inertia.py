@@ -105,8 +105,8 @@ def inertia(
     if pull.size != 3:
         raise RequestError(f"gravity: {pull.size} numbers; give three, as in (0, 0, -9.80665)")
     metre = LENGTHS[motion.linkage.length_unit]
-    last = len(motion.linkage.joints)
-    moving = [mass.link for mass in checked if mass.link != last]
+    ground = motion.linkage.graph.ground
+    moving = [mass.link for mass in checked if mass.link != ground]
     if not moving:
         raise RequestError("masses: all lie on the ground, which stands still; give one on a moving link")
     cycles = {

@@ -35,13 +35,13 @@ def not_positive(key: str, value: float, what: str, give: str = "a number") -> F
 def point_flaws(linkage: Linkage, name: str) -> Flaws:
     """What is wrong with the name of a point whose path is wanted."""
     known = {point.name: point.link for point in linkage.points}
-    moving = [point for point, link in known.items() if link < len(linkage.joints)]
+    moving = [point for point, link in known.items() if link in linkage.graph.moving]
     if name not in known:
         has = (
             f"this linkage has {', '.join(moving)}" if moving else "the linkage names none, so add one to it"
         )
         yield "point", f"no point {shown(name)}; {suggestion(name, known)}{has}"
-    elif known[name] == len(linkage.joints):
+    elif known[name] == linkage.graph.ground:
         yield "point", f"'{name}' is on the ground, which stands still; give one of {', '.join(moving)}"
     else:
         yield from _idle("point", linkage, known[name], "a path on it")
@@ -49,9 +49,9 @@ def point_flaws(linkage: Linkage, name: str) -> Flaws:
 
 def link_flaws(linkage: Linkage, link: int) -> Flaws:
     """What is wrong with the number of a link of which poses are wanted."""
-    count = len(linkage.joints)
-    if not 1 <= link < count:
-        yield "link", f"{link} is no moving link; give 1 to {count - 1}, link {count} is the ground"
+    ground = linkage.graph.ground
+    if link not in linkage.graph.moving:
+        yield "link", f"{link} is no moving link; give 1 to {ground - 1}, link {ground} is the ground"
     else:
         yield from _idle("link", linkage, link, "a pose of it")
 

@@ -102,8 +102,8 @@ class TaskLoop:
 
     def joint(self, name: str) -> int:
         """The number of the place of a joint on the link behind it."""
-        link = [joint.name for joint in self.linkage.joints].index(name) + 1
-        return self._number(self.numbers.word.rod(link)[0])
+        place = [joint.name for joint in self.linkage.joints].index(name)
+        return self._number(self.numbers.word.rod(self.linkage.graph.between[place][1])[0])
 
     def marked(self, points: Sequence[Carried]) -> list[int]:
         """The numbers of points of links."""

@@ -94,7 +94,7 @@ class OnePose(Printed):
     def links(self) -> Mapping[int, LinkMotion]:
         """How each moving link turns, by its number, one row each: rotation and angular rates."""
         rows, found = slice(self._row, self._row + 1), {}
-        for link in range(1, len(self._linkage.joints)):
+        for link in self._linkage.graph.moving:
             whole = self._rows.link_motion(link)
             found[link] = LinkMotion(whole.rotation[rows], whole.velocity[rows], whole.acceleration[rows])
         return found

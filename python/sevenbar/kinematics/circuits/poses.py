@@ -1,4 +1,4 @@
-"""A circuit in the order of its motion, and the frames of its links on the way."""
+"""A circuit in the order of its motion, and the poses of its links on the way."""
 
 from __future__ import annotations
 
@@ -98,17 +98,24 @@ def at_row(values: Floats, row: float) -> Floats:
     return between
 
 
-def frames_of(linkage: Loop, q: Floats) -> Floats:
-    """The frames (n, moving links, 4, 4) of the links in the report frame, from joint values (n, columns)."""
+def poses(linkage: Loop, q: Floats) -> Floats:
+    """The frames (n, links, 4, 4) of the links in the report frame, from joint values (n, columns).
+
+    That of the ground, the last link, is the report frame itself.
+    """
     now = np.broadcast_to(linkage.base, (len(q), 4, 4))
     found = []
     for joint, own, link in zip(linkage.joints[:-1], linkage.places[:-1], linkage.links, strict=True):
         found.append(now @ joint.motion(q[:, own]))
         now = product(found[-1], link)
-    return np.stack(found, axis=1)
+    return np.stack([*found, _standing(q)], axis=1)
 
 
-def _frames_back(linkage: Loop, q: Floats) -> Floats:
+def _standing(q: Floats) -> Floats:
+    return np.broadcast_to(np.eye(4), (len(q), 4, 4))
+
+
+def _poses_back(linkage: Loop, q: Floats) -> Floats:
     """The same by the joints after each link, from the ground back."""
     now = linkage.ground @ inverse(linkage.joints[-1].motion(q[:, linkage.places[-1]]))
     found = []
@@ -116,19 +123,18 @@ def _frames_back(linkage: Loop, q: Floats) -> Floats:
     for i in range(last, -1, -1):
         found.append(now @ inverse(linkage.links[i]))
         now = found[-1] @ inverse(linkage.joints[i].motion(q[:, linkage.places[i]]))
-    return np.stack(found[::-1], axis=1)
+    return np.stack([*found[::-1], _standing(q)], axis=1)
 
 
 def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
     """The frames (n, joints, 4, 4) of each joint on the link before it and on the link after it.
 
-    `frames` (n, moving links, 4, 4) are those of the links, as `frames_of` gives them. A joint that slides is
-    where it is drawn on both, whatever it reads there.
+    `frames` (n, links, 4, 4) are those of the links, as `poses` gives them. A joint that slides is where it
+    is drawn on both, whatever it reads there.
     """
-    rows, links = frames.shape[:2]
-    before, after = np.empty((2, rows, links + 1, 4, 4))
+    before, after = np.empty((2, *frames.shape))
     before[:, 0], after[:, -1] = linkage.base, linkage.ground
-    after[:, :-1] = frames
+    after[:, :-1] = frames[:, :-1]
     for i, link in enumerate(linkage.links):
         before[:, i + 1] = product(frames[:, i], link)
     for i, joint in enumerate(linkage.joints):
@@ -138,19 +144,43 @@ def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
     return before, after
 
 
-def frames_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:
-    """The frames (n, moving links, 4, 4) of the links along rows of a circuit; NaN where it has no pose."""
+def opening(linkage: Loop, frames: Floats, q: Floats) -> Floats:
+    """How far the frames (n, links, 4, 4) of the links leave the loop open, (n, 4, 4): of the last joint."""
+    before, _ = joint_frames(linkage, frames)
+    closing = before[:, -1] @ linkage.joints[-1].motion(q[:, linkage.places[-1]])
+    return np.abs(closing - linkage.ground)
+
+
+def drawn_frames(linkage: Loop) -> tuple[Floats, Floats]:
+    """The frames (joints, 4, 4) before and after each joint in the drawn pose, each after those before it."""
+    q, now = linkage.drawn_pose[None], linkage.base
+    before, after = [], []
+    for joint, own, link in zip(linkage.joints, linkage.places, linkage.transforms, strict=True):
+        before.append(now)
+        after.append(now @ joint.motion(q[:, own])[0])
+        now = after[-1] @ link
+    return np.stack(before), np.stack(after)
+
+
+def joint_places(linkage: Loop, frames: Floats, link: int) -> list[Floats]:
+    """The places (n, 3) of the joints of a link on it, from the frames (n, links, 4, 4) of all links."""
+    sides, graph = joint_frames(linkage, frames), linkage.graph
+    return [sides[graph.side(joint, link)][:, joint, :3, 3] for joint in graph.joints_of(link)]
+
+
+def poses_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:
+    """The frames (n, links, 4, 4) of the links along rows of a circuit; NaN where it has no pose."""
     q = circuit.q[rows]
-    frames = frames_of(linkage, q)
+    frames = poses(linkage, q)
     # where a ball's turns have no value, the links still have a place: those beyond it by the ground
     has_pose = ~np.isnan(q).all(axis=1)
     part = np.flatnonzero(has_pose & np.isnan(frames).any(axis=(1, 2, 3)))
-    frames[part] = np.where(np.isnan(frames[part]), _frames_back(linkage, q[part]), frames[part])
+    frames[part] = np.where(np.isnan(frames[part]), _poses_back(linkage, q[part]), frames[part])
     lost = np.flatnonzero(has_pose & np.isnan(frames).any(axis=(1, 2, 3)))
-    for i in range(len(linkage.links) if lost.size else 0):
-        x, y, z = (float(value) for value in inverse(linkage.point_frames[i])[:3, 3])
-        frames[lost, i] = pose(
-            circuit.link_motion(i + 1).rotation[rows[lost]],
-            circuit.written_point(i + 1, (x, y, z)).position[rows[lost]],
+    for link in linkage.graph.moving if lost.size else ():
+        x, y, z = (float(value) for value in inverse(linkage.point_frames[link - 1])[:3, 3])
+        frames[lost, link - 1] = pose(
+            circuit.link_motion(link).rotation[rows[lost]],
+            circuit.written_point(link, (x, y, z)).position[rows[lost]],
         )
     return frames

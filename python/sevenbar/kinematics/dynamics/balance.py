@@ -71,11 +71,12 @@ def mount_of(linkage: Solvable, circuit: Circuit, link: int) -> Mount:
     """
     refuse_no_link("links", link, linkage)
     before, after = joint_places(linkage, link)
-    last = len(linkage.links)
-    behind = link == last and link != 1
+    first, second = linkage.graph.joints_of(link)
+    standing = linkage.graph.standing
+    behind = second in standing and first not in standing
     axis, name = None, ""
-    if link in (1, last):
-        name = linkage.joints[last if behind else 0].name
+    if behind or first in standing:
+        name = linkage.joints[second if behind else first].name
         directions = circuit.screw_axes(link).moving_direction
         found = directions[np.isfinite(directions).all(axis=1)]
         if len(found) and np.ptp(found * np.sign(found @ found[0])[:, None], axis=0).max() < 1e-9:

@@ -147,7 +147,7 @@ class ForceSolver:
             if joint.value and not joint.backwards:
                 # a joint is where it is drawn, whatever it reads there
                 frame = joint.to_drawn @ frame
-            if linkage.form == "drawn" and i + 1 == len(linkage.joints):
+            if joint.backwards and linkage.form == "drawn":
                 # its axes are those that are written
                 frame = frame @ half_turn(joint.row.half_turn)
             frame[:3, 3] /= self.numbers.size
@@ -388,7 +388,7 @@ def _spins(solver: ForceSolver, spin: Floats, reactions: Mapping[str, Reaction])
         if column not in solver.numbers.held:
             continue
         own = np.abs(spin[:, solver.numbers.held.index(column)])
-        name = "coupler" if linkage.kind == "RSSR" else f"link {ball + 1}"
+        name = "coupler" if linkage.kind == "RSSR" else f"link {linkage.graph.moving_link(ball)}"
         known = bool(reaction.determinate[:3].all())
         found[name] = np.linalg.norm(reaction.moment, axis=1) if known else own
     return found

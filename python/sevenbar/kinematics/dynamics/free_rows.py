@@ -17,7 +17,7 @@ from sevenbar.arrays import Floats, Words
 from sevenbar.curves.along import Along
 from sevenbar.curves.stationary import series_through
 from sevenbar.kinematics.circuits.circuit_values import Trace
-from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.kinematics.dynamics.energy_path import EnergyBuilder
 from sevenbar.kinematics.paths.covered_path import curve_on, rows_on
 
@@ -100,11 +100,11 @@ class CourseRows:
     ) -> Trace:
         """A point, `at` in its link's own frame, on rows at places (n,)."""
         linkage, path = self.builder.solver.linkage, self.builder.path
-        if link == len(linkage.joints):
+        if link == linkage.graph.ground:
             position = np.broadcast_to(at, (len(place), 3)).copy()
             rest = np.zeros_like(position)
             return Trace(position, rest, rest.copy(), rest.copy(), status)
-        frames = frames_of(linkage, self._places[1])[:, link - 1]
+        frames = poses(linkage, self._places[1])[:, link - 1]
         along = curve_on(path, frames[:, :3, :3] @ at + frames[:, :3, 3])
         inside = place % path.length if path.closed else place
         known = np.isfinite(inside)

@@ -15,6 +15,7 @@ from sevenbar.errors import RequestError, shown
 from sevenbar.forces.bodies import Body, as_one, flaw_alone, shaped
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuits.motion import Solvable
+from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import inverse
 from sevenbar.text.above import DRAWN_IN
@@ -61,8 +62,8 @@ def as_moved(linkage: Solvable, bodies: Mapping[int, Body]) -> dict[int, Body]:
 
 
 def _without_spin(linkage: Solvable, link: int, body: Body) -> Body:
-    balls = [joint.row.is_ball for joint in linkage.joints]
-    if link not in linkage.idle_links or not (balls[link - 1] and balls[link]):
+    balls = all(linkage.joints[joint].row.is_ball for joint in linkage.graph.joints_of(link))
+    if link not in linkage.idle_links or not balls:
         return body
     start, end = joint_places(linkage, link)
     length = float(np.linalg.norm(end - start))
@@ -82,11 +83,11 @@ def _without_spin(linkage: Solvable, link: int, body: Body) -> Body:
 
 def refuse_no_link(key: str, link: object, linkage: Loop, *, or_ground: bool = False) -> None:
     """`RequestError` for a link that does not exist, or is the ground where that is none."""
-    moving = len(linkage.links)
-    last = moving + or_ground
+    ground = linkage.graph.ground
+    last = ground - 1 + or_ground
     whole = isinstance(link, (int, np.integer)) and not isinstance(link, bool)
     if not whole or not 1 <= link <= last:  # type: ignore[operator]
-        what = "is the ground, which does not move" if whole and link == moving + 1 else "is not a link"
+        what = "is the ground, which does not move" if whole and link == ground else "is not a link"
         more = ", the last is the ground" if or_ground else ""
         raise RequestError(f"{key}: link {shown(link)} {what}; give 1 to {last}{more}")
 
@@ -128,10 +129,8 @@ def across(linkage: Solvable, link: int) -> Floats | None:
     if linkage.normal is None:
         return None
     # motions in the plane leave it as it is, so joints are taken at zero
-    frame = linkage.base
-    for before in linkage.links[: link - 1]:
-        frame = frame @ before
-    frame = frame @ linkage.point_frames[link - 1]
+    zero = np.zeros((1, len(linkage.columns)))
+    frame = poses(linkage, zero)[0, link - 1] @ linkage.point_frames[link - 1]
     return np.asarray(frame[:3, :3].T @ linkage.normal)
 
 
@@ -148,10 +147,9 @@ def joint_places(linkage: Loop, link: int) -> tuple[Floats, Floats]:
 
     Of a joint that slides it is that of its frame, as drawn.
     """
-    start = inverse(linkage.point_frames[link - 1])
-    if link == len(linkage.joints):
-        start = start @ linkage.drawn_ground
-    return start[:3, 3], (start @ linkage.drawn_transforms[link - 1])[:3, 3]
+    back = inverse(linkage.point_frames[link - 1])
+    first, second = ((back @ linkage.drawn_joint_on(j, link))[:3, 3] for j in linkage.graph.joints_of(link))
+    return first, second
 
 
 def _drawn(linkage: Loop, circuit: int) -> dict[int, Body]:

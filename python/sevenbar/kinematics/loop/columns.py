@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -32,7 +31,7 @@ def column_named(columns: Sequence[str], name: str) -> int:
 
 def shown_in(linkage: Loop, column: int | str) -> tuple[str, float]:
     """The unit in which people read a column, and what 1 of it is there: degrees for angles."""
-    return ("deg", math.degrees(1.0)) if linkage.turns(column) else (linkage.length_unit, 1.0)
+    return linkage.column_of(column).shown
 
 
 def joint_column(name: str, *, slides: bool, order: int, length: str, angle: str, who: str = "") -> str:
@@ -57,11 +56,11 @@ def joint_columns(
     """
     found: dict[str, Floats] = {}
     for order, values in enumerate(rates):
-        for index, name in enumerate(linkage.columns):
-            slides = not linkage.turns(index)
-            head = joint_column(name, slides=slides, order=order, length=length, angle=angle)
-            column = values[:, index] * scale if slides else values[:, index]
-            found[head] = np.degrees(column) if head.endswith("_deg") else column
+        for column, own in zip(linkage.each_column, values.T, strict=True):
+            slides = not column.turns
+            head = joint_column(column.name, slides=slides, order=order, length=length, angle=angle)
+            scaled = own * scale if slides else own
+            found[head] = np.degrees(scaled) if head.endswith("_deg") else scaled
     return found
 
 

@@ -15,6 +15,8 @@ import numpy.typing as npt
 from sevenbar.arrays import Booleans, Floats, finite_number, triple, truth, whole_number
 from sevenbar.errors import RequestError, check_kind, check_name, check_word, no_joint
 from sevenbar.forces.loading import UNLOADED, Loading
+from sevenbar.kinematics.loop.column import Column
+from sevenbar.kinematics.loop.graph import Graph, loop_graph
 from sevenbar.kinematics.loop.joints import (
     JOINT_KINDS,
     READ_KINDS,
@@ -270,11 +272,29 @@ class Loop(Drawable):
                 found[i - 1] = found[i - 1] @ joint.to_drawn
         return found
 
+    def joint_on(self, joint: int, link: int) -> Floats:
+        """The frame (4, 4) of a joint on one of its links, of the link's own frame, where it reads 0.
+
+        That of a moving link is the frame of the joint that it is after.
+        """
+        if self.graph.side(joint, link):
+            return self.ground if link == self.graph.ground else np.eye(4)
+        return self.links[joint - 1] if joint else self.base
+
+    def drawn_joint_on(self, joint: int, link: int) -> Floats:
+        """The same as the joint is drawn, whatever it reads there."""
+        frame, own = self.joint_on(joint, link), self.joints[joint]
+        return frame @ own.to_drawn if own.value and own.backwards == self.graph.side(joint, link) else frame
+
+    @property
+    def length(self) -> float:
+        """The lengths of all links, from joint to joint, together."""
+        return float(np.linalg.norm(self.transforms[:, :3, 3], axis=1).sum())
+
     @property
     def size(self) -> float:
         """The size [length], as the core has it: all links' lengths, and pitches by radian; 1 if none."""
-        lengths = float(np.linalg.norm(self.transforms[:, :3, 3], axis=1).sum())
-        size = lengths + sum(abs(joint.pitch) / math.tau for joint in self.joints)
+        size = self.length + sum(abs(joint.pitch) / math.tau for joint in self.joints)
         reach = max(math.hypot(*frame[:3, 3]) for frame in (self.base, self.ground))
         return size if size > NO_SIZE * reach else 1.0
 
@@ -282,6 +302,11 @@ class Loop(Drawable):
     def kind(self) -> str:
         """The joints' letters in loop order."""
         return "".join(joint.kind for joint in self.joints)
+
+    @cached_property
+    def graph(self) -> Graph:
+        """Its links and joints."""
+        return loop_graph(self.joints)
 
     @property
     def in_rows(self) -> bool:
@@ -303,42 +328,54 @@ class Loop(Drawable):
         return tuple(slice(start, end) for start, end in pairwise([0, *ends]))
 
     @cached_property
+    def each_column(self) -> tuple[Column, ...]:
+        """All columns, each with its name, kind, unit and joint."""
+        found: list[Column] = []
+        for number, joint in enumerate(self.joints):
+            for name, kind in zip(joint.columns, joint.row.freedoms, strict=True):
+                unit = "rad" if kind == "turn" else self.length_unit
+                found.append(Column(len(found), name, kind, unit, number, not joint.row.is_ball))
+        return tuple(found)
+
+    def column_of(self, column: int | str) -> Column:
+        """A column by its number or name; `RequestError` for what is neither."""
+        if isinstance(column, str):
+            number = self.columns.index(column) if column in self.columns else self.column(column, "column")
+        else:
+            number = whole_number("column", column, 0, len(self.columns) - 1, "the number of a column")
+        return self.each_column[number]
+
+    @cached_property
     def columns(self) -> tuple[str, ...]:
         """The names of the one-freedom joints, in loop order."""
-        return tuple(column for joint in self.joints for column in joint.columns)
+        return tuple(column.name for column in self.each_column)
 
     @cached_property
     def drawn_pose(self) -> Floats:
         """What the columns (columns,) read in the pose that is drawn [rad, or length]; 0 of other forms."""
-        found = np.array([joint.value for joint in self.joints for _ in joint.columns])
+        found = np.array([self.joints[column.joint].value for column in self.each_column])
         found.setflags(write=False)
         return found
 
     @cached_property
     def column_kinds(self) -> tuple[Freedom, ...]:
         """What each column is: an angle [rad] or a length."""
-        return tuple(freedom for joint in self.joints for freedom in joint.row.freedoms)
+        return tuple(column.kind for column in self.each_column)
 
     @cached_property
     def turning(self) -> Booleans:
         """Whether each column is an angle, not a length, (columns,)."""
-        turning = np.array([kind == "turn" for kind in self.column_kinds])
+        turning = np.array([column.turns for column in self.each_column])
         turning.setflags(write=False)
         return turning
 
     def turns(self, column: int | str) -> bool:
         """Whether a column, by its number or name, is an angle, not a length."""
-        return self.column_kinds[self._place(column)] == "turn"
-
-    def _place(self, column: int | str) -> int:
-        """The place of a column by its number or name; `RequestError` for what is neither."""
-        if isinstance(column, str):
-            return self.columns.index(column) if column in self.columns else self.column(column, "column")
-        return whole_number("column", column, 0, len(self.columns) - 1, "the number of a column")
+        return self.column_of(column).turns
 
     def unit_of(self, column: int | str) -> str:
         """The unit of a column's values, by its number or name: "rad", or the length unit."""
-        return "rad" if self.turns(column) else self.length_unit
+        return self.column_of(column).unit
 
     @property
     def added_points(self) -> tuple[Point, ...]:
@@ -347,12 +384,8 @@ class Loop(Drawable):
 
     def drivable(self, without: int | None = None) -> list[str]:
         """The columns that may drive or be driven: all but those of balls, and but one."""
-        owners = [joint for joint in self.joints for _ in joint.columns]
-        return [
-            name
-            for index, (name, owner) in enumerate(zip(self.columns, owners, strict=True))
-            if not owner.row.is_ball and (without is None or index != self._place(without))
-        ]
+        left_out = None if without is None else self.column_of(without)
+        return [one.name for one in self.each_column if one.is_output and one is not left_out]
 
     def column(self, name: str, key: str) -> int:
         """The place of a column named by the caller; a joint's name stands for its first one."""
@@ -389,7 +422,7 @@ class Loop(Drawable):
 
     def other_column(self, column: int) -> int:
         """The output where only the input was named: the drive's, else that of the last other joint."""
-        column = self._place(column)
+        column = self.column_of(column).number
         if self.columns[column] != self.drive.output:
             return self.columns.index(self.drive.output)
         last = [
@@ -413,6 +446,11 @@ class Loop(Drawable):
         drive = self.description.get("drive", {})
         written = drive.get("speed", "") if isinstance(drive, Mapping) else ""
         return written if isinstance(written, str) and self.driven_alike(column) else ""
+
+
+def parts_between(before: Floats, after: Floats) -> tuple[Floats, Floats, Floats]:
+    """`base`, `links` and `ground` of a loop by the frames (joints, 4, 4) before and after its joints."""
+    return before[0], inverse(after[:-1]) @ before[1:], after[-1]
 
 
 def following_coupler(

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Literal
 
 from sevenbar._core import AGREE
 from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.rigid import inverse
 
 #: What the others have in common: a plane in which they move, a point through which their axes go; or two
 #: joints turn about one axis, so that the link between them has no length.
@@ -45,11 +47,12 @@ class Reason:
 
 
 def no_length(loop: Loop) -> Reason | None:
-    """The first two neighbours that turn about one axis, where there are any."""
-    for i, joint in enumerate(loop.joints):
-        after = loop.joints[(i + 1) % len(loop.joints)]
-        link = loop.transforms[i]
-        same = math.hypot(*link[:2, 2]) <= AGREE and math.hypot(*link[:2, 3]) <= AGREE * loop.size
-        if joint.kind == after.kind == "R" and same:
-            return Reason("one-axis", (joint.name, after.name))
+    """The first two joints of a link that turn about one axis, where there are any."""
+    for link in loop.graph.links:
+        for one, other in combinations(loop.graph.joints_of(link), 2):
+            way = inverse(loop.joint_on(one, link)) @ loop.joint_on(other, link)
+            same = math.hypot(*way[:2, 2]) <= AGREE and math.hypot(*way[:2, 3]) <= AGREE * loop.size
+            first, second = loop.joints[one], loop.joints[other]
+            if first.kind == second.kind == "R" and same:
+                return Reason("one-axis", (first.name, second.name))
     return None

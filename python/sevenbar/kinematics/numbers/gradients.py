@@ -19,7 +19,6 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
-from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
 
 #: The quantities of a joint, by the order of the derivative, and what time does to their units.
@@ -76,7 +75,7 @@ def _extremes(
 ) -> Iterator[MeasureSlopes]:
     """Extremes of the output and its rates, swing and time ratio."""
     column, numbers = circuit.output_column, loop.numbers
-    unit, scale = shown_in(numbers.linkage, column)
+    unit, scale = numbers.linkage.column_of(column).shown
     ends = []
     if circuit.angle is not None and (names is None or not {"swing", "time_ratio"}.isdisjoint(names)):
         for end in ("lowest", "highest"):
@@ -146,7 +145,7 @@ def _limits(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
     """Dead centres of the input, each once."""
     back = numbers.loop(circuit.output_column)
     place = circuit.input_column
-    unit, scale = shown_in(numbers.linkage, place)
+    unit, scale = numbers.linkage.column_of(place).shown
     centres = [centre for centre in circuit.dead_centres if centre.kind == "input"]
     for number, centre in enumerate(sorted(centres, key=lambda c: c.input), 1):
         slopes = np.full(len(numbers.names), np.nan)

@@ -48,7 +48,7 @@ def link_names(loop: Loop) -> tuple[str, ...]:
     names = [joint.name for joint in loop.joints]
     if len(loop.columns) == len(names) == 4:
         return tuple(link_roles(names, loop.drive.joint, loop.drive.output)[:3])
-    return tuple(f"link {i}" for i in range(1, len(names)))
+    return tuple(f"link {i}" for i in loop.graph.moving)
 
 
 def axis_at(kinds: Sequence[str], link: int) -> tuple[int, int] | None:

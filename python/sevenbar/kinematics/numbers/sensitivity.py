@@ -112,7 +112,7 @@ class Numbers:
             for ball in self.spun
         }
         #: Whether a column (columns,) is a turn of a ball.
-        self.is_ball = np.array([j.row.is_ball for j in linkage.joints for _ in j.columns])
+        self.is_ball = np.array([not column.is_output for column in linkage.each_column])
         #: The word of the loop, with balls as the core holds them, and its points.
         self.word = word_of(form, kinds, slots, axes)
         self.points = points_of(form, self.word, linkage.description, kinds)
@@ -163,11 +163,11 @@ class Numbers:
             a, b, line = (axis.pose(values)[:3, 2] for axis in self.word.axes_of_spun(joint))
             column = self.word.freedoms[joint][0].columns[0]
             turn = ball_rotations(q[:, column : column + 3])
-            if joint + 1 < len(self.word.links):
+            if (link := self.word.beyond(joint)) is not None:
                 # two turns leave b square to a
                 rows = np.flatnonzero(np.abs(turn @ b @ a) > SPUN)
                 spin = _spin_beyond(turn[rows], a, b, line)
-                behind = self.word.links[joint].pose(values)[:3, :3]
+                behind = link.pose(values)[:3, :3]
                 beyond = slice(column + 3, column + 6)
                 taken = behind.T @ spin @ behind @ ball_rotations(q[rows, beyond])
                 q[rows, beyond] = zyx_turns(taken)

@@ -149,6 +149,10 @@ class Word:
         inner = self.inner[link - 1]
         return inner[-1] if inner else Product()
 
+    def beyond(self, joint: int) -> Product | None:
+        """What is between a joint and the next one; `None` behind those that lead to the ground."""
+        return self.links[joint] if joint + 1 < len(self.links) else None
+
     def axes_of_spun(self, joint: int) -> list[Product]:
         """The frames of the axes about which a ball that holds a spin turns, both and the held one."""
         return list(accumulate(self.inner[joint][:3]))

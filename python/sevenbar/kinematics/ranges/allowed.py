@@ -13,7 +13,8 @@ from sevenbar.curves.least_cone import angles, dotted, least_cone
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.extents import Allowed, AllowedSpan, Flags
 from sevenbar.kinematics.circuits.motion import Solvable
-from sevenbar.kinematics.circuits.poses import frames_along, joint_frames
+from sevenbar.kinematics.circuits.poses import joint_places, poses_along
+from sevenbar.kinematics.loop.column import Column
 from sevenbar.kinematics.loop.rods import rod_distance
 from sevenbar.kinematics.loop.stops import Cone
 from sevenbar.kinematics.paths.circuit_path import CircuitPath
@@ -144,17 +145,16 @@ def _between(places: Floats, begin: float, way: float, path: CircuitPath) -> int
 
 def _ranges(linkage: Solvable, course: JointCourse) -> Iterator[_Stop]:
     for name, (low, high) in linkage.stops.ranges.items():
-        column = linkage.columns.index(name)
-        turns = linkage.turns(column)
-        slack = TOUCH * (1.0 if turns else course.size)
-        if not (turns and high - low >= math.tau - slack):
+        column = linkage.column_of(name)
+        slack = TOUCH * (1.0 if column.turns else course.size)
+        if not (column.turns and high - low >= math.tau - slack):
             yield _range(course, column, low, high, slack)
 
 
-def _range(course: JointCourse, column: int, low: float, high: float, slack: float) -> _Stop:
+def _range(course: JointCourse, column: Column, low: float, high: float, slack: float) -> _Stop:
     """The stop of a column that a turn does not pass by; beyond an end by a `slack` it touches."""
-    turns, width = course.linkage.turns(column), high - low
-    one = course.path.poses.part(column)
+    turns, width = column.turns, high - low
+    one = course.path.poses.part(column.number)
     marks = np.union1d(one.stationary(0), one.edges)
     heights = one.at(marks)[:, 0]
     laps = [0]
@@ -172,10 +172,10 @@ def _range(course: JointCourse, column: int, low: float, high: float, slack: flo
         return np.asarray((beyond >= -slack) & (beyond <= width + slack))
 
     return _Stop(
-        f"{RANGE_OF}{course.linkage.columns[column]}",
+        f"{RANGE_OF}{column.name}",
         np.concatenate([one.crossings(0, value, marks) for value in values]),
         lambda s: between(one.at(s)[:, 0]),
-        lambda q: between(q[:, column]),
+        lambda q: between(q[:, column.number]),
     )
 
 
@@ -224,9 +224,5 @@ def _rod_pair(course: JointCourse, circuit: Circuit, links: tuple[int, int], lea
 def distances(linkage: Solvable, circuit: Circuit, links: tuple[int, int]) -> Floats:
     """The distances (n,) [length] of two links as rods on the rows of a circuit."""
     rows: Integers = np.arange(len(circuit.q))
-    before, after = joint_frames(linkage, frames_along(linkage, circuit, rows))
-    count = len(linkage.joints)
-    places = [
-        place for link in links for place in (after[:, link - 1, :3, 3], before[:, link % count, :3, 3])
-    ]
-    return rod_distance(*places)
+    frames = poses_along(linkage, circuit, rows)
+    return rod_distance(*(place for link in links for place in joint_places(linkage, frames, link)))

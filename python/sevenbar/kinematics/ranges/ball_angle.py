@@ -84,9 +84,9 @@ def ball_angle(
     """
     place = joint_at(linkage, joint)
     own = linkage.joints[place]
-    count = len(linkage.joints)
-    u = rod(linkage, place or count, place) if seat is None else np.array(direction("seat", seat))
-    v = rod(linkage, place + 1, place) if stud is None else np.array(direction("stud", stud))
+    first, second = linkage.graph.between[place]
+    u = rod(linkage, first, place) if seat is None else np.array(direction("seat", seat))
+    v = rod(linkage, second, place) if stud is None else np.array(direction("stud", stud))
     turns = tuple((own.before(step)[:3, :3], step.axis) for step in own.row.steps)
     before, after = sides(linkage, place)
     return BallAngle(own.name, linkage.places[place], unit(before @ u), unit(after @ v), turns)
@@ -124,21 +124,17 @@ def joint_at(linkage: Loop, name: str) -> int:
 
 def sides(linkage: Loop, place: int) -> tuple[Floats, Floats]:
     """The rotations (3, 3) of directions as written on the links before and after a joint into its frames."""
-    count = len(linkage.joints)
-    frames = linkage.point_frames[:, :3, :3]
-    if place:
-        before = linkage.links[place - 1][:3, :3].T @ frames[place - 1]
-    else:
-        before = linkage.base[:3, :3].T @ frames[count - 1]
-    after = frames[place] if place + 1 < count else linkage.ground[:3, :3].T @ frames[place]
-    return before, after
+    first, second = (
+        linkage.joint_on(place, link)[:3, :3].T @ linkage.point_frames[link - 1][:3, :3]
+        for link in linkage.graph.between[place]
+    )
+    return first, second
 
 
 def has_length(linkage: Loop, link: int) -> bool:
     """Whether the joints before and after a link are at two places."""
     start, end = joint_places(linkage, link)
-    size = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
-    return bool(np.linalg.norm(end - start) > NO_LENGTH * size)
+    return bool(np.linalg.norm(end - start) > NO_LENGTH * linkage.length)
 
 
 def rod(linkage: Loop, link: int, joint: int) -> Floats:
@@ -147,20 +143,17 @@ def rod(linkage: Loop, link: int, joint: int) -> Floats:
     Where both are at one place: along the axis of the other joint. `RequestError` where that turns any way.
     """
     start, end = joint_places(linkage, link)
-    count = len(linkage.joints)
-    ahead = joint == link - 1
+    graph = linkage.graph
+    ahead = graph.side(joint, link) == 1
     if has_length(linkage, link):
         return unit(end - start if ahead else start - end)
-    other = linkage.joints[link % count if ahead else link - 1]
+    (number,) = graph.others_of(link, joint)
+    other = linkage.joints[number]
     if other.row.is_ball:
         side = "stud" if ahead else "seat"
         raise RequestError(
             f"{side}: link {link} has no length between {linkage.joints[joint].name} and {other.name}; "
             "give a direction of it"
         )
-    frame = inverse(linkage.point_frames[link - 1])[:3, :3]
-    if ahead:
-        frame = frame @ (linkage.base if link == count else linkage.links[link - 1])[:3, :3]
-    elif link == count:
-        frame = frame @ linkage.ground[:3, :3]
-    return np.asarray(frame[:, 2])
+    back = inverse(linkage.point_frames[link - 1])[:3, :3]
+    return np.asarray((back @ linkage.joint_on(number, link)[:3, :3])[:, 2])

@@ -33,19 +33,17 @@ def joint_ranges(linkage: Solvable, circuit: Circuit) -> dict[str, JointRange]:
     """The range of every column but a ball's, by name; see `Circuit.joint_ranges`."""
     course = joint_course(linkage, circuit)
     return {
-        name: range_of(course, column)
-        for column, name in enumerate(linkage.columns)
-        if not course.numbers.is_ball[column]
+        column.name: range_of(course, column.number) for column in linkage.each_column if column.is_output
     }
 
 
 def range_of(course: JointCourse, column: int) -> JointRange:
     """The range of one column."""
-    name, turns = course.linkage.columns[column], bool(course.numbers.turns[column])
+    own = course.linkage.each_column[column]
     if course.goes_on(column):
-        return JointRange(name, turns, None, None)
+        return JointRange(own.name, own.turns, None, None)
     (_, low), (_, high) = course.extremes(course.path.poses.part(column))
-    return JointRange(name, turns, low, high)
+    return JointRange(own.name, own.turns, low, high)
 
 
 def coned(linkage: Solvable) -> list[str]:
@@ -97,8 +95,7 @@ def chosen(linkage: Solvable, joint: str, cone: Cone) -> tuple[BallAngle, Side, 
     On an idle link only the direction of its rod has a bend that its spin does not change.
     """
     place = joint_at(linkage, joint)
-    count = len(linkage.joints)
-    before, after = place or count, place + 1
+    before, after = linkage.graph.between[place]
     if joint not in coned(linkage):
         raise RequestError(
             f"joint: {shown(joint)} is next to links that spin together, so its bend is not determined"
@@ -120,10 +117,11 @@ def chosen(linkage: Solvable, joint: str, cone: Cone) -> tuple[BallAngle, Side, 
 
 def rod_pairs(linkage: Loop) -> Iterator[tuple[int, int]]:
     """Links that share no joint, two by two; the ground only where it has a radius."""
-    count = len(linkage.joints)
-    last = count if count in linkage.stops.radii else count - 1
-    for first, second in combinations(range(1, last + 1), 2):
-        if second - first not in (1, count - 1):
+    graph = linkage.graph
+    for first, second in combinations(
+        graph.links if graph.ground in linkage.stops.radii else graph.moving, 2
+    ):
+        if second not in graph.neighbours(first):
             yield first, second
 
 

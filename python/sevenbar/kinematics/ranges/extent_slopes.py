@@ -21,7 +21,6 @@ from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
 from sevenbar.curves.least_cone import angles, least_cone
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.loop.columns import shown_in
 from sevenbar.kinematics.loop.rods import distance_slopes
 from sevenbar.kinematics.loop.stops import Cone
 from sevenbar.kinematics.numbers.gradients import MeasureSlopes
@@ -84,7 +83,7 @@ def _of_range(course: JointCourse, numbers: Numbers, name: str, column: int) -> 
     for place, _ in ends:
         q, driver = course.pose(place)
         slopes.append(numbers.loop(driver).slopes(q, 0).by_number[0, 0, :, column])
-    unit, scale = shown_in(numbers.linkage, column)
+    unit, scale = numbers.linkage.column_of(column).shown
     value = ends[1][1].value - ends[0][1].value
     return MeasureSlopes(name, unit, value * scale, (slopes[1] - slopes[0]) * scale, 1 / scale)
 
@@ -138,13 +137,12 @@ def _multipliers(directions: Floats, axis: Floats) -> Floats | None:
 
 def _arms(numbers: Numbers, place: int, given: Mapping[str, tuple[float, ...] | None]) -> list[Carried]:
     """Two points on the seat's line and two on the stud's, each line by its direction, or along its rod."""
-    count = len(numbers.linkage.joints)
     points = []
-    for side, link in (("seat", place or count), ("stud", place + 1)):
+    for side, link in zip(("seat", "stud"), numbers.linkage.graph.between[place], strict=True):
         direction = given[side]
         if direction is None:
             start, end = numbers.word.rod(link)
-            points += [start, end] if link == place + 1 else [end, start]
+            points += [start, end] if side == "stud" else [end, start]
         else:
             x, y, z = (numbers.size * value / math.hypot(*direction) for value in direction)
             points += [numbers.word.place(link, at) for at in ((0.0, 0.0, 0.0), (x, y, z))]

@@ -13,7 +13,7 @@ from sevenbar.curves.curve import Peak
 from sevenbar.curves.least_cone import angles, dotted
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
-from sevenbar.kinematics.circuits.poses import frames_of, joint_frames
+from sevenbar.kinematics.circuits.poses import joint_frames, opening, poses
 from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rods import RodPair
 from sevenbar.kinematics.numbers.sensitivity import Numbers
@@ -59,20 +59,21 @@ class JointCourse:
     def _places(self) -> Floats:
         """The places (m * terms, joints, 2, 3) of the joints on the links before and after them."""
         linkage = self.linkage
-        before, after = joint_frames(linkage, frames_of(linkage, self.rows))
-        closing = before[:, -1] @ linkage.joints[-1].motion(self.rows[:, linkage.places[-1]])
-        off = np.abs(closing - linkage.ground)
+        frames = poses(linkage, self.rows)
+        off = opening(linkage, frames, self.rows)
         off[:, :3, 3] /= self.size
         if not off.max() < CLOSED:
             raise NotFollowedError("circuit: the turns of its balls cannot be followed all along it")
-        return np.stack([before[:, :, :3, 3], after[:, :, :3, 3]], axis=2)
+        return np.stack([side[:, :, :3, 3] for side in joint_frames(linkage, frames)], axis=2)
 
     def rods(self, first: int, second: int) -> RodPair:
         """Two links, counted from 1, the ground last, as lines between the places of their joints."""
-        count = len(self.linkage.joints)
-        ends = []
-        for link in (first, second):
-            ends += [self._places[:, link - 1, 1], self._places[:, link % count, 0]]
+        graph = self.linkage.graph
+        ends = [
+            self._places[:, joint, graph.side(joint, link)]
+            for link in (first, second)
+            for joint in graph.joints_of(link)
+        ]
         return RodPair(self.curve(np.concatenate(ends, axis=1)), self.size)
 
     def directions(self, bend: BallAngle, *, of_stud: bool) -> Along:

@@ -48,7 +48,7 @@ def tables_of(linkage: Loop, stops: Stops) -> dict[str, list[dict[str, Any]]]:
     angle = ANGLES[str(linkage.description.get("angle_unit", "deg"))]
     rows: list[dict[str, Any]] = []
     for name, ends in stops.ranges.items():
-        size = angle if linkage.unit_of(name) == "rad" else 1.0
+        size = angle if linkage.turns(name) else 1.0
         rows.append({"joint": name, "range": [as_written(end / size) for end in ends]})
     for name, cone in stops.cones.items():
         row: dict[str, Any] = {"joint": name}

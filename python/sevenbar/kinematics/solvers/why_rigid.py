@@ -12,8 +12,10 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.forces.loading import UNLOADED
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
+from sevenbar.kinematics.circuits.poses import drawn_frames
+from sevenbar.kinematics.loop.geometry import parts_between
 from sevenbar.kinematics.loop.reason import OffJoint, Reason, What
-from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, turns_about, unit
+from sevenbar.kinematics.loop.rigid import cross, perpendicular, pose, turns_about, unit
 from sevenbar.kinematics.loop.stops import NO_STOPS
 from sevenbar.kinematics.solvers.plane_and_sphere import SAME, meeting_point
 
@@ -55,8 +57,9 @@ class _Drawn:
         before, behind = self.before.copy(), self.behind.copy()
         for i, motion in motions.items():
             before[i], behind[i] = motion @ before[i], motion @ behind[i]
+        base, links, ground = parts_between(before, behind)
         return replace(
-            self.loop, base=before[0], ground=behind[-1], links=inverse(behind[:-1]) @ before[1:],
+            self.loop, base=base, ground=ground, links=links,
             points=(), form="drawn", description={}, dimensions={}, loading=UNLOADED, stops=NO_STOPS,
         )  # fmt: skip
 
@@ -67,7 +70,7 @@ def off_joints(motion: Motion) -> Reason | None:
     `None` where nothing of it is seen.
     """
     loop = motion.linkage
-    drawn = _drawn(loop)
+    drawn = _Drawn(loop, *drawn_frames(loop))
     for found in (_off_plane(drawn), _off_point(drawn)):
         if found is None:
             continue
@@ -78,18 +81,6 @@ def off_joints(motion: Motion) -> Reason | None:
         if eased.motion_type not in UNMOVED:
             return replace(reason, motion_type=eased.motion_type)
     return None
-
-
-def _drawn(loop: Solvable) -> _Drawn:
-    """The loop in the drawn pose."""
-    q = loop.drawn_pose[None]
-    before, behind = [], []
-    now = loop.base
-    for i, (joint, own) in enumerate(zip(loop.joints, loop.places, strict=True)):
-        before.append(now)
-        behind.append(now @ joint.motion(q[:, own])[0])
-        now = behind[-1] @ loop.links[i] if i < len(loop.links) else now
-    return _Drawn(loop, np.stack(before), np.stack(behind))
 
 
 def _off_plane(drawn: _Drawn) -> tuple[Reason, Solvable | None] | None:

@@ -19,7 +19,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.poses import frames_along, joint_frames
+from sevenbar.kinematics.circuits.poses import joint_frames, poses_along
 from sevenbar.kinematics.loop.geometry import Loop, moved_by
 from sevenbar.kinematics.solvers.general import Expanded, expanded
 
@@ -128,7 +128,7 @@ def _twists(screws: Floats, rates: Floats) -> Floats:
 def axes_along(loop: Loop, circuit: Circuit, rows: Integers | None = None) -> Axes:
     """The axes of the joints on all rows of a circuit, or on some; NaN where it has no pose."""
     rows = np.arange(len(circuit.time)) if rows is None else rows
-    before, _ = joint_frames(loop, frames_along(loop, circuit, rows))
+    before, _ = joint_frames(loop, poses_along(loop, circuit, rows))
     directions, places = [], []
     for i, (joint, own) in enumerate(zip(loop.joints, loop.places, strict=True)):
         now = before[:, i]

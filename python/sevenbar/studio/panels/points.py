@@ -65,8 +65,8 @@ class PointsPanel:
             return
         self._shown = draft
         linkage = draft.linkage
-        last = len(linkage.joints)
-        settle(self._link, options=(*(f"{number}" for number in range(1, last)), f"{last} the ground"))
+        moving, ground = linkage.graph.moving, linkage.graph.ground
+        settle(self._link, options=(*map(str, moving), f"{ground} the ground"))
         letters = "u, v, w" if draft.linkage.in_rows else "x, y, z"
         settle(self._at, label=f"at {letters} [{linkage.length_unit}]")
         names = tuple(str(point["name"]) for point in draft.raw.get("point", ()))

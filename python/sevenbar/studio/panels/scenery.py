@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import places_of, skeleton_of
 from sevenbar.drawing.style import ACCELERATION, VELOCITY, circuit_colour
 from sevenbar.drawing.view import upright
-from sevenbar.kinematics.circuits.poses import frames_of
+from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.kinematics.ranges.reach import within
 from sevenbar.studio.panels.controls import settle
 from sevenbar.studio.pictures.stage import FIELD, Stage
@@ -166,7 +166,7 @@ class Scenery:
         linkage = draft.linkage
         if linkage.form != "drawn":
             return
-        frame = skeleton_of(linkage, frames_of(linkage, linkage.drawn_pose[None]), linkage.added_points)
+        frame = skeleton_of(linkage, poses(linkage, linkage.drawn_pose[None]), linkage.added_points)
         self._everything = frame.places.reshape(-1, 3)
         if self._framed is not draft.text:
             self.stage.frame_view(self._everything, upright(linkage))
@@ -214,7 +214,7 @@ class Scenery:
 
     def _draw_axodes(self, view: View, row: float) -> None:
         """The screw axes of the link that is chosen, in the ground and in the link."""
-        links = (NO_AXODES, *(f"link {number}" for number in range(1, len(view.linkage.joints))))
+        links = (NO_AXODES, *(f"link {number}" for number in view.linkage.graph.moving))
         settle(self._axodes, options=links)
         chosen = links.index(self._axodes.value) if self._axodes.value in links else 0
         if not chosen:

@@ -33,22 +33,20 @@ class JointPlaces:
 
 @dataclass(frozen=True)
 class Layout:
-    """Places along each link, the ground's last, and of each joint; `count` is how many the frame has."""
+    """The joints and links of a frame by their places, and `count`, how many places the frame has."""
 
-    links: tuple[tuple[int, ...], ...]
+    frame: Skeleton
     joints: tuple[JointPlaces, ...]
     count: int
 
     def rigid(self, link: int) -> list[Pair]:
         """Pairs of places that keep their distance and turn with a link."""
-        last = len(self.links) - 1
-        way = self.links[link]
+        way, graph = self.frame.along(link), self.frame.graph
         found = [(way[0], place) for place in way[1:]] + list(pairwise(way))
-        before = self.joints[link if link < last else last]
-        after = self.joints[link + 1 if link < last else 0]
-        found += [before.spin] + ([] if after.kind.rides else [after.spin])
-        found += [before.axes[-1]] if before.kind.has_cross else []
-        found += [after.axes[0]] if after.kind.has_cross else []
+        on = [(self.joints[joint], graph.side(joint, link)) for joint in graph.joints_of(link)]
+        # what rides on a joint is after it
+        found += [joint.spin for joint, side in on if side or not joint.kind.rides]
+        found += [joint.axes[-side] for joint, side in on if joint.kind.has_cross]
         return [pair for pair in found if pair != NOWHERE]
 
 
@@ -59,6 +57,5 @@ def layout(frame: Skeleton) -> Layout:
         marks = [(word, (places[0], places[-1])) for j, word, places in frame.marks if j == i]
         axes = tuple(pair for word, pair in marks if word == "axis")
         spin = next((pair for word, pair in marks if word == "cylinder"), NOWHERE)
-        near, far = frame.links[i - 1][-1], frame.links[i][0]
-        joints.append(JointPlaces(joint.row, joint.pitch, near, far, axes, spin))
-    return Layout(frame.links, tuple(joints), frame.places.shape[1])
+        joints.append(JointPlaces(joint.row, joint.pitch, *frame.feet[i], axes, spin))
+    return Layout(frame, tuple(joints), frame.places.shape[1])

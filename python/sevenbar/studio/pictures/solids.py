@@ -111,7 +111,7 @@ def plan(frame: Skeleton, ends: tuple[str, str]) -> SolidPlan:
     links, joints = link_colours(frame.linkage, ends)
     links.append(GROUND)
     joints = [OTHER_JOINT if colour == JOINT else colour for colour in joints]
-    for i, (way, colour) in enumerate(zip(where.links, links, strict=True)):
+    for i, (way, colour) in enumerate(zip(frame.polylines, links, strict=True)):
         moves = colour is not GROUND
         thick = unit * (LINK * (1 + THICKER * (i % THICKNESSES)) if moves else GROUND_LINK)
         for pair in pairwise(way):
@@ -123,9 +123,9 @@ def plan(frame: Skeleton, ends: tuple[str, str]) -> SolidPlan:
             _add_slide(solids, i, joint, colour, every, unit)
         else:
             _add_joint(solids, i, joint, colour, links, every, unit)
-    for joint, link in ((where.joints[0], 0), (where.joints[-1], len(links) - 2)):
-        if not joint.kind.rides:
-            _add_ground(solids, joint, link, every, unit, size)
+    for i in frame.graph.standing:
+        if not where.joints[i].kind.rides:
+            _add_ground(solids, i, every, unit, size)
     points = paths(frame, ends)[: len(frame.points)]
     for (start, place, end), (_, colour), link in zip(frame.stays, points, frame.owners, strict=True):
         for corner in (start, end):
@@ -136,7 +136,8 @@ def plan(frame: Skeleton, ends: tuple[str, str]) -> SolidPlan:
 
 def _unit(where: Layout, pose: Floats, size: float) -> float:
     """The measure of all thicknesses [length]."""
-    lengths = [float(np.linalg.norm(np.diff(pose[list(way)], axis=0), axis=1).sum()) for way in where.links]
+    lines = [pose[list(way)] for way in where.frame.polylines]
+    lengths = [float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in lines]
     shortest = min((length for length in lengths if length > NO_LINK * size), default=size)
     return UNIT * size * min(1.0, max(THINNEST, SHORTEST * shortest / (UNIT * size)))
 
@@ -186,11 +187,14 @@ def _add_joint(
         solids.add("ball", (far, far), KNUCKLE * unit, colour, length=KNUCKLE * unit)
     else:
         # the link between two ball joints has both sockets
-        link = index - 1 if solids.layout.joints[index - 1].kind.is_ball else index
-        way = solids.layout.links[link]
-        out = (way[1], way[0]) if link == index else (way[-2], way[-1])
+        where = solids.layout
+        before, after = where.frame.graph.between[index]
+        other = where.frame.graph.others_of(before, index)
+        link = before if any(where.joints[i].kind.is_ball for i in other) else after
+        line = where.frame.along(link)
+        out = (line[1], line[0]) if link == after else (line[-2], line[-1])
         solids.add("ball", (far, far), BALL * unit, BRIGHT, length=BALL * unit)
-        solids.add("socket", out, SOCKET * unit, links[link], share=1.0, length=SOCKET * unit)
+        solids.add("socket", out, SOCKET * unit, links[link - 1], share=1.0, length=SOCKET * unit)
 
 
 def _add_slide(
@@ -198,12 +202,14 @@ def _add_slide(
 ) -> None:
     """A rail and what slides on it, over its whole reach in poses `every` (n, places, 3)."""
     # the ground, else the link before, has the rail, and the other what slides
-    last = index == len(solids.layout.joints) - 1
+    graph = solids.layout.frame.graph
+    before, after = graph.between[index]
+    last = after == graph.ground
     start, end = joint.axes[0]
     rail, slider = (joint.far, joint.near) if last else (joint.near, joint.far)
     to_rail, to_slider = ((rail, end), (start, slider)) if last else ((start, rail), (slider, end))
     at_rail, at_slider = (0.0, 1.0) if last else (1.0, 0.0)
-    carriers = (index, index - 1) if last else (index - 1, index)
+    carriers = (after, before) if last else (before, after)
     guide = joint.spin
     if guide == NOWHERE:
         guide = _best(
@@ -246,7 +252,7 @@ def _add_slide(
         slide=(rail, slider),
         twist=twist,
     )
-    if last or index == 0:
+    if index in graph.standing:
         for reach in (low, high):
             outward = np.sign(reach) * turned[0] * ways[0]
             _add_foot(solids, every[0, rail] + abs(reach) * outward, outward, 0.6 * FOOT[0], unit)
@@ -277,16 +283,15 @@ def _best(pairs: list[Pair], axis: Pair, every: Floats, *, along: bool) -> Pair:
     return best
 
 
-def _add_ground(
-    solids: _Solids, joint: JointPlaces, link: int, every: Floats, unit: float, size: float
-) -> None:
+def _add_ground(solids: _Solids, index: int, every: Floats, unit: float, size: float) -> None:
     """The foot of a joint on the ground, on the side of its axis that the moving link leaves free."""
-    ground = joint.far if link == len(solids.layout.links) - 2 else joint.near
-    pose = every[0]
-    centre, side = pose[ground], np.array([0.0, 0.0, -1.0])
+    joint, frame, pose = solids.layout.joints[index], solids.layout.frame, every[0]
+    ground = frame.graph.ground
+    centre, side = pose[frame.foot(index, ground)], np.array([0.0, 0.0, -1.0])
     if joint.axes:
-        axis = _unit_ways(every[:1], joint.axes[-1 if ground == joint.far else 0])[0]
-        beside = float((pose[list(solids.layout.links[link])].mean(axis=0) - centre) @ axis)
+        axis = _unit_ways(every[:1], joint.axes[-frame.graph.side(index, ground)])[0]
+        moving = frame.along(frame.graph.moving_link(index))
+        beside = float((pose[list(moving)].mean(axis=0) - centre) @ axis)
         outside = float((centre - every[:: max(1, len(every) // 24)].mean(axis=(0, 1))) @ axis)
         if abs(beside) > 0.5 * unit:
             side = -np.sign(beside) * axis

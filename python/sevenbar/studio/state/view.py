@@ -14,7 +14,7 @@ from sevenbar.drawing.figure import shown_value
 from sevenbar.drawing.skeleton import Skeleton, skeleton
 from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.kinematics.circuits.poses import along, at_row, frames_of, joint_frames
+from sevenbar.kinematics.circuits.poses import along, at_row, poses
 from sevenbar.kinematics.circuits.timed_walk import SAME_INPUT, TimedWalk
 from sevenbar.kinematics.ranges.reach import drawn_row
 from sevenbar.reporting.shown import value_text
@@ -127,10 +127,7 @@ class View(TimedWalk):
     def point_frame(self, link: int, row: float) -> Floats:
         """The frame (4, 4) in which points of a link are written, at a row; links are counted from 1."""
         own: Floats = self.linkage.point_frames[link - 1]
-        if link == len(self.linkage.joints):
-            return own
-        _, after = joint_frames(self.linkage, frames_of(self.linkage, self.joints(row)[None]))
-        return np.asarray(after[0, link - 1] @ own)
+        return np.asarray(poses(self.linkage, self.joints(row)[None])[0, link - 1] @ own)
 
     def axodes(self, link: int) -> tuple[Floats, Floats]:
         """The lines (n, 2, 3) of the screw axes of a link against the ground, at all moments.
@@ -218,7 +215,7 @@ class _Measure:
     def __init__(self, motion: Motion) -> None:
         own = motion.linkage
         self._size = motion.circuits[0].size
-        self._kept = [i for i, name in enumerate(own.columns) if name in own.drivable()]
+        self._kept = [column.number for column in own.each_column if column.is_output]
         self._turns = own.turning[self._kept]
         self.input = own.columns.index(motion.input)
 

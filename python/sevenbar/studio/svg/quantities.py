@@ -121,9 +121,9 @@ def quantities(motion: Motion) -> tuple[Quantity, ...]:
         found.append(Quantity(key, name, unit, order, column, point))
 
     def add_column(key: str, name: str, column: int, role: str = "") -> None:
-        slide = not linkage.turns(column)
-        length = linkage.length_unit
-        units = (length, f"{length}/s", f"{length}/s²") if slide else ("deg", "rad/s", "rad/s²")
+        own = linkage.each_column[column]
+        slide, unit = not own.turns, own.unit
+        units = (own.shown[0], f"{unit}/s", f"{unit}/s²")
         for order, (word, unit) in enumerate(zip(ORDERS, units, strict=True)):
             shown = "position" if slide and order == 0 else word
             add(f"{key}.{word}", f"{name} {shown}{role}", unit, order, column=column)

@@ -156,7 +156,7 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
                 f"point: no point {shown(point)}; {suggestion(point, named)}this linkage has "
                 f"{', '.join(named) or 'none'}; give one, or a link and a place on it"
             )
-        if (link := named[point].link) == len(linkage.joints):
+        if (link := named[point].link) == linkage.graph.ground:
             raise RequestError(
                 f"point: '{point}' is on link {link}, the ground, which stands still; give a point "
                 f"of link 1 to {link - 1}"
@@ -169,8 +169,8 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
         if isinstance(error, RequestError):
             raise
         raise RequestError(f"point: {shown(point)} is not a place; give a link and three numbers") from None
-    count = len(linkage.joints)
-    link = whole_number("point", link, 1, count - 1, "a moving link", f", link {count} is the ground")
+    ground = linkage.graph.ground
+    link = whole_number("point", link, 1, ground - 1, "a moving link", f", link {ground} is the ground")
     if place.size != 3:
         raise RequestError(f"at: {place.size} numbers; give three")
     taken = {known.name for known in linkage.points} | {joint.name for joint in linkage.joints}

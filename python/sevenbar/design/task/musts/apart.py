@@ -41,14 +41,14 @@ class Apart(PoseMust):
         return False
 
     def flaws(self, task: DesignTask) -> Flaws:
-        count = len(task.draft.linkage.joints)
+        graph = task.draft.linkage.graph
         first, second = self.links
-        outside = [link for link in self.links if not 1 <= link <= count]
+        outside = [link for link in self.links if link not in graph.links]
         if outside:
-            yield "links", f"{outside[0]} is not a link; give 1 to {count}, the last is the ground"
+            yield "links", f"{outside[0]} is not a link; give 1 to {graph.ground}, the last is the ground"
         elif first == second:
             yield "links", f"{first} is named twice; give two links"
-        elif (first - second) % count in (1, count - 1):
+        elif second in graph.neighbours(first):
             yield (
                 "links",
                 f"{first} and {second} meet in a joint, so their distance is 0; give links that do not",

@@ -31,7 +31,7 @@ class BoxMust(MustForm):
     names: Annotated[Words | None, key("of points and joints; left out, all of them")] = None
 
     def must(self, linkage: Linkage, wants: Sequence[Want]) -> InBox:
-        points = [point.name for point in linkage.points if point.link < len(linkage.joints)]
+        points = [point.name for point in linkage.points if point.link in linkage.graph.moving]
         every = tuple(dict.fromkeys([*points, *(joint.name for joint in linkage.joints)]))
         return InBox(self.low, self.high, self.names or every)
 

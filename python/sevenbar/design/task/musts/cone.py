@@ -93,7 +93,7 @@ class InCone(PoseMust):
 
     def slacks(self, loop: TaskLoop) -> Callable[[Here], Slacks]:
         place = [joint.name for joint in loop.linkage.joints].index(self.joint)
-        before, after = place or len(loop.linkage.joints), place + 1
+        before, after = loop.linkage.graph.between[place]
         ends = [*_line(loop, before, place, self.seat), *_line(loop, after, place, self.stud)]
 
         def slacks(here: Here) -> Slacks:
@@ -108,7 +108,7 @@ def _line(loop: TaskLoop, link: int, place: int, given: Three | None) -> tuple[i
     linkage = loop.linkage
     if given is None and has_length(linkage, link):
         ends = loop.rod(link)
-        return ends if place == link - 1 else ends[::-1]
+        return ends if linkage.graph.side(place, link) else ends[::-1]
     way = rod(linkage, link, place) if given is None else np.asarray(given)
     x, y, z = map(float, loop.size / np.linalg.norm(way) * way)
     return loop.place(link, (0.0, 0.0, 0.0)), loop.place(link, (x, y, z))

@@ -96,7 +96,7 @@ class PoseWant(SampledWant):
     def flaws(self, task: DesignTask) -> Flaws:
         linkage, poses = task.draft.linkage, self.poses
         yield from link_flaws(linkage, self.link)
-        if not 1 <= self.link < len(linkage.joints):
+        if self.link not in linkage.graph.moving:
             return
         yield from not_positive("arm", self.arm, "length")
         if not poses.size:

@@ -1,0 +1,34 @@
+"""A column: one freedom of a joint, by its name, kind and unit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from sevenbar.kinematics.loop.joints import Freedom
+
+
+@dataclass(frozen=True)
+class Column:
+    """One freedom of a joint: its number among the columns and its name, its kind, unit and joint.
+
+    The `unit` of its values is "rad" or the length unit, the `joint` counts from 0. `is_output`: it may drive
+    or be driven, as all but the turns of a ball.
+    """
+
+    number: int
+    name: str
+    kind: Freedom
+    unit: str
+    joint: int
+    is_output: bool
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is an angle, not a length."""
+        return self.kind == "turn"
+
+    @property
+    def shown(self) -> tuple[str, float]:
+        """The unit in which people read it, and what 1 of it is there: degrees for angles."""
+        return ("deg", math.degrees(1.0)) if self.turns else (self.unit, 1.0)
