@@ -117,7 +117,11 @@ def test_names_that_the_glossary_for_code_rules_out_only_fall():
     there = Counter()
     for path in (ROOT / "python" / "sevenbar").rglob("*.py"):
         with io.StringIO(path.read_text(encoding="utf-8")) as text:
-            there.update(token.string for token in tokenize.generate_tokens(text.readline) if token.type == tokenize.NAME)
+            there.update(
+                token.string
+                for token in tokenize.generate_tokens(text.readline)
+                if token.type == tokenize.NAME
+            )
     plurals = {"way": "ways", "room": "rooms"}
     counts = {name: there[name] + there[plurals.get(name, "")] for name in NAMES}
     assert {name: count for name, count in counts.items() if count > NAMES[name]} == {}

@@ -11,7 +11,7 @@ from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.passes import InputPass, passes
 from sevenbar.design.task.placing import STILL, Placing
 from sevenbar.design.task.problem import TaskModel, TaskSeed
-from sevenbar.design.task.wanted import Start
+from sevenbar.design.task.wanted import TaskStart
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.sweep.sampling import sobol_points
 
@@ -108,7 +108,7 @@ def _on_pass(model: TaskModel, values: Floats, one: InputPass) -> list[TaskSeed]
 
 
 def _seed(
-    model: TaskModel, values: Floats, one: InputPass, starts: Sequence[Start], placing: Placing
+    model: TaskModel, values: Floats, one: InputPass, starts: Sequence[TaskStart], placing: Placing
 ) -> list[TaskSeed]:
     rows = np.concatenate([own.rows for own in starts])
     q = one.circuit.q[one.rows[rows]]

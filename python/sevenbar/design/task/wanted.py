@@ -34,7 +34,7 @@ class Stations:
 
 
 @dataclass(frozen=True, eq=False)
-class Start:
+class TaskStart:
     """How a want may start on a pass: its unknowns (m,), the rows of the pass (n,), the mean square error."""
 
     u: Floats
@@ -118,7 +118,7 @@ class Wanted(Protocol):
     #: Whether its places go with the linkage, where that may stand anywhere.
     placeable: bool = False
 
-    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Start]:
+    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[TaskStart]:
         """The best starts on a pass, best first; `placing` is `None` where it may stand anywhere."""
 
     def residuals(self, here: Here, u: Floats) -> tuple[Floats, Floats]:

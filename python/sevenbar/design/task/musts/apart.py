@@ -56,9 +56,8 @@ class Apart(PoseMust):
         yield from not_positive("least", self.least, "distance", "a length")
 
     def words(self, linkage: Linkage) -> str:
-        return (
-            f"links {self.links[0]} and {self.links[1]} at least {self.least:g} {linkage.length_unit} apart"
-        )
+        first, second = self.links
+        return f"links {first} and {second} at least {self.least:g} {linkage.length_unit} apart"
 
     def slacks(self, loop: TaskLoop) -> Callable[[Here], Slacks]:
         ends = [end for link in self.links for end in loop.rod(link)]

@@ -64,12 +64,12 @@ class DwellWant(SampledWant):
     def input_range(self) -> tuple[float, float]:
         return min(self.inputs), max(self.inputs)
 
-    def in_loop(self, loop: TaskLoop) -> _Residuals:
+    def in_loop(self, loop: TaskLoop) -> _DwellResiduals:
         inputs = np.linspace(*self.inputs, self.samples)
-        return _Residuals(loop, inputs, np.zeros(self.samples), (0.0, self.level), self.weight)
+        return _DwellResiduals(loop, inputs, np.zeros(self.samples), (0.0, self.level), self.weight)
 
 
-class _Residuals(ReadingsWanted):
+class _DwellResiduals(ReadingsWanted):
     def facts(self, used: Used) -> Sequence[Fact]:
         unit, scale = shown_in(used.loop.linkage, used.loop.linkage.drive.output)
         return (Fact("level", unit, self.shown_zeros(used)[1] * scale),)

@@ -166,11 +166,11 @@ class FunctionWant(SampledWant):
         first = self.zeros[which]
         return None if first is None else first + (self.input, self.output)[which]
 
-    def in_loop(self, loop: TaskLoop) -> _Residuals:
-        return _Residuals(loop, self.input, self.output, self.zeros, self.weight)
+    def in_loop(self, loop: TaskLoop) -> _FunctionResiduals:
+        return _FunctionResiduals(loop, self.input, self.output, self.zeros, self.weight)
 
 
-class _Residuals(ReadingsWanted):
+class _FunctionResiduals(ReadingsWanted):
     def facts(self, used: Used) -> Sequence[Fact]:
         linkage, found = used.loop.linkage, []
         ends = (("input_zero", linkage.drive.joint), ("output_zero", linkage.drive.output))

@@ -13,7 +13,7 @@ from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.match import Match, by_length, in_order, matched
 from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.placing import Placing, placed
-from sevenbar.design.task.wanted import PlacesCurve, Start, Stations, Used, Wanted, distances
+from sevenbar.design.task.wanted import PlacesCurve, Stations, TaskStart, Used, Wanted, distances
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.stops import Three
 
@@ -71,7 +71,7 @@ class PlacesWanted(Wanted):
         """The points along a pass (rows, p, 3)."""
         return np.stack([one.point(*which) for which in self._seen], axis=1)
 
-    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Start]:
+    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[TaskStart]:
         curve = self._along(one)
         if not np.isfinite(curve).all() or (self.closed and not one.closed):
             return []
@@ -81,7 +81,7 @@ class PlacesWanted(Wanted):
             return self._poses(one, curve, placing)
         return self._path(one, curve[:, 0], placing, scaled=scaled)
 
-    def _timed(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Start]:
+    def _timed(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[TaskStart]:
         assert self.timing is not None
         found = [
             self._start(np.array([phase] * self.phase), rows, curve, placing)
@@ -89,13 +89,15 @@ class PlacesWanted(Wanted):
         ]
         return sorted(found, key=lambda start: start.error)[:1]
 
-    def _start(self, u: Floats, rows: Integers, curve: Floats, placing: Placing | None) -> Start:
+    def _start(self, u: Floats, rows: Integers, curve: Floats, placing: Placing | None) -> TaskStart:
         wanted, found = self.places.reshape(-1, 3), curve[rows].reshape(-1, 3)
         own = placed(wanted, found) if placing is None else placing
         error = float(((own.put(found) - wanted) ** 2).sum()) / self.count / self.unit**2
-        return Start(u, rows, error, own)
+        return TaskStart(u, rows, error, own)
 
-    def _path(self, one: InputPass, curve: Floats, placing: Placing | None, *, scaled: bool) -> list[Start]:
+    def _path(
+        self, one: InputPass, curve: Floats, placing: Placing | None, *, scaled: bool
+    ) -> list[TaskStart]:
         wanted = self.places[:, 0]
         ways = {"curve_closed": one.closed, "closed": self.closed}
         if placing is not None:
@@ -108,21 +110,21 @@ class PlacesWanted(Wanted):
         other = by_length(match.placing.put(curve), wanted, **ways)
         error = match.error / 3 / self.unit**2
         found = (match.rows, other) if other is not None else (match.rows,)
-        return [Start(one.unwound(rows), rows, error, match.placing) for rows in found]
+        return [TaskStart(one.unwound(rows), rows, error, match.placing) for rows in found]
 
-    def _poses(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Start]:
+    def _poses(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[TaskStart]:
         """In order, the linkage placed so that some row takes the first pose."""
         n = len(self.places)
         # that bring every other row of the curve to the first pose
         firsts = (placed(self.places[0], curve[row]) for row in range(0, len(curve), FIRST_AT))
         tried = firsts if placing is None else [placing]
-        best: Start | None = None
+        best: TaskStart | None = None
         for put in tried:
             rows, error = in_order(
                 put.put(curve).reshape(len(curve), -1), self.places.reshape(n, -1), closed=one.closed
             )
             if math.isfinite(error) and (best is None or error < best.error):
-                best = Start(one.unwound(rows), rows, error, put)
+                best = TaskStart(one.unwound(rows), rows, error, put)
         if best is None:
             return []
         return [self._start(best.u, best.rows, curve, placing)]

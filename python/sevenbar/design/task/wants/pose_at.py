@@ -143,11 +143,11 @@ class PoseAtWant(SampledWant):
     def input_range(self) -> tuple[float, float]:
         return self.input, self.input
 
-    def in_loop(self, loop: TaskLoop) -> _Residuals:
-        return _Residuals(loop, self)
+    def in_loop(self, loop: TaskLoop) -> _PoseAtResiduals:
+        return _PoseAtResiduals(loop, self)
 
 
-class _Residuals(PlacesWanted):
+class _PoseAtResiduals(PlacesWanted):
     def __init__(self, loop: TaskLoop, want: PoseAtWant) -> None:
         self._want, self._length = want, loop.linkage.length_unit
         unit, turn = max(want.within), want.turn

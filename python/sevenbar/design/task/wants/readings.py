@@ -10,7 +10,7 @@ from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.placing import Placing
-from sevenbar.design.task.wanted import ReadingsCurve, Start, Stations, Used, Wanted, both_signs
+from sevenbar.design.task.wanted import ReadingsCurve, Stations, TaskStart, Used, Wanted, both_signs
 from sevenbar.kinematics.circuits.circuit import Circuit
 
 #: So many of the best starts of a free input zero are tried.
@@ -63,7 +63,7 @@ class ReadingsWanted(Wanted):
     def heights(self, residuals: Floats, by: Floats) -> tuple[Floats, Floats]:
         return both_signs(residuals, by)
 
-    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Start]:
+    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[TaskStart]:
         fixed, inputs, outputs = self.stations.fixed, one.inputs, one.outputs
         phases, rows = one.begins(fixed, free=self._input_free)
         gap = fixed + phases[:, None] - inputs[rows]
@@ -75,7 +75,7 @@ class ReadingsWanted(Wanted):
         errors = ((self._apart(off - zeros) / self.unit) ** 2).mean(axis=1)
         free = np.column_stack([phases, zeros[:, 0]])[:, [self._input_free, self._output_free]]
         best = np.argsort(errors, kind="stable")[:TRIED]
-        return [Start(free[k], rows[k], float(errors[k]), placing) for k in best]
+        return [TaskStart(free[k], rows[k], float(errors[k]), placing) for k in best]
 
     def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
         return self._apart(circuit.output[rows] - self.readings - self.zeros(u)[1])

@@ -22,8 +22,8 @@ from sevenbar.design.task.wanted import (
     Bound,
     Fact,
     PlacesCurve,
-    Start,
     Stations,
+    TaskStart,
     Used,
     Wanted,
     distances,
@@ -144,7 +144,7 @@ class LineWanted(Wanted):
         missed = f"the point goes {size:.4g} {self._length_unit}, {asked}"
         return Bound(np.array([size - self._length]) / self.unit, slopes[None], missed)
 
-    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Start]:
+    def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[TaskStart]:
         curve = one.point(self._name)
         found = []
         for rows in one.begins(self.stations.fixed, free=False)[1][:1]:
@@ -154,7 +154,7 @@ class LineWanted(Wanted):
             along = (p - middle) @ way
             error = float(((p - middle - along[:, None] * way) ** 2).sum() / p.size / self.unit**2)
             u = np.concatenate([middle + along.min() * way, middle + along.max() * way])
-            found.append(Start(u, rows, error, placing))
+            found.append(TaskStart(u, rows, error, placing))
         return found
 
     def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
