@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.description.gallery import names
+from gallery_sample import sampled
 from sevenbar.errors import RequestError
 from sevenbar.export import FORMATS, export
 from sevenbar.simulation.mjcf import Drive
@@ -28,7 +28,7 @@ def gap(data):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", sampled())
 def test_the_model_starts_closed_in_the_pose_asked_for_and_runs(name, tmp_path):
     motion = sb.load(name).motion(90)
     circuit = motion.circuits[-1]

@@ -14,14 +14,12 @@ import yourdfpy
 
 import adams_reader
 import sevenbar as sb
-from sevenbar.description.gallery import names
+from gallery_sample import sampled
 from sevenbar.errors import OutputError, RequestError
 from sevenbar.export import FORMATS, export
 from sevenbar.text.units import LENGTHS
 
-#: In the quick tests; the slow ones take the whole gallery.
-QUICK = ["rssr", "rsur", "rssp", "rscr", "screw_drill"]
-GALLERY = [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.slow]) for name in names()]
+GALLERY = sampled()
 
 
 def link_frames(linkage, circuit, row):

@@ -10,7 +10,7 @@ import trimesh
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 
 import sevenbar as sb
-from sevenbar.description.gallery import names
+from gallery_sample import sampled
 from sevenbar.errors import OutputError
 from sevenbar.export import export
 
@@ -59,14 +59,8 @@ def joint_lines(linkage, circuit, row):
     return lines
 
 
-#: In the quick tests; the slow ones take the whole gallery.
-QUICK = ["rssr", "bennett", "rscr"]
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[] if n in QUICK else [pytest.mark.slow]) for n in names()]
-)
+@pytest.mark.parametrize("name", sampled())
 def test_step_holds_sound_solids_whose_holes_are_in_line(name, tmp_path):
     linkage = sb.load(name)
     motion = linkage.motion(24)
@@ -136,9 +130,7 @@ def loaded_glb(path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[] if n in QUICK else [pytest.mark.slow]) for n in names()]
-)
+@pytest.mark.parametrize("name", sampled())
 def test_glb_holds_watertight_parts_of_the_cad_s_volume(name, tmp_path):
     linkage = sb.load(name)
     motion = linkage.motion(24)
@@ -203,7 +195,7 @@ MEET = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", sampled())
 def test_parts_do_not_run_into_each_other(name, tmp_path):
     export(sb.load(name).motion(90), "glb", tmp_path / "a.glb")
     _, parts = loaded_glb(tmp_path / "a.glb")

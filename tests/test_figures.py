@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 
 import sevenbar as sb
+from gallery_sample import sampled
 from sevenbar.description.gallery import names
 from sevenbar.drawing import output_curves, paths, plot, skeleton
 from sevenbar.drawing.animate import animate
@@ -61,10 +62,7 @@ def test_drawn_links_are_rigid_and_meet_in_the_joints(motions: dict[str, sb.Moti
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=() if name in ("rssr", "bennett") else pytest.mark.slow) for name in names()],
-)
+@pytest.mark.parametrize("name", sampled())
 def test_each_figure_of_each_linkage_can_be_drawn(motions: dict[str, sb.Motion], name: str) -> None:
     motion = motions[name]
     middle = motion.circuits[0].input_range or (0.3, 0.3)

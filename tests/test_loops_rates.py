@@ -32,7 +32,7 @@ WELL = 1e4
 #: The cosine of a ball's second turn below which its first and third have no direction.
 TURNS_DEFINED = 0.2
 
-LINKAGES = {"two": 2, "few": 6, "many": 60}
+LINKAGES = {"two": 2, "few": 3, "many": 60}
 ROWS = 3
 
 FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {

@@ -1,0 +1,18 @@
+"""A part of the gallery for tests that are long: every joint kind, form of file and overconstrained motion once.
+
+The whole gallery is in `make proof`.
+"""
+
+import pytest
+
+from sevenbar.description.gallery import names
+
+SAMPLE = (
+    *("rssr", "seven_r", "planar_4r", "bennett", "rscr", "rsur", "rssp", "swash_plate"),
+    *("screw_drill", "rccc"),
+)
+
+
+def sampled():
+    """The names of the gallery; those outside the sample are proofs."""
+    return [pytest.param(name, marks=() if name in SAMPLE else pytest.mark.proof) for name in names()]
