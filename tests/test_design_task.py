@@ -368,8 +368,8 @@ def test_the_least_greatest_error_is_found_up_to_a_distance_or_the_wall_of_a_box
         return solved(model, seeds(model, 0, 0, lambda: None)[0])
 
     alone, held = best(), best(must)
-    # the must decides: nothing of its room is left
-    assert abs(held.room) < 1e-9
+    # the must decides: nothing of its slack is left
+    assert abs(held.slack) < 1e-9
     assert held.optimality < 1e-9
     assert held.cost > 1.01 * alone.cost
 
