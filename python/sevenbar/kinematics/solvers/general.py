@@ -56,7 +56,7 @@ class GeneralLoop:
             linkage.drawn_pose if linkage.drawn_pose.any() else None,
         )  # fmt: skip
         self._found: dict[int, Mobility] = {}
-        #: The circuit followed last, by the pose, input and output that it was asked for.
+        #: The circuit followed last, by the pose, input and output it is for.
         self._last: tuple[tuple[bytes, int, int], _core.Followed] | None = None
         held = (parts.columns[joint] for word, joint, _ in self._core.idle if "between-balls" not in word)
         for column in held:

@@ -25,7 +25,7 @@ pub(super) const ROUNDED: f64 = 4.0 * f64::EPSILON;
 const BESIDE: f64 = 1e-3;
 
 /// Places looked at within a step for a change of a column's direction.
-const LOOKS: usize = 6;
+const PLACES: usize = 6;
 
 /// Where a rate falls to this part of the greatest in its step it is searched for two zeros near each other: the series at a sixth of the
 /// step has a rate that touches zero to less than a tenth of that.
@@ -131,18 +131,18 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
         }
         // the place of the greatest rate in each stretch of one direction, as the series at the nearer end has it
         marks.clear();
-        let looks: [(f64, f64); LOOKS + 1] = std::array::from_fn(|look| {
-            let s = a.step * look as f64 / LOOKS as f64;
+        let seen: [(f64, f64); PLACES + 1] = std::array::from_fn(|k| {
+            let s = a.step * k as f64 / PLACES as f64;
             // at the nodes their own rates, so that two steps see one sign of a rate that is zero up to rounding
-            let rate = match look {
+            let rate = match k {
                 0 => a.rates[0][column],
-                LOOKS => b.rates[0][column],
-                _ if 2 * look < LOOKS => a.rate(column, s),
+                PLACES => b.rates[0][column],
+                _ if 2 * k < PLACES => a.rate(column, s),
                 _ => b.rate(column, s - a.step),
             };
             (s, rate)
         });
-        for (s, rate) in looks {
+        for (s, rate) in seen {
             match marks.last_mut() {
                 Some(last) if last.1 * rate >= 0.0 => {
                     if rate.abs() > last.1.abs() {
@@ -153,11 +153,11 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
             }
         }
         if marks.len() < 2 {
-            // two zeros that no look lies between
-            let Some(dip) = dip(chain, (a, b), column, &looks) else {
+            // two zeros that no place seen lies between
+            let Some(dip) = dip(chain, (a, b), column, &seen) else {
                 continue;
             };
-            marks = vec![looks[0], dip, looks[LOOKS]];
+            marks = vec![seen[0], dip, seen[PLACES]];
         }
         // both ends are known, and the places between are checked
         let count = marks.len();
@@ -183,26 +183,26 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
     found
 }
 
-/// A place in a step at which a column's rate has another sign than all the `looks`: by Newton's method from the least of these that lies
+/// A place in a step at which a column's rate has another sign than all the `seen`: by Newton's method from the least of these that lies
 /// between greater ones to where the rate is least.
 fn dip(
     chain: &Chain,
     (a, b): (&Node, &Node),
     column: usize,
-    looks: &[(f64, f64); LOOKS + 1],
+    seen: &[(f64, f64); PLACES + 1],
 ) -> Option<(f64, f64)> {
-    let sign = looks[0].1.signum();
-    let rate = |k: usize| sign * looks[k].1;
+    let sign = seen[0].1.signum();
+    let rate = |k: usize| sign * seen[k].1;
     let falls_in = |k: usize| match k {
         0 => sign * a.rates[1][column] < 0.0,
-        LOOKS => sign * b.rates[1][column] > 0.0,
+        PLACES => sign * b.rates[1][column] > 0.0,
         _ => rate(k - 1) > rate(k) && rate(k) < rate(k + 1),
     };
-    let most = (0..=LOOKS).map(rate).fold(0.0, f64::max);
-    let least = (0..=LOOKS)
+    let most = (0..=PLACES).map(rate).fold(0.0, f64::max);
+    let least = (0..=PLACES)
         .filter(|&k| rate(k) < DIPS * most && falls_in(k))
         .min_by(|&j, &k| rate(j).total_cmp(&rate(k)))?;
-    let mut s = looks[least].0;
+    let mut s = seen[least].0;
     for _ in 0..DIP_STEPS {
         let node = curve::ahead(chain, a, s)?;
         let [rate, slope, bend] = node.rates.map(|order| sign * order[column]);
