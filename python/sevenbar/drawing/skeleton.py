@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.joint_shapes import shape_of
 from sevenbar.drawing.names import joint_label, short
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -19,9 +20,9 @@ from sevenbar.kinematics.loop.geometry import Loop, Point
 from sevenbar.kinematics.loop.graph import Graph
 from sevenbar.kinematics.solvers.plane_and_sphere import sphere_of
 
-#: Half the length of a joint's drawn axis and of its cylinder, and how far a plate and a rail reach past what
-#: slides on them, as shares of the linkage's extent.
-AXIS, CYLINDER, BLOCK, PLATE, RAIL = 0.075, 0.032, 0.04, 0.04, 0.1
+#: Half the length of a joint's drawn axis, and how far a plate and a rail reach past what slides on them, as
+#: shares of the linkage's extent.
+AXIS, PLATE, RAIL = 0.075, 0.04, 0.1
 
 #: A point farther from the linkage than so many of its extents is left outside the picture.
 FARTHEST = 3.0
@@ -195,8 +196,8 @@ def skeleton_of(
             way = np.where(back, -1.0, 1.0) * axis
             return add(middle - half * span * way), add(end + half * span * way)
 
-        shape = joint.row.shape
-        if shape == "plate":
+        shape = shape_of(joint.row)
+        if joint.row.has_plane:
             # as wide as it slides
             across = before[:, i, :3, :2]
             slid = np.einsum("nij,ni->nj", across, far - near)
@@ -206,8 +207,9 @@ def skeleton_of(
             corners = [(ends[a, 0], ends[b, 1]) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]
             marks.append((i, "axis", along(near + across @ ((low + high) / 2), first, AXIS)))
             marks.append((i, "axis", along(far, second, AXIS)))
-            marks.append((i, shape, tuple(add(near + across @ np.array(corner)) for corner in corners)))
-            marks.append((i, "block", along(far, second, BLOCK)))
+            outline = tuple(add(near + across @ np.array(corner)) for corner in corners)
+            marks.append((i, joint.row.shape, outline))
+            marks += [(i, word, along(far, second, shape.half)) for word in shape.marks]
             continue
         if joint.row.rides:
             slid = ((far - near) * first).sum(axis=1)
@@ -218,20 +220,16 @@ def skeleton_of(
             if last:
                 rail = (far - end * second, far - start * second)
             marks.append((i, "rail", (add(rail[0]), add(rail[1]))))
-        if shape != "ball":
+        if shape.half:
             # where nothing slides, a closure error would turn the axis round between two rows
             marks.append((i, "axis", along(near, first, AXIS, far if joint.row.rides else None)))
+        stretches = [(slider, way)]
         if joint.row.has_cross:
             marks.append((i, "axis", along(far, second, AXIS)))
-            marks += [(i, shape, along(near, first, CYLINDER)), (i, shape, along(far, second, CYLINDER))]
-        elif shape in ("cylinder", "thread"):
-            cylinder = along(slider, way, CYLINDER)
-            marks.append((i, "cylinder", cylinder))
-            marks += [(i, shape, cylinder)] if shape == "thread" else []
-        elif shape == "block":
-            marks.append((i, shape, along(slider, way, BLOCK)))
-        else:
-            marks.append((i, shape, (feet[i][1],)))
+            stretches = [(near, first), (far, second)]
+        for stretch in stretches:
+            drawn: tuple[int, ...] = along(*stretch, shape.half) if shape.half else (feet[i][1],)
+            marks += [(i, word, drawn) for word in shape.marks]
     for link in graph.links:
         steps = [feet[joint][graph.side(joint, link)] for joint in graph.joints_of(link)]
         line = steps[:1]
