@@ -195,7 +195,7 @@ def paths(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[int, str]]:
     colours, graph = link_colours(frame.linkage, ends)[0], frame.graph
     found = [(place, POINT_COLOURS[i % len(POINT_COLOURS)]) for i, place in enumerate(frame.points)]
     grounded = graph.neighbours(graph.ground)
-    for joint, place in zip(frame.between_moving, frame.inner, strict=True):
+    for joint, place in frame.inner.items():
         apart = np.abs(frame.places[:, list(frame.points)] - frame.places[:, [place]])
         if not (np.nanmax(apart, axis=(0, 2)) < SAME * frame.span).any():
             runs = [colours[link - 1] for link in graph.between[joint] if link in grounded]

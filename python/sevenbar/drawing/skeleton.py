@@ -49,10 +49,9 @@ class Skeleton:
     `places` (n, k, 3), `names` of each; `polylines` holds the places along each link, the ground's last;
     `marks` what is drawn of each joint: its number, a word and the places it joins. `feet` are the places of
     each joint on the link before it and on the link after it, `points` those of the named points, `stays` the
-    places that tie each point to its link, `owners`
-    that link's place among `links`. `extent` [length] is what the sizes of the marks are shares of. `reach`
-    is how far joints slide, least and most, by the joint's number: across its axis (2,), or along it (1,).
-    `sphere` is that of a spherical loop.
+    places that tie each point to its link, `owners` that link's place among the `polylines`. `extent`
+    [length] is what the sizes of the marks are shares of. `reach` is how far joints slide, least and most, by
+    the joint's number: across its axis (2,), or along it (1,). `sphere` is that of a spherical loop.
     """
 
     linkage: Loop
@@ -96,19 +95,10 @@ class Skeleton:
         return tuple(after for _, after in self.feet)
 
     @property
-    def standing(self) -> tuple[int, ...]:
-        """The joints that stand still."""
-        return tuple(self.joints[joint] for joint in self.graph.standing)
-
-    @property
-    def between_moving(self) -> tuple[int, ...]:
-        """The numbers of the joints between moving links."""
-        return tuple(joint for joint in self.graph.joints if joint not in self.graph.standing)
-
-    @property
-    def inner(self) -> tuple[int, ...]:
-        """The places of the joints between moving links, whose paths are drawn."""
-        return tuple(self.joints[joint] for joint in self.between_moving)
+    def inner(self) -> dict[int, int]:
+        """The places of the joints between moving links, whose paths are drawn, by the joint's number."""
+        standing = self.graph.standing
+        return {joint: place for joint, place in enumerate(self.joints) if joint not in standing}
 
     @property
     def lines(self) -> list[tuple[int, int]]:
