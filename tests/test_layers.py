@@ -49,9 +49,8 @@ ORDER_KNOWN_TO = {
     # the loop by its numbers
     "kinematics/numbers/lengths",
     "kinematics/numbers/word",
-    # the joints as the core takes them, and places along a link
+    # the joints as the core takes them
     "kinematics/solvers/general",
-    "kinematics/solvers/link_places",
 }
 
 #: Joints counted, a joint by its neighbour's number, what is fixed between joints by a link's number; `links`
@@ -60,8 +59,7 @@ ORDER_OF_JOINTS = re.compile(
     r"\blen\((?!reason\.)[^()]*\bjoints\)"
     r"|\bjoints\[[^\],]*[-+%:][^\],]*\]"
     r"|(?<!\bbar)(?<!\bpose)(?<!\bmust)(?<!\})\.links\["
-    r"|\.(?:drawn_)?transforms\b(?! import)"
-    r"|\.drawn_ground\b"
+    r"|\.transforms\b(?! import)"
 )
 
 NOT_IN_THE_CORE = re.compile(

@@ -174,14 +174,14 @@ def test_every_drawn_pose_is_an_assembled_pose(name: str) -> None:
     axes: Any = plot.configuration(motion, positions=positions, view="space").axes[0]
     crank, coupler, rocker = motion.linkage.lengths
     bars = [np.array(line.get_data_3d()).T for line in axes.lines if len(line.get_data_3d()[0]) == 2]
-    rows = {tuple(np.round(row.ravel(), 6)) for row in frame.places[:, list(frame.inner)]}
+    rows = {tuple(np.round(row.ravel(), 6)) for row in frame.places[:, list(frame.inner.values())]}
     couplers = [bar for bar in bars if tuple(np.round(bar.ravel(), 6)) in rows]
     assert len(couplers) >= positions
     for bar in couplers:
         assert np.linalg.norm(bar[0] - bar[1]) == pytest.approx(coupler, rel=1e-9)
     # arms from the joints' axes, on which they may be drawn anywhere
     axes = {joint: ends for joint, word, ends in frame.marks if word == "axis"}
-    for joint, ball, length in ((0, frame.inner[0], crank), (3, frame.inner[1], rocker)):
+    for joint, ball, length in ((0, frame.inner[1], crank), (3, frame.inner[2], rocker)):
         start, end = np.moveaxis(frame.places[:, list(axes[joint])], 1, 0)
         across = np.cross(frame.places[:, ball] - start, end - start)
         found = np.linalg.norm(across, axis=1) / np.linalg.norm(end - start, axis=1)
@@ -190,8 +190,8 @@ def test_every_drawn_pose_is_an_assembled_pose(name: str) -> None:
 
 def test_centres_are_those_of_the_paper(crank_rocker: sb.Motion) -> None:
     frame = skeleton.skeleton(crank_rocker, crank_rocker.circuits[0])
-    np.testing.assert_allclose(frame.pose(0)[frame.standing[0]], [0, 0, 700], atol=1e-9)
-    np.testing.assert_allclose(frame.pose(0)[frame.standing[1]], [700, 0, 0], atol=1e-9)
+    np.testing.assert_allclose(frame.pose(0)[frame.joints[0]], [0, 0, 700], atol=1e-9)
+    np.testing.assert_allclose(frame.pose(0)[frame.joints[-1]], [700, 0, 0], atol=1e-9)
     axes = [frame.pose(0)[list(places)] for _, word, places in frame.marks if word == "axis"]
     ways = [np.abs(np.diff(ends, axis=0)[0]) / np.linalg.norm(ends[1] - ends[0]) for ends in axes]
     np.testing.assert_allclose(ways, [[0, 0, 1], [1, 0, 0]], atol=1e-12)

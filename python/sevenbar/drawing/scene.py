@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import Normal, withStroke
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.joint_shapes import shape_of
 from sevenbar.drawing.names import amount_text, shown_name
 from sevenbar.drawing.skeleton import DrawnSphere, Skeleton
 from sevenbar.drawing.smooth import smooth_line
@@ -194,7 +195,7 @@ def paths(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[int, str]]:
     colours, graph = link_colours(frame.linkage, ends)[0], frame.graph
     found = [(place, POINT_COLOURS[i % len(POINT_COLOURS)]) for i, place in enumerate(frame.points)]
     grounded = graph.neighbours(graph.ground)
-    for joint, place in zip(frame.between_moving, frame.inner, strict=True):
+    for joint, place in frame.inner.items():
         apart = np.abs(frame.places[:, list(frame.points)] - frame.places[:, [place]])
         if not (np.nanmax(apart, axis=(0, 2)) < SAME * frame.span).any():
             runs = [colours[link - 1] for link in graph.between[joint] if link in grounded]
@@ -291,7 +292,7 @@ def _mark(word: str, colour: str, scale: float = 1.0) -> dict[str, Any]:
         "arm": {"color": colour, "lw": 5 * scale, "solid_capstyle": "butt"},
         "plate": {"color": colour, "lw": 1.6 * scale},
         "block": block,
-        "ball": {"color": "#f4f4f4", "ls": "", "marker": "o", "ms": 8 * scale, "mec": "#303030", "mew": 2.4},
+        "ball": {**shape_of(KINDS["S"]).legend, "ms": 8 * scale},
     }[word]
 
 
@@ -314,17 +315,9 @@ def keys(frame: Skeleton, ends: tuple[str, str], seen: Projection) -> list[Line2
     found.append(Line2D([], [], color=paler(GROUND, 0.35), lw=4 * thick, label=say("ground")))
     for letter, kind in KINDS.items():
         if letter in frame.linkage.kind:
-            style = {
-                "cylinder": {"marker": "s", "ms": 7},
-                "block": {"marker": "s", "ms": 9, "mec": "#202020", "mew": 0.8},
-                "thread": {"marker": "s", "ms": 6, "mfc": "white", "mew": 2.4},
-                "plate": {"marker": "D", "ms": 7, "mfc": "white", "mew": 1.6},
-                "arm": {"marker": "P", "ms": 8},
-                "ball": _mark("ball", JOINT),
-            }[kind.shape]
-            if seen.planar and kind.shape == "cylinder":
-                style = {"marker": "o", "ms": 7, "mfc": "white", "mew": 2.0, "mec": "#303030"}
-            look = {"color": JOINT, "ls": ""} | style
+            shape = shape_of(kind)
+            style = shape.legend_flat if seen.planar and shape.legend_flat else shape.legend
+            look = {"color": JOINT, "ls": "", **style}
             look = {k: v * thick if k in ("ms", "mew") else v for k, v in look.items()}
             found.append(Line2D([], [], **look, label=say(kind.legend)))
     if frame.sphere is not None and not frame.sphere.free:

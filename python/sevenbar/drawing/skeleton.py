@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.joint_shapes import shape_of
 from sevenbar.drawing.names import joint_label, short
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -19,9 +20,9 @@ from sevenbar.kinematics.loop.geometry import Loop, Point
 from sevenbar.kinematics.loop.graph import Graph
 from sevenbar.kinematics.solvers.plane_and_sphere import sphere_of
 
-#: Half the length of a joint's drawn axis and of its cylinder, and how far a plate and a rail reach past what
-#: slides on them, as shares of the linkage's extent.
-AXIS, CYLINDER, BLOCK, PLATE, RAIL = 0.075, 0.032, 0.04, 0.04, 0.1
+#: Half the length of a joint's drawn axis, and how far a plate and a rail reach past what slides on them, as
+#: shares of the linkage's extent.
+AXIS, PLATE, RAIL = 0.075, 0.04, 0.1
 
 #: A point farther from the linkage than so many of its extents is left outside the picture.
 FARTHEST = 3.0
@@ -48,10 +49,9 @@ class Skeleton:
     `places` (n, k, 3), `names` of each; `polylines` holds the places along each link, the ground's last;
     `marks` what is drawn of each joint: its number, a word and the places it joins. `feet` are the places of
     each joint on the link before it and on the link after it, `points` those of the named points, `stays` the
-    places that tie each point to its link, `owners`
-    that link's place among `links`. `extent` [length] is what the sizes of the marks are shares of. `reach`
-    is how far joints slide, least and most, by the joint's number: across its axis (2,), or along it (1,).
-    `sphere` is that of a spherical loop.
+    places that tie each point to its link, `owners` that link's place among the `polylines`. `extent`
+    [length] is what the sizes of the marks are shares of. `reach` is how far joints slide, least and most, by
+    the joint's number: across its axis (2,), or along it (1,). `sphere` is that of a spherical loop.
     """
 
     linkage: Loop
@@ -95,19 +95,10 @@ class Skeleton:
         return tuple(after for _, after in self.feet)
 
     @property
-    def standing(self) -> tuple[int, ...]:
-        """The joints that stand still."""
-        return tuple(self.joints[joint] for joint in self.graph.standing)
-
-    @property
-    def between_moving(self) -> tuple[int, ...]:
-        """The numbers of the joints between moving links."""
-        return tuple(joint for joint in self.graph.joints if joint not in self.graph.standing)
-
-    @property
-    def inner(self) -> tuple[int, ...]:
-        """The places of the joints between moving links, whose paths are drawn."""
-        return tuple(self.joints[joint] for joint in self.between_moving)
+    def inner(self) -> dict[int, int]:
+        """The places of the joints between moving links, whose paths are drawn, by the joint's number."""
+        standing = self.graph.standing
+        return {joint: place for joint, place in enumerate(self.joints) if joint not in standing}
 
     @property
     def lines(self) -> list[tuple[int, int]]:
@@ -195,8 +186,8 @@ def skeleton_of(
             way = np.where(back, -1.0, 1.0) * axis
             return add(middle - half * span * way), add(end + half * span * way)
 
-        shape = joint.row.shape
-        if shape == "plate":
+        shape = shape_of(joint.row)
+        if joint.row.has_plane:
             # as wide as it slides
             across = before[:, i, :3, :2]
             slid = np.einsum("nij,ni->nj", across, far - near)
@@ -206,8 +197,9 @@ def skeleton_of(
             corners = [(ends[a, 0], ends[b, 1]) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]
             marks.append((i, "axis", along(near + across @ ((low + high) / 2), first, AXIS)))
             marks.append((i, "axis", along(far, second, AXIS)))
-            marks.append((i, shape, tuple(add(near + across @ np.array(corner)) for corner in corners)))
-            marks.append((i, "block", along(far, second, BLOCK)))
+            outline = tuple(add(near + across @ np.array(corner)) for corner in corners)
+            marks.append((i, joint.row.shape, outline))
+            marks += [(i, word, along(far, second, shape.half)) for word in shape.marks]
             continue
         if joint.row.rides:
             slid = ((far - near) * first).sum(axis=1)
@@ -218,20 +210,16 @@ def skeleton_of(
             if last:
                 rail = (far - end * second, far - start * second)
             marks.append((i, "rail", (add(rail[0]), add(rail[1]))))
-        if shape != "ball":
+        if shape.half:
             # where nothing slides, a closure error would turn the axis round between two rows
             marks.append((i, "axis", along(near, first, AXIS, far if joint.row.rides else None)))
+        stretches = [(slider, way)]
         if joint.row.has_cross:
             marks.append((i, "axis", along(far, second, AXIS)))
-            marks += [(i, shape, along(near, first, CYLINDER)), (i, shape, along(far, second, CYLINDER))]
-        elif shape in ("cylinder", "thread"):
-            cylinder = along(slider, way, CYLINDER)
-            marks.append((i, "cylinder", cylinder))
-            marks += [(i, shape, cylinder)] if shape == "thread" else []
-        elif shape == "block":
-            marks.append((i, shape, along(slider, way, BLOCK)))
-        else:
-            marks.append((i, shape, (feet[i][1],)))
+            stretches = [(near, first), (far, second)]
+        for stretch in stretches:
+            drawn: tuple[int, ...] = along(*stretch, shape.half) if shape.half else (feet[i][1],)
+            marks += [(i, word, drawn) for word in shape.marks]
     for link in graph.links:
         steps = [feet[joint][graph.side(joint, link)] for joint in graph.joints_of(link)]
         line = steps[:1]

@@ -7,21 +7,17 @@ links must cross, as those of many overconstrained ones, keeps overlaps.
 from __future__ import annotations
 
 from functools import cache
-from itertools import product
 
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.export.parts import Assembly, Ball, Bar, Seat, Solid, assemble, hub_height
+from sevenbar.drawing.joint_shapes import Seat, shape_of
+from sevenbar.export.parts import Assembly, Ball, Bar, Solid, assemble, hub_height
 from sevenbar.export.pose import Pose
-from sevenbar.kinematics.loop.joints import Shape
 from sevenbar.kinematics.loop.rods import rod_distance
 
 #: Sweeps over all joints; most layouts no longer change after two.
 SWEEPS = 4
-#: How far a hub may be shifted along its axis, and a slide across it, in heights of a hub.
-SHIFTS = (0.0, 1.2, -1.2, 2.4, -2.4, 4.0, -4.0)
-ASIDE = 2.4
 #: What a shift of one hub's height costs, beside the squared overlap in heights of a hub.
 SHIFT_COST = 0.03
 
@@ -29,7 +25,7 @@ SHIFT_COST = 0.03
 def arrange(pose: Pose) -> Assembly:
     """The parts of a linkage in a pose, seated with the least overlap found."""
     unit = hub_height(pose)
-    shapes = [joint.row.shape for joint in pose.linkage.joints]
+    shapes = [shape_of(joint.row) for joint in pose.linkage.joints]
     # by turns above and below, as in a plane linkage of two layers
     seats = tuple(Seat(side=1 if i % 2 == 0 else -1) for i in range(len(shapes)))
 
@@ -41,25 +37,12 @@ def arrange(pose: Pose) -> Assembly:
     for _ in range(SWEEPS):
         start = seats
         for i, shape in enumerate(shapes):
-            tried = [(*seats[:i], seat, *seats[i + 1 :]) for seat in _choices(shape)]
+            tried = [(*seats[:i], seat, *seats[i + 1 :]) for seat in shape.seats]
             # min keeps the first of equals: what is seated already stays
             seats = min([seats, *tried], key=cost)
         if seats == start:
             break
     return assemble(pose, seats, unit)
-
-
-def _choices(shape: Shape) -> list[Seat]:
-    match shape:
-        case "ball":
-            return []
-        case "arm":
-            return [Seat(a, d, other=b) for a, b, d in product((1, -1), (1, -1), (0.0, 1.0))]
-        case "block":
-            across = [(0.0, 0.0), (ASIDE, 0.0), (-ASIDE, 0.0), (0.0, ASIDE), (0.0, -ASIDE)]
-            return [Seat(side, d, way) for side, d, way in product((1, -1), SHIFTS[:3], across)]
-        case _:
-            return [Seat(side, d) for side, d in product((1, -1), SHIFTS)]
 
 
 def _overlap(assembly: Assembly) -> float:

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.joint_shapes import CYLINDER, Seat, shape_of
 from sevenbar.drawing.scene import link_colours
-from sevenbar.drawing.skeleton import CYLINDER
 from sevenbar.drawing.style import GROUND, JOINT
 from sevenbar.export.pose import Pose, extent_of, shortest_link
 from sevenbar.kinematics.loop.rigid import inverse, perpendicular, placed
@@ -124,20 +124,6 @@ class Assembly:
     bodies: tuple[str, ...]
     #: The height of a hub [length].
     unit: float
-
-
-@dataclass(frozen=True)
-class Seat:
-    """Where a joint's hubs sit, in heights of a hub.
-
-    `side` is that of the axis on which the sleeve lies, as seen from what carries the shaft; `shift` goes
-    along the axis, `aside` across it. A universal joint has `side` and `other`, one for each of its axes.
-    """
-
-    side: int = 1
-    shift: float = 0.0
-    aside: tuple[float, float] = (0.0, 0.0)
-    other: int = 1
 
 
 def hub_height(pose: Pose) -> float:
@@ -300,7 +286,7 @@ class _Carried(NamedTuple):
         sleeve = bases[1] + shift * frames[1][:3, 2]
         way = seat.side * axis
         travels = high - low > 1e-9 * unit
-        square = self.pose.linkage.joints[self.i].row.shape == "block"
+        square = shape_of(self.pose.linkage.joints[self.i].row).square
         near, far = self.builds
         near.hub(carrier, -way, True, side_way if square else None)
         far.hub(sleeve, seat.side * frames[1][:3, 2], not travels, frames[1][:3, 0] if square else None)

@@ -110,23 +110,17 @@ def extent_of(pose: Pose) -> float:
 
 
 def _no_pose(motion: Motion, circuit: Circuit, at: float) -> RequestError:
-    linkage = motion.linkage
-    turns = linkage.turns(circuit.input_column)
-    name = linkage.columns[circuit.input_column]
-
-    def written(value: float) -> str:
-        return f"{math.degrees(value):.6g} deg" if turns else f"{value:.6g} {linkage.length_unit}"
-
+    column = motion.linkage.column_of(circuit.input_column)
     if circuit.input_range is None:
         allowed = "another value"
     else:
         low, high = circuit.input_range
-        allowed = f"a value from {written(low)} to {written(high)}"
+        allowed = f"a value from {column.text(low)} to {column.text(high)}"
     if len(motion.circuits) > 1:
         allowed += ", or another circuit"
     return RequestError(
-        f"at: circuit {circuit.index} has no pose of definite joint values at {name} = {written(at)}; "
-        f"give {allowed}"
+        f"at: circuit {circuit.index} has no pose of definite joint values at {column.name} = "
+        f"{column.text(at)}; give {allowed}"
     )
 
 

@@ -171,8 +171,7 @@ def driven(motion: Motion, circuit: Circuit, branch: int, inputs: Floats) -> tup
 
 def input_text(motion: Motion, value: float) -> str:
     """A value of the input as people read it: degrees, or lengths."""
-    slides = not motion.linkage.turns(motion.input)
-    return f"{value:.6g} {motion.linkage.length_unit}" if slides else f"{math.degrees(value):.6g} deg"
+    return motion.linkage.column_of(motion.input).text(value)
 
 
 def link_rates(circuit: Circuit, rows: Booleans, link: int) -> LinkRates:

@@ -140,8 +140,7 @@ class FreeCourse:
     def shown(self, value: float) -> str:
         """An input with its unit, without rounding."""
         value = 0.0 if abs(value) < HAS * (1.0 if self.turns else self.solver.numbers.size) else value
-        unit = self.linkage.length_unit
-        return f"{math.degrees(value):.9g} deg" if self.turns else f"{value:.9g} {unit}"
+        return self.linkage.column_of(self.path.input).text(value, 9)
 
     @property
     def _inputs(self) -> str:

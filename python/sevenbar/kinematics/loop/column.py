@@ -32,3 +32,7 @@ class Column:
     def shown(self) -> tuple[str, float]:
         """The unit in which people read it, and what 1 of it is there: degrees for angles."""
         return ("deg", math.degrees(1.0)) if self.turns else (self.unit, 1.0)
+
+    def text(self, value: float, digits: int = 6) -> str:
+        """A value as people read it, with its unit, to so many digits."""
+        return f"{math.degrees(value) if self.turns else value:.{digits}g} {self.shown[0]}"

@@ -255,23 +255,6 @@ class Loop(Drawable):
         """The G's of all links (n, 4, 4), the ground's last: `Z(q1) G1 .. Z(qn) Gn = 1`."""
         return np.concatenate([self.links, [inverse(self.ground) @ self.base]])
 
-    @property
-    def drawn_ground(self) -> Floats:
-        """The frame (4, 4) of the last joint on the ground, as it is drawn."""
-        last = self.joints[-1]
-        return self.ground @ last.to_drawn if last.value and last.backwards else self.ground
-
-    @property
-    def drawn_transforms(self) -> Floats:
-        """The same from joint to joint as each is drawn, whatever it reads there."""
-        found = self.transforms
-        for i, joint in enumerate(self.joints):
-            if joint.value and joint.backwards:
-                found[i] = inverse(joint.to_drawn) @ found[i]
-            elif joint.value:
-                found[i - 1] = found[i - 1] @ joint.to_drawn
-        return found
-
     def joint_on(self, joint: int, link: int) -> Floats:
         """The frame (4, 4) of a joint on one of its links, of the link's own frame, where it reads 0.
 

@@ -21,8 +21,8 @@ from typing import Literal
 
 Freedom = Literal["turn", "slide"]
 
-#: What marks a joint in drawings, and is made of it in models of bodies.
-Shape = Literal["cylinder", "block", "thread", "arm", "ball", "plate"]
+#: What a joint is drawn and built as; `drawing.joint_shapes` has each.
+ShapeName = Literal["cylinder", "block", "thread", "arm", "ball", "plate"]
 
 #: The axes of a frame.
 X, Y, Z = 0, 1, 2
@@ -68,7 +68,7 @@ class JointKind:
     words: tuple[str, ...]
     steps: tuple[Step, ...]
     drawn_keys: tuple[str, ...]
-    shape: Shape
+    shape: ShapeName
     adams: str
     row_keys: tuple[str, ...] = ()
     as_rows: str = ""

@@ -74,13 +74,13 @@ def cone_of(linkage: Solvable, circuit: Circuit, joint: str, given: Cone | None 
     curve = course.directions(bend, of_stud=free == "seat")
     best = least_cone(curve)
     place = joint_at(linkage, joint)
-    turn = sides(linkage, place)[0 if free == "seat" else 1]
-    middle = triple("middle", turn.T @ best.axis + 0.0)
+    seat, stud = sides(linkage, place)
+    middle = triple("middle", (seat if free == "seat" else stud).T @ best.axis + 0.0)
     axis = (bend.seat if free == "seat" else bend.stud) if known else best.axis
     (_, least), (_, greatest) = course.bends(curve, axis)
     written = {
-        "seat": triple("seat", sides(linkage, place)[0].T @ bend.seat + 0.0),
-        "stud": triple("stud", sides(linkage, place)[1].T @ bend.stud + 0.0),
+        "seat": triple("seat", seat.T @ bend.seat + 0.0),
+        "stud": triple("stud", stud.T @ bend.stud + 0.0),
     }
     if not known:
         written[free] = middle

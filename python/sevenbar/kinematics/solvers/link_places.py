@@ -8,6 +8,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, triple
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.kinematics.loop.geometry import NO_SIZE, Loop
 from sevenbar.kinematics.loop.rigid import cross, inverse, placed, unit
 from sevenbar.kinematics.solvers.plane_and_sphere import plane_of
@@ -41,23 +42,20 @@ def written_place(loop: Loop, link: int, at: Floats) -> tuple[float, float, floa
         )
     if loop.in_rows and set(loop.kind) == {"R"}:
         return 0.0, float(at[0]), float(at[1])  # as rows have it, of the ground, too
+    here, ahead = (loop.drawn_joint_on(joint, link) for joint in loop.graph.joints_of(link))
     # a turn about the normal, or a slide, leaves it as it is
-    normal = loop.base[:3, :3].T @ plane.normal
-    for before in loop.transforms[: link - 1]:
-        normal = before[:3, :3].T @ normal
-    next_frame = loop.drawn_transforms[link - 1]
+    zero = poses(loop, np.zeros((1, len(loop.columns))))[0, link - 1] @ here
+    normal, next_frame = zero[:3, :3].T @ plane.normal, inverse(here) @ ahead
     along = next_frame[:3, 3] - (normal @ next_frame[:3, 3]) * normal
     if math.hypot(*along) <= NO_SIZE * loop.size:
-        after = loop.joints[link % len(loop.joints)]
-        if "P" not in (loop.joints[link - 1].kind, after.kind):
+        before, after = (loop.joints[joint] for joint in loop.graph.joints_of(link))
+        if "P" not in (before.kind, after.kind):
             raise RequestError(f"at: link {link} has no length, and so no direction; give three numbers")
         # the axis of the last joint of a drawing is reversed in its frame
-        ahead = -next_frame[:3, 2] if after.backwards else next_frame[:3, 2]
-        along = ahead if after.kind == "P" else np.array([0.0, 0.0, 1.0])
+        axis = -next_frame[:3, 2] if after.backwards else next_frame[:3, 2]
+        along = axis if after.kind == "P" else np.array([0.0, 0.0, 1.0])
     along = unit(along)
     place = at[0] * along + at[1] * cross(normal, along)
-    if link == len(loop.joints):
-        # the ground's own frame is that of the report
-        place = placed(loop.drawn_ground, place)
-    x, y, z = placed(inverse(loop.point_frames[link - 1]), place) + 0.0
+    # from the frame of the joint that leads to the link
+    x, y, z = placed(inverse(loop.point_frames[link - 1]), placed(here, place)) + 0.0
     return float(x), float(y), float(z)

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.joint_shapes import shape_of
 from sevenbar.drawing.names import named_together
 from sevenbar.drawing.scene import link_colours, paths
 from sevenbar.drawing.skeleton import Skeleton
@@ -36,11 +37,9 @@ LINK, POINT, STAY, RAIL, STEM = 0.55, 0.9, 0.2, 0.45, 0.6
 #: Links that lie in one line would flicker where they are equally thick: of neighbours each is thicker by
 #: this share than the one before, and the ground is thinner than all, and than rails.
 THICKER, THICKNESSES, GROUND_LINK = 0.09, 3, 0.36
-HINGE, PIN, SLEEVE, NUT, ARM = (1.05, 3.4), (0.5, 4.1), (1.05, 5.0), (1.75, 2.2), (0.62, 5.0)
-BALL, SOCKET, KNUCKLE, THREAD = 1.2, 1.5, 0.95, 0.85
-PLATE, SLIPPER = 0.4, (1.5, 1.4)
-#: The sides of a block across and along its rail, of a foot across and along, and its distance, in units.
-BLOCK, FOOT, REACH = (1.9, 5.0), (5.4, 0.6), 4.2
+THREAD = 0.85
+#: The sides of a foot across and along, and its distance, in units.
+FOOT, REACH = (5.4, 0.6), 4.2
 #: Strokes behind a foot: how many, how far each leans out as a share of its width, how thick in units.
 STROKES, LEAN, STROKE = 5, 0.13, 0.12
 #: Where feet go that are free to choose: down, and level ones always to the same side.
@@ -170,31 +169,28 @@ def _add_joint(
     unit: float,
 ) -> None:
     """The solids of a joint that does not slide."""
-    spin, far = joint.spin, joint.far
-    if joint.kind.shape == "cylinder":
-        solids.add("cylinder", spin, HINGE[0] * unit, colour, length=HINGE[1] * unit)
-        solids.add("cylinder", spin, PIN[0] * unit, STEEL, length=PIN[1] * unit)
-    elif joint.kind.has_plane:
-        # a slipper on a plate as wide as it slides
-        lower, upper = joint.axes
-        away = every[:, far] - every[:, list(lower)].mean(axis=1)
-        wide = float(np.linalg.norm(away, axis=1).max()) + SLIPPER[0] * unit
-        solids.add("cylinder", lower, wide, STEEL, length=PLATE * unit)
-        solids.add("cylinder", upper, SLIPPER[0] * unit, colour, length=SLIPPER[1] * unit)
-    elif joint.kind.has_cross:
-        for axis in joint.axes:
-            solids.add("cylinder", axis, ARM[0] * unit, colour, length=ARM[1] * unit)
-        solids.add("ball", (far, far), KNUCKLE * unit, colour, length=KNUCKLE * unit)
-    else:
-        # the link between two ball joints has both sockets
-        where = solids.layout
-        before, after = where.frame.graph.between[index]
-        other = where.frame.graph.others_of(before, index)
-        link = before if any(where.joints[i].kind.is_ball for i in other) else after
-        line = where.frame.along(link)
-        out = (line[1], line[0]) if link == after else (line[-2], line[-1])
-        solids.add("ball", (far, far), BALL * unit, BRIGHT, length=BALL * unit)
-        solids.add("socket", out, SOCKET * unit, links[link - 1], share=1.0, length=SOCKET * unit)
+    frame, far = solids.layout.frame, joint.far
+    before, after = frame.graph.between[index]
+    # the link between two ball joints has both sockets
+    others = frame.graph.others_of(before, index)
+    holder = before if any(solids.layout.joints[i].kind.is_ball for i in others) else after
+    line = frame.along(holder)
+    places = {
+        "spin": [joint.spin],
+        "first": joint.axes[:1],
+        "last": joint.axes[-1:],
+        "each": joint.axes,
+        "centre": [(far, far)],
+        "link": [(line[1], line[0]) if holder == after else (line[-2], line[-1])],
+    }
+    colours = {"joint": colour, "link": links[holder - 1], "steel": STEEL, "bright": BRIGHT}
+    for one in shape_of(joint.kind).solids:
+        wide = one.radius * unit
+        if one.reaches:
+            away = every[:, far] - every[:, list(joint.axes[0])].mean(axis=1)
+            wide += float(np.linalg.norm(away, axis=1).max())
+        for pair in places[one.on]:
+            solids.add(one.mesh, pair, wide, colours[one.colour], share=one.share, length=one.length * unit)
 
 
 def _add_slide(
@@ -238,10 +234,9 @@ def _add_slide(
             share=at_rail, shift=low + (k + 0.5) * piece, length=piece, guide=guide,
             roll=rail_roll, slide=(rail, slider), twist=rail_twist,
         )  # fmt: skip
-    sliders = {"block": ("box", BLOCK), "cylinder": ("cylinder", SLEEVE), "thread": ("hexagon", NUT)}
-    shape, (wide, long) = sliders[joint.kind.shape]
+    slider_mesh, wide, long = shape_of(joint.kind).slider
     solids.add(
-        shape,
+        slider_mesh,
         to_slider,
         wide * unit,
         colour,
