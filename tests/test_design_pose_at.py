@@ -216,6 +216,7 @@ WRONG = {
     "no place": ('at = ["1cm", 2, 3], ', "", "want[1].pose.at: is missing"),
     "a matrix and an angle": ("angle = 30", "angle = 30, matrix = [[1,0,0],[0,1,0],[0,0,1]]", "want[1].pose: a matrix, and axis or angle"),
     "placed anywhere": ("[free]", 'placement = "free"\n[free]', "want[1]: a pose at an input stands in space, and with placement 'free'"),
+    "outside a range": ('turn = "0.01rad"\n', 'turn = 1\n[[must]]\nkind = "range"\njoint = "crank"\nrange = "40:90"\n', "must[1].range: want 1 needs crank outside it"),
     "elsewhere": ("", BODY[BODY.index("[[want]]") :].replace("1cm", "9cm").replace("0.5rad", "28.64788975654116deg"), "want[2].pose: want 1 wants link 2 elsewhere at this input"),
 }  # fmt: skip
 

@@ -239,7 +239,7 @@ def _of_figures(model: TaskModel, draft: Draft, solution: Solved, motion: Motion
     circuit, values = found[1].index, model.figures.read(*found)
     if not np.isfinite(list(values.values())).all() or circuit >= len(motion.circuits):
         return Refusal("figure", "a measure has no value there")
-    wanted = [want for want in model.figure_wants if want.aim is not None]
+    wanted = [want for want in model.figure_wants if not isinstance(want.value, str)]
     errors = np.array([want.residual(values[want.name], np.zeros(1))[0] for want in wanted] or [0.0])
     lowest = motion.circuits[circuit].transmission
     claim = Claim(np.empty(0), np.empty(0), errors, "", {}, whole_turn=True)

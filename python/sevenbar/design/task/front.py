@@ -218,7 +218,7 @@ def _front(task: DesignTask, pair: tuple[int, int], kept: Sequence[ParetoPoint])
     Of a measure that shall be great the value is its negative before, and the measure itself in the answer.
     """
     wants = [task.wants[place] for place in pair]
-    signs = [-1.0 if isinstance(want, MeasureWant) and want.is_great else 1.0 for want in wants]
+    signs = [-1.0 if isinstance(want, MeasureWant) and want.value == "great" else 1.0 for want in wants]
     return tuple(
         replace(point, values=(signs[0] * point.values[0], signs[1] * point.values[1]))
         for point in _unbeaten(kept)

@@ -523,7 +523,7 @@ class TaskProblem:
 
     def _by_ends(self, want: MeasureWant) -> bool:
         """Whether it is the least of two angles that shall be great."""
-        return want in self.model.angle_wants and want.is_great
+        return want in self.model.angle_wants and want.value == "great"
 
     def _stacked(self, rows: Sequence[tuple[float, Floats]]) -> Slacks:
         """Single values with slopes (k,) by the free numbers, as (r,) with those by all unknowns."""

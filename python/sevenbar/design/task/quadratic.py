@@ -14,15 +14,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.task.optimum import (
-    ROUNDING,
-    Conditions,
-    conditions,
-    cost_of,
-    lack_of,
-    squares,
-    unknowns,
-)
+from sevenbar.design.task.optimum import ROUNDING, Conditions, conditions, cost_of, lack_of, squares, unknowns
 from sevenbar.design.task.problem import TaskProblem, TaskValues
 
 #: Most steps of sequential quadratic programs; for the greatest residual, which begin near their end.

@@ -186,38 +186,31 @@ class SampledWant(Want):
 
 
 class MeasureWant(Want):
-    """An objective that is a measure of the circuit by its `name`."""
+    """An objective that is a measure of the circuit by its `name`: a value, or small, or great."""
 
     name: str
-    #: What counts as 1.
-    unit: float
+    value: float | Literal["small", "great"]
 
     @property
     def measures(self) -> tuple[str, ...]:
         """Its own."""
         return (self.name,)
 
-    @property
-    @abstractmethod
-    def aim(self) -> float | None:
-        """The value that it shall have; `None` where it is the greater, or the less, the better."""
-
-    @property
-    @abstractmethod
-    def is_great(self) -> bool:
-        """Whether it is the greater the better."""
-
     @abstractmethod
     def residual(self, value: float, by: Floats) -> tuple[float, Floats]:
         """The residual at a value of the measure, and its slopes."""
 
-    @abstractmethod
     def loss(self, value: float) -> float:
-        """What a value of the measure lacks, in its unit: the less the better."""
+        """The distance from the value; the measure itself, or its negative where it shall be great."""
+        if isinstance(self.value, str):
+            return -value if self.value == "great" else value
+        return abs(value - self.value)
 
-    @abstractmethod
     def ends(self, loss: float) -> tuple[float | None, float | None]:
         """The least and the most of the measure that lack no more."""
+        if isinstance(self.value, str):
+            return (-loss, None) if self.value == "great" else (None, loss)
+        return self.value - loss, self.value + loss
 
 
 class Must(Asked):

@@ -64,8 +64,8 @@ class FigureMust(MeasureMust):
                         f"must {i + 1} wants {self.name} outside these ends; leave one out, or widen it",
                     )
         for i, want in enumerate(task.wants):
-            own = want.aim if isinstance(want, MeasureWant) and want.name == self.name else None
-            if own is not None and not least <= own <= most:
+            own = want.value if isinstance(want, MeasureWant) and want.name == self.name else ""
+            if not isinstance(own, str) and not least <= own <= most:
                 yield "name", f"want {i + 1} wants it outside these ends; widen them, or want another value"
 
     @property

@@ -16,9 +16,6 @@ from sevenbar.design.task.values import Goal, Unit, Weight
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
 
-#: What a figure may be wanted to be, other than a value.
-Way = Literal["small", "great"]
-
 
 class FigureForm(WantForm):
     """A measure of the circuit."""
@@ -33,7 +30,7 @@ class FigureForm(WantForm):
 
     def want(self, linkage: Linkage, folder: Path) -> FigureWant:
         if self.value in ("small", "great"):
-            return FigureWant(self.name, cast(Way, self.value), self.unit, self.weight)
+            return FigureWant(self.name, cast(Literal["small", "great"], self.value), self.unit, self.weight)
         try:
             value = measure_value("value", self.value, linkage, self.name)
         except RequestError as error:
@@ -53,17 +50,9 @@ class FigureWant(MeasureWant):
     form = FigureForm
 
     name: str
-    value: float | Way
+    value: float | Literal["small", "great"]
     unit: float = 1.0
     weight: float = 1.0
-
-    @property
-    def aim(self) -> float | None:
-        return None if isinstance(self.value, str) else float(self.value)
-
-    @property
-    def is_great(self) -> bool:
-        return self.value == "great"
 
     def flaws(self, task: DesignTask) -> Flaws:
         if flaw := measure_flaw(task.draft.linkage, self.name):
@@ -88,7 +77,8 @@ class FigureWant(MeasureWant):
         return f"{self.name} {self.value:g} {measure_unit(self.name, linkage)}".rstrip()
 
     def axis(self, place: int, linkage: Linkage) -> tuple[str, str, float]:
-        return f"{'' if self.aim is None else 'off_'}{self.name}", measure_unit(self.name, linkage), 1.0
+        off = "" if isinstance(self.value, str) else "off_"
+        return f"{off}{self.name}", measure_unit(self.name, linkage), 1.0
 
     def residual(self, value: float, by: Floats) -> tuple[float, Floats]:
         if self.value == "small":
@@ -99,13 +89,3 @@ class FigureWant(MeasureWant):
                 return 2 - value / self.unit, -by / self.unit
             return self.unit / value, -self.unit / value**2 * by
         return (value - self.value) / self.unit, by / self.unit
-
-    def loss(self, value: float) -> float:
-        if self.aim is None:
-            return -value if self.is_great else value
-        return abs(value - self.aim)
-
-    def ends(self, loss: float) -> tuple[float | None, float | None]:
-        if self.aim is None:
-            return (-loss, None) if self.is_great else (None, loss)
-        return self.aim - loss, self.aim + loss

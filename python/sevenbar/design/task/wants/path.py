@@ -15,10 +15,10 @@ from sevenbar.design.curve_table import read_curve
 from sevenbar.design.task.flaws import Flaws, point_flaws
 from sevenbar.design.task.given import one_of, read_file, timing
 from sevenbar.design.task.loop import TaskLoop
-from sevenbar.design.task.task import DesignTask, SampledWant, WantForm
+from sevenbar.design.task.task import DesignTask, WantForm
 from sevenbar.design.task.values import OF_INPUT, Places, Timing, Weight
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
-from sevenbar.design.task.wants.places import PlacesWanted, phase_flaws, timed_range, timed_words
+from sevenbar.design.task.wants.places import PlacesWanted, TimedWant
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.linkage import Linkage
 
@@ -62,7 +62,7 @@ class PathForm(WantForm):
 
 
 @dataclass(frozen=True, eq=False)
-class PathWant(SampledWant):
+class PathWant(TimedWant):
     """The path of a named point through places (n, 3) in order, the first not repeated where it is `closed`.
 
     `timing` (n,) [rad, or length] are the inputs at which they are reached, from an unknown start on with
@@ -71,7 +71,6 @@ class PathWant(SampledWant):
     """
 
     form = PathForm
-    placeable = True
 
     point: str
     places: Floats
@@ -97,7 +96,7 @@ class PathWant(SampledWant):
             key, _, message = str(error).partition(": ")
             yield {"points": "places"}.get(key, key), message
             return
-        yield from phase_flaws(self.timing, phase=self.phase)
+        yield from self.phase_flaws()
         count = len(self.places) * (1 if self.timing is None else 2)
         yield from self.exact_flaws(task, count, task.placings + self.phase)
 
@@ -105,23 +104,12 @@ class PathWant(SampledWant):
         return (
             f"path of {self.point}: {len(self.places)} places, {'closed' if self.closed else 'open'}, "
             f"{self.residual_unit(linkage):.4g} {linkage.length_unit} across"
-            f"{timed_words(self.timing, phase=self.phase)}"
+            f"{self.timed}"
         )
-
-    def input_range(self) -> tuple[float, float] | None:
-        return timed_range(self.timing, phase=self.phase)
 
     def places_of(self, point: str) -> Floats | None:
         return self.places if point == self.point else None
 
     def in_loop(self, loop: TaskLoop) -> PlacesWanted:
-        return PlacesWanted(
-            loop,
-            [(self.point, None)],
-            self.places[:, None, :],
-            unit=self.residual_unit(loop.linkage),
-            weight=self.weight,
-            timing=self.timing,
-            phase=self.phase,
-            closed=self.closed,
-        )
+        seen, places = [(self.point, None)], self.places[:, None, :]
+        return PlacesWanted(loop, self, seen, places, self.timing, phase=self.phase, closed=self.closed)

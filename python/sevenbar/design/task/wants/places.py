@@ -13,7 +13,8 @@ from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.match import Match, by_length, in_order, matched
 from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.placing import Placing, placed
-from sevenbar.design.task.wanted import PlacesCurve, Stations, TaskStart, Used, Wanted, distances
+from sevenbar.design.task.task import SampledWant
+from sevenbar.design.task.wanted import PlacesCurve, TaskStart, Stations, Used, Wanted, distances
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.stops import Three
 
@@ -21,8 +22,34 @@ from sevenbar.kinematics.loop.stops import Three
 FIRST_AT = 2
 
 
+class TimedWant(SampledWant):
+    """An objective of places in order, at inputs `timing` (n,) if any, with `phase` from an unknown start."""
+
+    placeable = True
+
+    timing: Floats | None
+    phase: bool
+
+    def input_range(self) -> tuple[float, float] | None:
+        if self.timing is None or self.phase:
+            return None
+        return float(np.min(self.timing)), float(np.max(self.timing))
+
+    def phase_flaws(self) -> Flaws:
+        """That the start of inputs shall be free, and there are none."""
+        if self.phase and self.timing is None:
+            yield "phase", "there are no inputs whose start could be free; give timing, too"
+
+    @property
+    def timed(self) -> str:
+        """That the inputs are given, in words."""
+        if self.timing is None:
+            return ""
+        return ", at given inputs" + (" from a free start" if self.phase else "")
+
+
 class PlacesWanted(Wanted):
-    """Places (n, p, 3) that p points of one link shall take at n stations, relative to a `unit` [length].
+    """Places (n, p, 3) that p points of one link shall take at n stations, relative to its unit [length].
 
     `seen` are the points as a circuit knows them: by a name, or each as a link and a place on it. `timing`
     (n,) are the inputs, from an unknown start on with `phase`; without it each is an unknown.
@@ -34,16 +61,16 @@ class PlacesWanted(Wanted):
     def __init__(
         self,
         loop: TaskLoop,
+        want: SampledWant,
         seen: Sequence[tuple[int | str, Three | None]],
         places: Floats,
-        *,
-        unit: float,
-        weight: float,
         timing: Floats | None,
+        *,
         phase: bool = False,
         closed: bool = False,
     ) -> None:
-        self._seen, self.places, self.unit, self.weight = seen, places, unit, weight
+        self._seen, self.places = seen, places
+        self.unit, self.weight = want.residual_unit(loop.linkage), want.weight
         self.timing, self.phase, self.closed = timing, phase, closed
         self.numbers = [
             loop.named(str(which)) if at is None else loop.place(int(which), at) for which, at in seen
@@ -149,21 +176,3 @@ def frame_ends(arm: float) -> list[Three]:
 def frame_places(poses: Floats, arm: float) -> Floats:
     """Where these are (n, 4, 3) in poses (n, 4, 4)."""
     return np.asarray(np.einsum("nij,pj->npi", poses[:, :3, :3], frame_ends(arm)) + poses[:, None, :3, 3])
-
-
-def phase_flaws(timing: Floats | None, *, phase: bool) -> Flaws:
-    """That the start of inputs shall be free, and there are none."""
-    if phase and timing is None:
-        yield "phase", "there are no inputs whose start could be free; give timing, too"
-
-
-def timed_range(timing: Floats | None, *, phase: bool) -> tuple[float, float] | None:
-    """The least and the greatest of given inputs; `None` where the search has to find them."""
-    return None if timing is None or phase else (float(np.min(timing)), float(np.max(timing)))
-
-
-def timed_words(timing: Floats | None, *, phase: bool) -> str:
-    """That the inputs are given."""
-    if timing is None:
-        return ""
-    return ", at given inputs" + (" from a free start" if phase else "")

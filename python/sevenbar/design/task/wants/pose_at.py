@@ -143,6 +143,9 @@ class PoseAtWant(SampledWant):
     def input_range(self) -> tuple[float, float]:
         return self.input, self.input
 
+    def readings_of(self, column: str, linkage: Linkage) -> Floats | None:
+        return np.array([self.input]) if column == linkage.drive.joint else None
+
     def in_loop(self, loop: TaskLoop) -> _PoseAtResiduals:
         return _PoseAtResiduals(loop, self)
 
@@ -154,15 +157,9 @@ class _PoseAtResiduals(PlacesWanted):
         # an end of an axis as long as this goes by the unit when the frame turns by the angle
         self._arm = unit if turn is None else unit / (2 * math.sin(turn / 2))
         count = 1 if turn is None else 4
-        ends = frame_ends(self._arm)[:count]
-        super().__init__(
-            loop,
-            [(want.link, end) for end in ends],
-            frame_places(want.pose[None], self._arm)[:, :count],
-            unit=unit,
-            weight=want.weight,
-            timing=np.array([want.input]),
-        )
+        seen = [(want.link, end) for end in frame_ends(self._arm)[:count]]
+        places = frame_places(want.pose[None], self._arm)[:, :count]
+        super().__init__(loop, want, seen, places, np.array([want.input]))
 
     def bound(self, here: Here) -> Bound:
         places, by = here.points[0, self.numbers], here.points_by[0, self.numbers]

@@ -15,16 +15,9 @@ from sevenbar.design.curve_table import read_poses
 from sevenbar.design.task.flaws import Flaws, link_flaws, not_positive, order_flaws
 from sevenbar.design.task.given import one_of, read_file, timing
 from sevenbar.design.task.loop import TaskLoop
-from sevenbar.design.task.task import DesignTask, SampledWant, WantForm, linkage_size
+from sevenbar.design.task.task import DesignTask, WantForm, linkage_size
 from sevenbar.design.task.values import OF_INPUT, Link, Timing, Weight
-from sevenbar.design.task.wants.places import (
-    PlacesWanted,
-    frame_ends,
-    frame_places,
-    phase_flaws,
-    timed_range,
-    timed_words,
-)
+from sevenbar.design.task.wants.places import PlacesWanted, TimedWant, frame_ends, frame_places
 from sevenbar.design.task.wants.pose_form import PoseForm
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.rigid import flaw_of_rotation, inverse
@@ -72,7 +65,7 @@ class PosesForm(WantForm):
 
 
 @dataclass(frozen=True, eq=False)
-class PoseWant(SampledWant):
+class PoseWant(TimedWant):
     """Poses (n, 4, 4) of a link, counted from 1, in order: rotation and shift from its frame to the report's.
 
     The link's frame is that in which its points are written (`[[point]] at`): of a drawn linkage the report's
@@ -81,7 +74,6 @@ class PoseWant(SampledWant):
     """
 
     form = PosesForm
-    placeable = True
 
     link: int
     poses: Floats
@@ -116,26 +108,17 @@ class PoseWant(SampledWant):
                 yield "timing", f"{self.timing.size} inputs for {len(poses)} poses; give one for each"
             else:
                 yield from order_flaws(self.timing, "timing", "input of pose")
-        yield from phase_flaws(self.timing, phase=self.phase)
+        yield from self.phase_flaws()
         count = len(poses) * (2 if self.timing is None else 3)
         yield from self.exact_flaws(task, count, task.placings + self.phase)
 
     def words(self, linkage: Linkage) -> str:
         return (
             f"link {self.link} in {len(self.poses)} poses, arm {self.arm:.4g} {linkage.length_unit}"
-            f"{timed_words(self.timing, phase=self.phase)}"
+            f"{self.timed}"
         )
-
-    def input_range(self) -> tuple[float, float] | None:
-        return timed_range(self.timing, phase=self.phase)
 
     def in_loop(self, loop: TaskLoop) -> PlacesWanted:
-        return PlacesWanted(
-            loop,
-            [(self.link, end) for end in frame_ends(self.arm)],
-            frame_places(self.poses, self.arm),
-            unit=self.arm,
-            weight=self.weight,
-            timing=self.timing,
-            phase=self.phase,
-        )
+        seen = [(self.link, end) for end in frame_ends(self.arm)]
+        places = frame_places(self.poses, self.arm)
+        return PlacesWanted(loop, self, seen, places, self.timing, phase=self.phase)
