@@ -73,7 +73,7 @@ def turns_in_line(coupling: Coupling, letters: str) -> bool:
 
 @np.errstate(invalid="ignore", divide="ignore")
 def turning_cosines(coupling: Coupling, axes: Axes) -> Floats | None:
-    """The cosines (2,) of the angle where the input is in line with the ground, by the axes of a pose.
+    """The cosines (n, 2) of the angle where the input is in line with the ground, by the axes of poses.
 
     For a slide as the output where it is square to that. Beyond 1 the input does not turn so far. Analytic in
     the axes, real or complex; not finite where two axes coincide. `None` for other loops, and for a slide as
@@ -82,22 +82,26 @@ def turning_cosines(coupling: Coupling, axes: Axes) -> Floats | None:
     letters, pin, near, output = axes.parts.letters, coupling.at, coupling.free[0], coupling.output
     if not turns_in_line(coupling, letters):
         return None
-    around = (coupling.input, near, pin, output)
+    around = [coupling.input, near, pin, output]
+    ways = np.array([1.0, -1.0])
     if coupling.normal is None:
-        own = [axes.directions[i, 0] for i in around]
-        pairs = list(zip(own, [*own[1:], own[0]], strict=True))
-        cosines = [(u * v).sum() for u, v in pairs]
-        sines = [np.sqrt((w * w).sum()) for w in (np.cross(u, v) for u, v in pairs)]
-        apart = [cosines[0] * cosines[3] + way * sines[0] * sines[3] for way in (1, -1)]
-        return np.array([(x - cosines[1] * cosines[2]) / (sines[1] * sines[2]) for x in apart])
-    normal = axes.directions[coupling.input, 0]
-    places = [axes.places[i, 0] for i in around]
-    flat = [place - (place * normal).sum() * normal for place in places]
-    a, b, c, d = (np.sqrt(((v - u) ** 2).sum()) for u, v in zip(flat, [*flat[1:], flat[0]], strict=True))
+        own = axes.directions[around]
+        then = np.roll(own, -1, axis=0)
+        across = np.cross(own, then)
+        cosines = (own * then).sum(axis=-1)[..., None]
+        sines = np.sqrt((across * across).sum(axis=-1))[..., None]
+        apart = cosines[0] * cosines[3] + ways * sines[0] * sines[3]
+        return np.asarray((apart - cosines[1] * cosines[2]) / (sines[1] * sines[2]))
+    normal = axes.directions[coupling.input]
+    places = axes.places[around]
+    flat = places - (places * normal).sum(axis=-1)[..., None] * normal
+    sides = np.roll(flat, -1, axis=0) - flat
+    a, b, c, d = np.sqrt((sides * sides).sum(axis=-1))[..., None]
     if letters[output] == "P":
-        offset = ((flat[2] - flat[0]) * np.cross(normal, axes.directions[output, 0])).sum()
-        return np.array([(offset + way * a) / b for way in (-1, 1)])
-    return np.array([(b * b + c * c - (d + way * a) ** 2) / (2 * b * c) for way in (-1, 1)])
+        square = np.cross(normal, axes.directions[output])
+        offset = ((flat[2] - flat[0]) * square).sum(axis=-1)[:, None]
+        return np.asarray((offset - ways * a) / b)
+    return np.asarray((b * b + c * c - (d - ways * a) ** 2) / (2 * b * c))
 
 
 def _round(course: AngleCourse, start: float, turns: int) -> Extremes:

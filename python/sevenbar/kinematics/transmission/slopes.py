@@ -89,17 +89,14 @@ class AxisPoints:
     def turning(self, places: Floats, by: Floats) -> tuple[Floats, Floats] | None:
         """The two angles [rad] (2,) at which that of an input that turns fully is extreme, and slopes (2, k).
 
-        By the points of a pose. Where the input does not turn they go on below zero, as cosines do beyond 1.
-        `None` for loops that have them in no closed form.
+        By the points (1, points, 3) of a pose and their slopes. Without a full turn they go on below
+        zero, as cosines do beyond 1. `None` for loops that have them in no closed form.
         """
-        cosines = turning_cosines(self.coupling, self._axes(places))
-        if cosines is None:
+        stepped = places + 1j * COMPLEX_STEP * np.moveaxis(by[0], -1, 0)
+        found = turning_cosines(self.coupling, self._axes(np.concatenate([places, stepped])))
+        if found is None:
             return None
-        stepped = [
-            turning_cosines(self.coupling, self._axes(places + 1j * COMPLEX_STEP * own))
-            for own in np.moveaxis(by, -1, 0)
-        ]
-        slopes = np.array(stepped).reshape(-1, 2).T.imag / COMPLEX_STEP
+        cosines, slopes = found[0].real, found[1:].T.imag / COMPLEX_STEP
         sizes = np.abs(cosines)
         inside = np.clip(sizes, 0.0, 1.0)
         sines = np.maximum(np.sqrt(1 - inside**2), DEAD)
