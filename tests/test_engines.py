@@ -61,6 +61,16 @@ def test_the_paper_s_rssr_in_exudyn_is_sevenbar_s_to_the_figures_asked_for(rssr_
     assert max(run.returned) < 1e-9
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_point_on_the_ground_is_in_one_place_in_an_engine_too(engine):
+    places = {"a": (0, 0, 0), "b": (40, 0, 0), "c": (90, 70, 0), "d": (90, 0, 0)}
+    joints = [{"name": n, "kind": "R", "at": at, "axis": (0, 0, 1)} for n, at in places.items()]
+    points = [{"name": "G", "link": 4, "at": (10, 20, 0)}]
+    run = simulate(sb.from_axes(joints, points=points), engine, steps=60)
+    for own in run.points["G"]:
+        np.testing.assert_array_equal(own.position, np.tile([10.0, 20, 0], (len(run.time), 1)))
+
+
 @pytest.mark.parametrize(
     ("quantity", "tolerance"), [("angle", 1e-5), ("velocity", 1e-4), ("acceleration", 1e-2)]
 )

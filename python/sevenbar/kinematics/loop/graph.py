@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sized
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 from sevenbar.arrays import whole_number
 from sevenbar.errors import RequestError
@@ -110,4 +110,9 @@ def loop_graph(joints: Sized) -> Graph:
     >>> one.tree, one.closing
     ((0, 1, 2), (3,))
     """
-    return Graph(tuple((joint or len(joints), joint + 1) for joint in range(len(joints))))
+    return _ring(len(joints))
+
+
+@cache
+def _ring(count: int) -> Graph:
+    return Graph(tuple((joint or count, joint + 1) for joint in range(count)))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import accumulate
 
 import numpy as np
 
@@ -56,7 +55,7 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     names = [columns[i] for i in moves]
     if len(moves) != 4 or letters.count("P") > 1 or set(letters) - {"R", "P"}:
         return None
-    between = _between(parts.links, inverse(parts.ground) @ parts.base, moves)
+    between = _between(parts.around, moves)
     roles = link_roles(names, input, output)
     if found is None:
         arcs = [math.atan2(math.hypot(*cross(m[:3, 2], _Z)), float(m[2, 2])) for m in between]
@@ -85,13 +84,12 @@ def _normals(parts: Expanded, moves: Sequence[int], normal: Floats) -> list[Floa
 
     Balls and slides may have any frame; all joints at zero, which changes nothing where all move in a plane.
     """
-    frames = list(accumulate([parts.base, *parts.links], np.matmul))
+    frames = parts.frames
     return [_Z if parts.letters[i] == "R" else frames[i][:3, :3].T @ normal for i in moves]
 
 
-def _between(links: Sequence[Floats], last: Floats, moves: Sequence[int]) -> list[Floats]:
+def _between(ahead: Sequence[Floats], moves: Sequence[int]) -> list[Floats]:
     """The transforms (4, 4) from each joint that moves to the next one, all joints at zero."""
-    ahead = [*links, last]
     found = []
     for k, start in enumerate(moves):
         end = moves[(k + 1) % len(moves)]

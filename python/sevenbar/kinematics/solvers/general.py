@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from itertools import accumulate
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
@@ -360,6 +361,16 @@ class Expanded(NamedTuple):
     ground: Floats
     last: list[int]
     columns: list[int]
+
+    @property
+    def frames(self) -> list[Floats]:
+        """The frames (4, 4) of all, each where those before it are at zero."""
+        return list(accumulate([self.base, *self.links], np.matmul))
+
+    @property
+    def around(self) -> list[Floats]:
+        """The transforms (4, 4) from each to the next one, of the last to the first."""
+        return [*self.links, inverse(self.ground) @ self.base]
 
 
 @once_for(0)

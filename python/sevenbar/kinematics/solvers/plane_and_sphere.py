@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import accumulate, combinations
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -114,8 +114,7 @@ def in_plane(loop: Loop) -> InPlane | None:
     letters, count = parts.letters, len(parts.letters)
     if "H" in letters:
         return None
-    # the last leads from the last joint to the first
-    links = [*parts.links, inverse(parts.ground) @ parts.base]
+    links = parts.around
     turns = [] if "S" in letters else [i for i, letter in enumerate(letters) if letter == "R"]
     for still in (None, *turns):
         first = 0 if still is None else (still + 1) % count
@@ -195,7 +194,7 @@ def sphere_of(loop: Loop) -> MotionSphere | None:
     parts = expanded(loop)
     if set(parts.letters) - {"R", "S"} or plane_of(loop) is not None:
         return None
-    frames = list(accumulate([parts.base, *parts.links], np.matmul))
+    frames = parts.frames
     places = np.stack([frame[:3, 3] for frame in frames])
     axes = np.stack([frame[:3, 2] for frame in frames])
     turning = [i for i, letter in enumerate(parts.letters) if letter == "R"]
@@ -214,7 +213,7 @@ def sphere_of(loop: Loop) -> MotionSphere | None:
     ends = [frames[last] for last in parts.last]
     at = [
         (ends[point.link - 1] @ loop.point_frames[point.link - 1] @ (*point.at, 1.0))[:3]
-        if point.link < len(ends)
+        if point.link in loop.graph.moving
         else np.asarray(point.at)
         for point in loop.points
     ]
