@@ -14,7 +14,7 @@ from sevenbar.design.task.match import Match, by_length, in_order, matched
 from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.placing import Placing, placed
 from sevenbar.design.task.task import SampledWant
-from sevenbar.design.task.wanted import PlacesCurve, TaskStart, Stations, Used, Wanted, distances
+from sevenbar.design.task.wanted import PlacesCurve, Stations, TaskStart, Used, Wanted, distances
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.stops import Three
 

@@ -18,7 +18,7 @@ from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.placing import Placing
 from sevenbar.design.task.task import DesignTask, SampledWant, WantForm, linkage_size
 from sevenbar.design.task.values import OF_INPUT, Samples, Span, Weight
-from sevenbar.design.task.wanted import Bound, Fact, PlacesCurve, TaskStart, Stations, Used, Wanted, distances
+from sevenbar.design.task.wanted import Bound, Fact, PlacesCurve, Stations, TaskStart, Used, Wanted, distances
 from sevenbar.design.task.words import ends_in_words
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
