@@ -14,6 +14,7 @@ from evidence.rewritten.drawing import Drawing, drawing, redrawn
 from evidence.rewritten.spatial import SPATIAL
 from sevenbar.arrays import Floats
 from sevenbar.description.gallery import names as gallery_names
+from sevenbar.errors import DescriptionError
 
 X, Z = np.eye(3)[[0, 2]]
 
@@ -159,6 +160,17 @@ REACH, STEEP = 2, 1
 def lattice(index: int, seed: int) -> Drawing:
     """A random loop on a lattice, of seven freedoms and perhaps an idle one."""
     rng = np.random.default_rng([seed, index])
+    while True:
+        one = _drawn(index, rng)
+        try:
+            one.linkage()
+        except DescriptionError:
+            # two joints in one place, say: refused however it is written
+            continue
+        return one
+
+
+def _drawn(index: int, rng: np.random.Generator) -> Drawing:
     letters, weights = list(LATTICE_KINDS), np.array([w for _, w in LATTICE_KINDS.values()])
     while True:
         kinds: list[str] = ["R"]
