@@ -214,8 +214,8 @@ sys.meta_path.append(_OnDemand())
 def __getattr__(name: str) -> Any:
     if name in _NAMES_ON_DEMAND:
         module = importlib.import_module(f"sevenbar.{_NAMES_ON_DEMAND[name]}")
-        found = globals()[name] = getattr(module, name)
-        return found
+        result = globals()[name] = getattr(module, name)
+        return result
     if name == "errors":
         return importlib.import_module("sevenbar.errors")
     if name in _ON_DEMAND:

@@ -79,17 +79,17 @@ def compare(
     loaded = opened(linkage, agree)
     check_out(report, out, force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
-    found: Comparison | ExtremesComparison
+    result: Comparison | ExtremesComparison
     if isinstance(measured, MeasuredExtremes):
         for option, given in (("--align", align), ("--branch", branch)):
             if given not in (None, []):
                 raise RequestError(
                     f"{option}: {table} has lowest and highest values of a circuit, no rows; leave it out"
                 )
-        found = compare_extremes(loaded, measured, ends, speed=speed, circuit=circuit)
+        result = compare_extremes(loaded, measured, ends, speed=speed, circuit=circuit)
     else:
         begin = _start(loaded, ends.input, start)
-        found = compared(
+        result = compared(
             loaded,
             measured,
             ends,
@@ -99,7 +99,7 @@ def compare(
             circuit=circuit,
             branch=branch,
         )
-    deliver(found, report, out, json=json, force=force)
+    deliver(result, report, out, json=json, force=force)
 
 
 def calibrate(
@@ -158,7 +158,7 @@ def calibrate(
         )
     begin = _start(loaded, ends.input, start)
     with progress_bar(f"calibrating {loaded.heading}") as progress:
-        found = calibrated(
+        result = calibrated(
             loaded,
             measured,
             ends,
@@ -174,8 +174,8 @@ def calibrate(
             progress=progress,
         )
         # read again before anything of it is reported
-        written = "" if out is None else calibrated_toml(text, found, source=linkage)
-    deliver(found, calibration_report(lambda _: written, formats), out, json=json, force=force)
+        written = "" if out is None else calibrated_toml(text, result, source=linkage)
+    deliver(result, calibration_report(lambda _: written, formats), out, json=json, force=force)
 
 
 def _measured(

@@ -78,8 +78,8 @@ def exact(
     task = read_exact_task(table)
     given["moving"] = [_pivot(text, task) for text in moving] if moving else None
     with progress_bar(f"all answers to {table.name}"):
-        found = task.answers(linkage, **{name: value for name, value in given.items() if value is not None})
-    deliver(ExactDesigns(found, table.name, task.length_unit), report, out, json=json, force=force)
+        result = task.answers(linkage, **{name: value for name, value in given.items() if value is not None})
+    deliver(ExactDesigns(result, table.name, task.length_unit), report, out, json=json, force=force)
 
 
 def _pivot(text: str, task: ExactTask) -> list[float]:

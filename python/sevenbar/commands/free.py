@@ -77,7 +77,7 @@ def free(
         raise RequestError(f"{linkage}: {NOTHING_ACTS.format(place='it')}")
     chosen = chosen_circuit(loaded.motion(input=input_joint), circuit)
     place = None if start is None else input_value("--from", start, loaded, input_joint)
-    found = chosen.free_motion(
+    result = chosen.free_motion(
         seconds,
         start=place,
         speed=speed,
@@ -90,5 +90,5 @@ def free(
     places = chosen.equilibria(torque=torque or 0.0)
     also = {}
     if film is not None:
-        also[film] = lambda path: animate(found.motion(), path, seconds=seconds)
-    deliver((found, places), report, out, json=json, force=force, also=also)
+        also[film] = lambda path: animate(result.motion(), path, seconds=seconds)
+    deliver((result, places), report, out, json=json, force=force, also=also)

@@ -65,7 +65,7 @@ def function(
         options.check_degrees(y, x, x_range)
     wanted = f"y = {y}" if table is None else f"pairs of {table.name}"
     with progress_bar(f"searching RSSRs for {wanted}") as progress:
-        found = function_generation(
+        result = function_generation(
             None if table is None else read_pairs(table),
             function=y,
             x_range=x_range,
@@ -80,8 +80,8 @@ def function(
             progress=progress,
         )
         # a search that found nothing says why
-        found.required()
-    deliver(found, report, out, json=json, force=force, unfinished=found.unfinished)
+        result.required()
+    deliver(result, report, out, json=json, force=force, unfinished=result.unfinished)
 
 
 def swing(
@@ -101,7 +101,7 @@ def swing(
 
     report = _before(out, designs, figures, force)
     with progress_bar(f"searching crank-rockers with a swing of {swing}") as progress:
-        found = swing_generation(
+        result = swing_generation(
             angle("--swing", swing),
             time_ratio,
             limits=limits_of(transmission, size, None, "mm"),
@@ -110,8 +110,8 @@ def swing(
             progress=progress,
         )
         # a search that found nothing says why
-        found.required()
-    deliver(found, report, out, json=json, force=force, unfinished=found.unfinished)
+        result.required()
+    deliver(result, report, out, json=json, force=force, unfinished=result.unfinished)
 
 
 def _before(out: Path | None, designs: int, figures: list[str] | None, force: bool) -> Report[Synthesis]:

@@ -81,7 +81,7 @@ def map_(
     report = map_report(names, formats, size=size, side=not no_key)
     check_out(report, out, force=force)
     with progress_bar(f"mapping {loaded.heading}") as progress:
-        found = motion_map(
+        result = motion_map(
             loaded,
             ranges,
             grid=usual_lines(chosen) if grid is None else grid,
@@ -90,6 +90,6 @@ def map_(
             progress=progress,
         )
         heights = (
-            measure_heights(found, chosen, take=which, levels=at, ahead=progress.ahead) if chosen else ()
+            measure_heights(result, chosen, take=which, levels=at, ahead=progress.ahead) if chosen else ()
         )
-    deliver(MapFindings(found, heights), report, out, json=json, force=force)
+    deliver(MapFindings(result, heights), report, out, json=json, force=force)

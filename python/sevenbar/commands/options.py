@@ -153,13 +153,13 @@ def words(given: list[str] | None, option: str = "", *, twice: bool = True) -> l
     Raises `RequestError` for an `option` that is given without any, and unless one may come `twice` for that.
     """
     parts = [part.strip() for word in given or () for part in word.split(",")]
-    found = list(dict.fromkeys(part for part in parts if part))
-    if not twice and len(found) < len([part for part in parts if part]):
-        several = next(part for part in found if parts.count(part) > 1)
+    result = list(dict.fromkeys(part for part in parts if part))
+    if not twice and len(result) < len([part for part in parts if part]):
+        several = next(part for part in result if parts.count(part) > 1)
         raise RequestError(f"{option}: {shown(several)} is given twice; leave one out")
-    if given and option and not found:
+    if given and option and not result:
         raise RequestError(f"{option}: is empty; give what it lists, or leave it out")
-    return found
+    return result
 
 
 def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]:

@@ -91,14 +91,14 @@ def path(
     )
     check_counts(designs, starts, seed)
     with progress_bar(f"searching paths of {draft.linkage.name}") as progress:
-        found = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
+        result = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
     deliver(
-        PathDesigns(task, found, str(wanted), seed),
+        PathDesigns(task, result, str(wanted), seed),
         report,
         out,
         json=json,
         force=force,
-        unfinished=found.unfinished,
+        unfinished=result.unfinished,
     )
 
 
@@ -111,8 +111,8 @@ def missing_point(linkage: Linkage) -> str:
 def parsed_bounds(given: list[str]) -> dict[str, tuple[str, str]]:
     """The two ends of each dimension, of words like "L1=100:400" and "L1=10:40cm"."""
     what, hint = "bounds of a dimension", "give the two ends, as in L1=100:400 or L1=10:40cm"
-    found = {name: split_range(text) for name, text in split_named("--bound", given, what, hint).items()}
-    for name, ends in found.items():
+    result = {name: split_range(text) for name, text in split_named("--bound", given, what, hint).items()}
+    for name, ends in result.items():
         if ends is None:
             raise RequestError(f"--bound: {name} has no {what}; {hint}")
-    return {name: ends for name, ends in found.items() if ends is not None}
+    return {name: ends for name, ends in result.items() if ends is not None}

@@ -131,8 +131,8 @@ def inertia(
     loaded = opened(linkage, agree)
     check_out(report, out, force=force)
     motion = _motion(loaded, samples, input_joint, speed, law)
-    found = of_masses(motion, masses, gravity=pull, circuit=circuit, branch=branch)
-    deliver(found, report, out, json=json, force=force)
+    result = of_masses(motion, masses, gravity=pull, circuit=circuit, branch=branch)
+    deliver(result, report, out, json=json, force=force)
 
 
 def parsed_box(text: str, unit: str) -> list[tuple[float, float]]:
@@ -152,13 +152,13 @@ def parsed_box(text: str, unit: str) -> list[tuple[float, float]]:
 def parsed_masses(given: list[str]) -> dict[str, float]:
     """Masses written NAME=KILOGRAMS; `RequestError` for others, and for a point given twice."""
     what, hint = "a mass", "give a point and kilograms, as in P=2.5"
-    found = {}
+    result = {}
     for name, text in split_named("--mass", given, what, hint).items():
         kilograms = amount(text, {"kg": 1.0}, "kg")
         if kilograms is None:
             raise RequestError(f"--mass: {shown(f'{name}={text}')} is not {what}; {hint}")
-        found[name] = kilograms
-    return found
+        result[name] = kilograms
+    return result
 
 
 def _motion(

@@ -71,16 +71,16 @@ def forces_at(
     value = input_value("--at", at, linkage, input_joint)
     column = linkage.input_column(input_joint, "--input")
     rate = None if speed is None else joint_speed(speed, linkage, column)
-    found = PosesAt.of(linkage, value, input=input_joint, speed=rate)
+    result = PosesAt.of(linkage, value, input=input_joint, speed=rate)
     if circuit is not None:
-        whole_number("--circuit", circuit, 0, len(found.motion.circuits) - 1, "a circuit of this motion")
+        whole_number("--circuit", circuit, 0, len(result.motion.circuits) - 1, "a circuit of this motion")
     poses = [
-        pose for pose in found.poses if circuit in (None, pose.circuit) and branch in (None, pose.branch)
+        pose for pose in result.poses if circuit in (None, pose.circuit) and branch in (None, pose.branch)
     ]
     if not poses:
         where = value_text(linkage, column, value)
         limit = _nearest_limit(linkage, column, value)
-        if found.poses:
+        if result.poses:
             raise RequestError(
                 f"--at: no pass of --circuit and --branch has a pose at {where}; "
                 "leave --circuit and --branch out to see all"

@@ -99,7 +99,7 @@ def survey(
     options.checked_designs(designs, 100)
     if resume and journal is None:
         raise RequestError("--resume: of no folder; give --journal too, as in '--journal survey'")
-    kept = options.kept_in(journal)
+    selected = options.kept_in(journal)
     settings: dict[str, Any] = {
         "out": journal, "resume": resume, "mixed": mixed, "threads": threads, "scheduler": scheduler,
     }  # fmt: skip
@@ -112,15 +112,15 @@ def survey(
         loops = LoopSurvey(read.task, 10**5 if count is None else count, seed)
         of_loops = task_report(read.task, designs, command_line(), ())
         check_out(of_loops, out, force=force)
-        with progress_bar(f"surveying linkages of {read.name}", rate=True, kept=kept) as progress:
-            found = carried_out(loops, designs_wanted=designs, **settings, progress=progress)
+        with progress_bar(f"surveying linkages of {read.name}", rate=True, kept=selected) as progress:
+            result = carried_out(loops, designs_wanted=designs, **settings, progress=progress)
         deliver(
-            of_task(found, read.name, read.source),
+            of_task(result, read.name, read.source),
             of_loops,
             out,
             json=json,
             force=force,
-            unfinished=found.unfinished,
+            unfinished=result.unfinished,
         )
         return
     if [y is not None, table is not None, swing is not None].count(True) > 1:
@@ -147,9 +147,9 @@ def survey(
     )
     report = survey_report(designs, command_line())
     check_out(report, out, force=force)
-    with progress_bar(f"surveying RSSRs for {want.title}", rate=True, kept=kept) as progress:
-        found = carried_out(task, **settings, progress=progress)
-    deliver(found, report, out, json=json, force=force, unfinished=found.unfinished)
+    with progress_bar(f"surveying RSSRs for {want.title}", rate=True, kept=selected) as progress:
+        result = carried_out(task, **settings, progress=progress)
+    deliver(result, report, out, json=json, force=force, unfinished=result.unfinished)
 
 
 def _readings(y: str | None, x: str, table: Path | None, input_range: str, output_range: str) -> Wish:
@@ -166,10 +166,10 @@ def _readings(y: str | None, x: str, table: Path | None, input_range: str, outpu
 
 def _bounds(given: list[str]) -> dict[str, tuple[float, float]]:
     """The ranges of --bound: of ratios, and of the angle between the axes [rad]."""
-    found: dict[str, tuple[float, float]] = {}
+    result: dict[str, tuple[float, float]] = {}
     for name, text in split_named("--bound", given, "a range of a number", f"give one {EXAMPLE}").items():
         both = text if ":" in text or ".." in text else f"{text}:{text}"
-        found[name] = angles("--bound", both) if name == "angle" else numbers("--bound", both)
-    if "angle" in found and not all(math.isfinite(end) for end in found["angle"]):
+        result[name] = angles("--bound", both) if name == "angle" else numbers("--bound", both)
+    if "angle" in result and not all(math.isfinite(end) for end in result["angle"]):
         raise RequestError(f"--bound: angle is no angle; give one {EXAMPLE}")
-    return found
+    return result

@@ -91,13 +91,13 @@ def sweep(
         )
     finished = out is not None and is_finished(out)
     with progress_bar(f"sweep of {draft.linkage.name}", rate=True, kept=options.kept_in(out)) as progress:
-        found = carry_out(
+        result = carry_out(
             plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
             progress=progress, ahead=progress.ahead,
         )  # fmt: skip
-    deliver(found, Report(partial(_text, plan.held), _as_dict, spoken=True), json=json)
+    deliver(result, Report(partial(_text, plan.held), _as_dict, spoken=True), json=json)
     if out is not None and not json:
-        parts = found.description["parts"]
+        parts = result.description["parts"]
         typer.echo(
             f"\n{'there already' if finished else 'written'}: {out} (sweep.json, {_counted(parts, 'part')})"
         )

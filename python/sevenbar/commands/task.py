@@ -88,5 +88,5 @@ def task(
         search = designed(read.task, count=designs, starts=drawn, seed=seed, given=given, progress=progress)
         # a search that found nothing says why
         search.required(starts)
-    found = TaskDesigns(search, read.name, read.source, starts, seed)
-    deliver(found, single, out, json=json, force=force, unfinished=found.unfinished)
+    result = TaskDesigns(search, read.name, read.source, starts, seed)
+    deliver(result, single, out, json=json, force=force, unfinished=result.unfinished)

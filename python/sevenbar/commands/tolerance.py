@@ -77,7 +77,7 @@ def tolerance(
     tolerances = parsed_tolerances(given or [])
     report = tolerance_report(formats)
     check_out(report, out, force=force)
-    found = sensitivities(
+    result = sensitivities(
         loaded,
         circuit=circuit,
         samples=samples,
@@ -88,17 +88,17 @@ def tolerance(
         lengths=tuple(tolerances),
     )
     if wanted is not None:
-        error = _wanted(wanted, found.outputs[found.place(of, quantity)].unit)
-        linear = tolerances_for(found, error, distribution=distribution, output=of, quantity=quantity)
+        error = _wanted(wanted, result.outputs[result.place(of, quantity)].unit)
+        linear = tolerances_for(result, error, distribution=distribution, output=of, quantity=quantity)
     else:
-        linear = linear_estimate(found, tolerances, distribution=distribution, output=of, quantity=quantity)
+        linear = linear_estimate(result, tolerances, distribution=distribution, output=of, quantity=quantity)
     with progress_bar(f"designs within the tolerances of {loaded.heading}") as progress:
         # one bar for both
-        worst = worst_case(found, linear, progress=lambda done, total, _="": progress(done, total + count))
+        worst = worst_case(result, linear, progress=lambda done, total, _="": progress(done, total + count))
         tried, exact = worst.tried, None
         if count != 0:
             exact = monte_carlo(
-                found,
+                result,
                 linear,
                 count,
                 seed=seed,

@@ -80,12 +80,12 @@ class Along:
         # no zero where the first terms outweigh all others
         rest = np.abs(slope[:, 2:]).sum(axis=1)
         line = np.abs(slope[:, 0]) - np.abs(slope[:, 1]) - rest
-        found = []
+        result = []
         for i in np.flatnonzero(line <= 0):
             roots = np.sort(real_roots(Chebyshev(slope[i], domain=[-1, 1])))
             a, b = self.edges[i], self.edges[i + 1]
-            found.append((a + b) / 2 + (b - a) / 2 * roots)
-        places = np.sort(np.concatenate(found)) if found else np.empty(0)
+            result.append((a + b) / 2 + (b - a) / 2 * roots)
+        places = np.sort(np.concatenate(result)) if result else np.empty(0)
         return places[np.diff(places, prepend=-np.inf) > SAME * self.length]
 
     def crossings(self, column: int, value: float, marks: Floats, touch: float = 0.0) -> Floats:
@@ -97,10 +97,10 @@ class Along:
         heights = own.at(marks)[:, 0] - value
         heights[np.abs(heights) <= touch] = 0.0
         # an edge belongs to the piece on its left as well
-        found = [marks[heights == 0.0]]
+        result = [marks[heights == 0.0]]
         for i in np.flatnonzero(heights[:-1] * heights[1:] < 0):
-            found.append(np.array([zero_between(own, value, marks[i], marks[i + 1])]))
-        return np.unique(np.concatenate(found))
+            result.append(np.array([zero_between(own, value, marks[i], marks[i + 1])]))
+        return np.unique(np.concatenate(result))
 
     @cached_property
     def reach(self) -> Floats:

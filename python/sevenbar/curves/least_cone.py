@@ -83,8 +83,8 @@ def exchanged(some: Callable[[int], Floats], farthest: Callable[[Floats], Floats
         few = some(WIDE_STARTS)
         axis = least_axis(few)
     for _ in range(EXCHANGES):
-        own, found = few @ axis, farthest(axis)
-        outside = found[found @ axis < own.min() - ALIKE]
+        own, result = few @ axis, farthest(axis)
+        outside = result[result @ axis < own.min() - ALIKE]
         if not outside.size:
             break
         if own.min() > 0:

@@ -65,18 +65,18 @@ def crossings(function: Function, edges: Floats, bounds: Floats, small: float) -
     to each other.
     """
     values = function(edges)
-    found: list[Floats] = []
+    result: list[Floats] = []
     stretches = np.stack([edges[:-1], edges[1:], bounds, values[:-1], values[1:]])
     for _ in range(HALVINGS):
         a, b, slope, low, high = stretches
         passes = (low > 0) != (high > 0)
-        found += [np.column_stack([a[passes], b[passes]])]
+        result += [np.column_stack([a[passes], b[passes]])]
         near = (np.abs(low) + np.abs(high) - slope * (b - a)) / 2 < -small
         left = near & ~passes
         if not left.any() or left.sum() > MOST:
             break
         stretches = _halved(function, stretches[:, left])
-    brackets = np.concatenate(found)
+    brackets = np.concatenate(result)
     if not len(brackets):
         return np.empty(0)
     start, end = brackets.T

@@ -118,8 +118,10 @@ class Pieces:
         # no piece reaches higher than the sum of the sizes of its terms
         ends = chebyshev.chebval(np.array([-1.0, 0.0, 1.0]), self.series.T)
         reach = self.series[:, 0] + np.abs(self.series[:, 1:]).sum(axis=1)
-        kept = reach >= ends.max() - SAME * self.scale
-        some = Pieces(self.rows, self.starts[kept], self.ends[kept], self.series[kept], self.starts)
+        selected = reach >= ends.max() - SAME * self.scale
+        some = Pieces(
+            self.rows, self.starts[selected], self.ends[selected], self.series[selected], self.starts
+        )
         return highest_of(*some.extremes())
 
     def lowest(self) -> Peak:

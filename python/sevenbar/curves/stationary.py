@@ -69,8 +69,8 @@ def real_roots(curve: Chebyshev) -> Floats:
     if len(trimmed) < 2:
         return np.empty(0)
     roots = Chebyshev(trimmed, domain=[-1, 1]).roots()
-    kept = roots.real[(np.abs(roots.imag) < NEARLY_REAL) & (np.abs(roots.real) <= 1 + AT_END)]
-    return np.asarray(np.clip(kept, -1, 1))
+    selected = roots.real[(np.abs(roots.imag) < NEARLY_REAL) & (np.abs(roots.real) <= 1 + AT_END)]
+    return np.asarray(np.clip(selected, -1, 1))
 
 
 def highest_between(evaluate: Callable[[Floats], Floats], low: Floats, high: Floats) -> tuple[Floats, Floats]:

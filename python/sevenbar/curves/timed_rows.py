@@ -47,9 +47,9 @@ class TimedRows:
     def extremes(self) -> tuple[Floats, Floats]:
         """Inputs and values (m,) of the rows that no neighbour exceeds to either side, both ends too."""
         steps = np.sign(np.diff(self.rows))
-        kept = np.ones(len(self.rows), dtype=bool)
-        kept[1:-1] = steps[:-1] * steps[1:] <= 0
-        return self.input[kept], self.rows[kept]
+        selected = np.ones(len(self.rows), dtype=bool)
+        selected[1:-1] = steps[:-1] * steps[1:] <= 0
+        return self.input[selected], self.rows[selected]
 
     def highest(self) -> Peak:
         """The greatest row."""

@@ -131,18 +131,18 @@ def grounds(raw: Mapping[str, Any]) -> dict[tuple[int | str, ...], str]:
     last = len(joints_of(raw))
     already = f"link {last} is the ground already"
     leave = f"is not known here; {already}; leave it out"
-    found: dict[tuple[int | str, ...], str] = {("ground",): leave}
+    result: dict[tuple[int | str, ...], str] = {("ground",): leave}
     for key, kind_key in (("joint", "kind"), ("link", "joint")):
         for i, table in enumerate(entries(raw, key)):
-            found[(key, i, "ground")] = leave
+            result[(key, i, "ground")] = leave
             kind = table.get(kind_key)
             if not names_ground(kind):
                 continue
             what = f"{shown(kind)} is not a joint kind; {already}"
             if is_only_ground(table, kind):
-                found[(key, i)] = ""
-                found[(key, i, kind_key)] = f"{what} and needs no entry; leave this one out"
+                result[(key, i)] = ""
+                result[(key, i, kind_key)] = f"{what} and needs no entry; leave this one out"
             else:
                 kinds = ", ".join(ROW_KINDS)
-                found[(key, i, kind_key)] = f"{what}, being the last; give the joint before it: {kinds}"
-    return found
+                result[(key, i, kind_key)] = f"{what}, being the last; give the joint before it: {kinds}"
+    return result

@@ -149,11 +149,13 @@ class Draft:
         for name in follow:
             if name not in left_out:
                 raise RequestError(self._no_follower(name, list(left_out)))
-        found = self
+        result = self
         for name, dimension in left_out.items():
             if name not in follow:
-                found = replace(found.with_value(dimension.place, dimension.value), held=(*found.held, name))
-        return found
+                result = replace(
+                    result.with_value(dimension.place, dimension.value), held=(*result.held, name)
+                )
+        return result
 
     def giving(self, names: Collection[str]) -> Draft:
         """The draft in which those of its `lengths` that are named are dimensions, as any other number.
@@ -165,8 +167,8 @@ class Draft:
         >>> [d.name for d in draft.dimensions if "." not in d.name], [d.name for d in draft.lengths]
         (['input_link', 'speed'], ['coupler', 'output_link'])
         """
-        found = {d.place: 0 for d in self.lengths if d.name in names or d.label in names}
-        return self.with_places(found) if found else self
+        result = {d.place: 0 for d in self.lengths if d.name in names or d.label in names}
+        return self.with_places(result) if result else self
 
     def _no_follower(self, name: str, left_out: Sequence[str]) -> str:
         known = {dimension.name: dimension for dimension in self.dimensions}
@@ -185,9 +187,9 @@ class Draft:
 
     def without_point(self, index: int) -> Draft:
         """The draft without the point of this place among its points, counted from 0."""
-        kept = [point for i, point in enumerate(self.raw.get("point", ())) if i != index]
+        selected = [point for i, point in enumerate(self.raw.get("point", ())) if i != index]
         others = {key: value for key, value in self.raw.items() if key != "point"}
-        return replace(self, raw=others | ({"point": kept} if kept else {}))
+        return replace(self, raw=others | ({"point": selected} if selected else {}))
 
     @cached_property
     def dimensions(self) -> tuple[Dimension, ...]:

@@ -466,10 +466,10 @@ def _angle(name: str, value: Given) -> float:
 
 def _several(name: str, values: Any, count: int) -> list[Any]:
     several = values.ndim > 0 if isinstance(values, np.ndarray) else isinstance(values, Sequence)
-    found = list(values) if several and not isinstance(values, str) else []
-    if len(found) != count:
+    result = list(values) if several and not isinstance(values, str) else []
+    if len(result) != count:
         raise RequestError(f"{name}: {shown(values)} does not fit; give {count} numbers")
-    return found
+    return result
 
 
 def _lengths(name: str, values: Sequence[Given], others: Mapping[str, Any], count: int = 3) -> list[float]:

@@ -88,11 +88,11 @@ def note_of(source: str | os.PathLike[str]) -> str:
     if not _is_table(content, path):
         return ""
     try:
-        found = _table(content, str(path))
-        found.linkage(from_description, str(path))
+        result = _table(content, str(path))
+        result.linkage(from_description, str(path))
     except SevenbarError:  # which the command reports
         return ""
-    return found.note
+    return result.note
 
 
 @ends_here
@@ -246,9 +246,9 @@ def decoded(content: bytes, place: str) -> str:
             place, f"larger than {largest} bytes, so it is no linkage file; give a TOML file of format 1"
         )
     if table:
-        found = _table(content, place)
-        found.linkage(from_description, place)  # its mistakes, with their places in the table
-        return found.toml(Path(place).name)
+        result = _table(content, place)
+        result.linkage(from_description, place)  # its mistakes, with their places in the table
+        return result.toml(Path(place).name)
     # UTF-16, as Notepad's "Unicode" writes it
     wide = wide_text(content)
     try:

@@ -202,13 +202,13 @@ def _of_frame(
     """The linkage of a data frame of Denavit-Hartenberg rows."""
     from sevenbar.description.table_reader import described_frame
 
-    found = described_frame(frame)
-    if "link" not in found.raw:
+    result = described_frame(frame)
+    if "link" not in result.raw:
         raise RequestError("joints: the table has no Denavit-Hartenberg rows; give it to sevenbar.from_table")
-    found.raw |= {"name": name, "point": [*found.raw.get("point", []), *_plain(points)]}
+    result.raw |= {"name": name, "point": [*result.raw.get("point", []), *_plain(points)]}
     given = {} if speed is None else {"speed": _plain(speed)}
-    found.raw["drive"] = {"speed": 1.0, **found.raw.get("drive", {}), **given}
-    return found.linkage(from_description, "table")
+    result.raw["drive"] = {"speed": 1.0, **result.raw.get("drive", {}), **given}
+    return result.linkage(from_description, "table")
 
 
 def _in_unit(key: str, values: Any, length_unit: str) -> Any:
@@ -354,20 +354,20 @@ def _stops(form: LinkageForm) -> Stops:
 
 def _values(form: LoopForm) -> dict[Place, float]:
     """The numbers of a form by their places, as its word asks for them."""
-    found: dict[Place, float] = {}
+    result: dict[Place, float] = {}
     if form.rssr is not None:
         dimensions = {**dict(form.rssr), "L2": form.rssr.coupler}
-        found |= {("rssr", key): value for key, value in dimensions.items()}
+        result |= {("rssr", key): value for key, value in dimensions.items()}
     for i, row in enumerate(form.link or ()):
-        found |= {("link", i, key): getattr(row, key) for key in ("length", "twist", "offset", "angle")}
+        result |= {("link", i, key): getattr(row, key) for key in ("length", "twist", "offset", "angle")}
     for i, joint in enumerate(form.joint or ()):
         vectors: dict[Place, Any] = {("at",): joint.at, ("axis",): joint.axis or ()}
         vectors |= {("axes", which): axis for which, axis in enumerate(joint.axes or ())}
         for place, vector in vectors.items():
-            found |= {("joint", i, *place, k): value for k, value in enumerate(vector)}
+            result |= {("joint", i, *place, k): value for k, value in enumerate(vector)}
         if joint.longer is not None:
-            found["joint", i, LONGER] = joint.longer
-    return found
+            result["joint", i, LONGER] = joint.longer
+    return result
 
 
 def _linkage(form: LoopForm, written: Form, joints: tuple[Joint, ...], **parts: Any) -> Linkage:

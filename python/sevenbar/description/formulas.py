@@ -119,16 +119,16 @@ def with_numbers(raw: Mapping[str, Any], context: Mapping[str, Any]) -> Mapping[
         [{'twist': 60.0, 'length': 20.0}]
     """
     raw = with_rows(raw, context)
-    found = {}
+    result = {}
     for key, value in raw.items():
         kinds = KINDS_OF_NUMBERS.get(key)
         if kinds is None:
-            found[key] = value
+            result[key] = value
         elif isinstance(value, list):
-            found[key] = [_table(row, key, context) for row in value]
+            result[key] = [_table(row, key, context) for row in value]
         else:
-            found[key] = _table(value, key, context)
-    return found
+            result[key] = _table(value, key, context)
+    return result
 
 
 def _table(table: Any, head: str, context: Mapping[str, Any]) -> Any:
@@ -136,10 +136,10 @@ def _table(table: Any, head: str, context: Mapping[str, Any]) -> Any:
         return table
     kinds = _KINDS_IN[head](table, context) if head in _KINDS_IN else KINDS_OF_NUMBERS[head]
     reads = {key: partial(value_in_file, kind=kind, context=context) for key, kind in kinds.items()}
-    found = {key: _numbers(value, reads[key]) if key in reads else value for key, value in table.items()}
-    if head == "load" and isinstance(found.get("table"), list):
-        found["table"] = [_row(row, reads["between"]) for row in found["table"]]
-    return found
+    result = {key: _numbers(value, reads[key]) if key in reads else value for key, value in table.items()}
+    if head == "load" and isinstance(result.get("table"), list):
+        result["table"] = [_row(row, reads["between"]) for row in result["table"]]
+    return result
 
 
 def _row(row: Any, read: Any) -> Any:

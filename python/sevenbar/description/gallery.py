@@ -55,10 +55,10 @@ def nearest(word: str, others: Iterable[str] = ()) -> tuple[str, ...]:
     near = get_close_matches(sought, plain, n=MOST_OFFERED, cutoff=0.7)
     if len(sought) > 1:
         near += [name for name in plain if sought in name or name in sought]
-    found = [plain[name] for name in near]
-    if not found:
-        found = [name for name in names() if sought in map(_plain, title(name).split())]
-    return tuple(dict.fromkeys(found))[:MOST_OFFERED]
+    result = [plain[name] for name in near]
+    if not result:
+        result = [name for name in names() if sought in map(_plain, title(name).split())]
+    return tuple(dict.fromkeys(result))[:MOST_OFFERED]
 
 
 def _plain(name: str) -> str:

@@ -100,8 +100,8 @@ def _of_circuit(table: TextTable, circuit: int | None) -> TextTable:
         what = "has rows of" if circuit is None else f"has no circuit {circuit}, but"
         listed = ", ".join(map(str, known))
         raise table.wrong(f"{what} circuits {listed}; say which, as in --law-circuit {known[0]}")
-    kept = np.flatnonzero(numbers == circuit)
-    rows, lines = tuple(table.rows[row] for row in kept), tuple(table.lines[row] for row in kept)
+    selected = np.flatnonzero(numbers == circuit)
+    rows, lines = tuple(table.rows[row] for row in selected), tuple(table.lines[row] for row in selected)
     return replace(table, rows=rows, lines=lines)
 
 
@@ -114,7 +114,7 @@ def _places(table: TextTable, linkage: Linkage, column: int, joint: str | None) 
         "time": ("time", 0),
         **{quantity: (own.kind, order) for order, quantity in enumerate(QUANTITIES)},
     }
-    found = {}
+    result = {}
     for quantity, sort in sorts.items():
         fitting = table.columns_of(sort)
         if quantity == "time" and not fitting:
@@ -136,9 +136,9 @@ def _places(table: TextTable, linkage: Linkage, column: int, joint: str | None) 
                 )
             fitting = named
         if fitting:
-            found[quantity] = fitting[0]
-    _refuse_what_is_missing(table, found, name, turns=own.turns)
-    return found
+            result[quantity] = fitting[0]
+    _refuse_what_is_missing(table, result, name, turns=own.turns)
+    return result
 
 
 def _refuse_what_is_missing(table: TextTable, found: Mapping[str, int], name: str, *, turns: bool) -> None:

@@ -28,12 +28,12 @@ def moved_loads(
 
 def _moved(table: Mapping[str, Any], put: Callable[[Floats], Floats], rotation: Floats) -> dict[str, Any]:
     """A table with its places, its tensor and what lies along the axes of its link."""
-    found = dict(table)
+    result = dict(table)
     for key in table.keys() & {"centre", "at"}:
-        found[key] = put(np.array(table[key], dtype=np.float64)).tolist()
+        result[key] = put(np.array(table[key], dtype=np.float64)).tolist()
     # that across the plane turns with it
     if isinstance(table.get("inertia"), (list, tuple)):
-        found["inertia"] = entries_of(rotation @ tensor_of(table["inertia"]) @ rotation.T)
+        result["inertia"] = entries_of(rotation @ tensor_of(table["inertia"]) @ rotation.T)
     for key in table.keys() & {"force", "torque"} if table.get("axes") == "link" else ():
-        found[key] = (rotation @ np.array(table[key], dtype=np.float64)).tolist()
-    return found
+        result[key] = (rotation @ np.array(table[key], dtype=np.float64)).tolist()
+    return result

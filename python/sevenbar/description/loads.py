@@ -33,11 +33,11 @@ def body_of(body: BodyForm, mass_unit: str, length_unit: str) -> Body:
 
 def planar_flaws(bodies: Sequence[BodyForm], linkage: Solvable, mass_unit: str) -> list[Problem]:
     """What is wrong with inertias about one axis alone, which say enough of a planar linkage only."""
-    found = []
+    result = []
     for i, form in enumerate(bodies, 1):
         if flaw := flaw_in_plane(body_of(form, mass_unit, linkage.length_unit), form.link, linkage):
-            found.append(Problem(f"body[{i}].inertia", flaw))
-    return found
+            result.append(Problem(f"body[{i}].inertia", flaw))
+    return result
 
 
 def load_of(load: LoadForm) -> Load:

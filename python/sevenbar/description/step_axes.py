@@ -75,8 +75,8 @@ def axes_of_step(path: str | os.PathLike[str]) -> list[PartAxis]:
             groups.append([face])
         else:
             group.append(face)
-    found = [_axis(group) for group in groups if _is_round(group)]
-    return sorted(found, key=lambda axis: (-len(axis.parts), axis.shape, [round(x, 6) for x in axis.at]))
+    result = [_axis(group) for group in groups if _is_round(group)]
+    return sorted(result, key=lambda axis: (-len(axis.parts), axis.shape, [round(x, 6) for x in axis.at]))
 
 
 def _is_round(group: Sequence[_Face]) -> bool:
@@ -181,8 +181,8 @@ def _parts(path: Path) -> Iterator[tuple[Any, Any, str, Any]]:
 
     def labelled(label: Any) -> str:
         name = TDataStd_Name()
-        found = label.FindAttribute(TDataStd_Name.GetID_s(), name)
-        return str(name.Get().ToExtString()) if found else ""
+        result = label.FindAttribute(TDataStd_Name.GetID_s(), name)
+        return str(name.Get().ToExtString()) if result else ""
 
     def face_name(face: Any) -> str:
         entity = transferred.EntityFromShapeResult(face, 1)

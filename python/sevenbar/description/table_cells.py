@@ -143,15 +143,15 @@ class TableCells:
 
     def vector(self, row: int, head: str, kind: Kind, letters: str = "xyz") -> list[float]:
         """The numbers of three cells of a row, 0 where there is no column."""
-        found = []
+        result = []
         for letter in letters:
             value = self.amount(row, f"{head}{letter}", kind)
             if value is None and f"{head}{letter}" in self.columns and not self.text(row, f"{head}{letter}"):
                 self.wrong(
                     "is empty; give a number, 0 where it is none", row, self.columns[f"{head}{letter}"]
                 )
-            found.append(0.0 if value is None else value)
-        return found
+            result.append(0.0 if value is None else value)
+        return result
 
     def span(self, row: int, head: str) -> str:
         """The place of a vector's cells."""

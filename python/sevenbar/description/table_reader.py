@@ -57,10 +57,10 @@ class TableDescription:
         try:
             linkage = make(self.raw, source)
         except DescriptionError as error:
-            found = [Problem(self._place(p.place), p.message) for p in error.problems]
+            result = [Problem(self._place(p.place), p.message) for p in error.problems]
             # of a row with a wrong cell the rest is not known
             rows = {p.place.partition(",")[0] for p in problems}
-            problems += [p for p in found if re.split(r"[,:]", p.place)[0] not in rows]
+            problems += [p for p in result if re.split(r"[,:]", p.place)[0] not in rows]
         if problems:
             raise DescriptionError(problems, source)
         return linkage
@@ -98,9 +98,9 @@ def described_frame(source: Any) -> TableDescription:
 
 def described(grid: CellTable, source: str, name: str) -> TableDescription:
     """What a table describes; `source` is what messages call it, `name` the linkage's without a title."""
-    found = _Reader(grid, source).description()
-    found.raw["name"] = grid.title or name
-    return found
+    result = _Reader(grid, source).description()
+    result.raw["name"] = grid.title or name
+    return result
 
 
 def add_points(found: TableDescription, grid: CellTable, source: str) -> None:
@@ -129,7 +129,7 @@ class _Reader(TableCells):
             "angle_unit": self.angle_unit,
         }
         if self.dimensions:
-            found = self._of_dimensions()
+            result = self._of_dimensions()
         elif all(key in self.columns for key in PLACES):
             mixed = [key for key in ("twist", "offset") if key in self.columns]
             if mixed:
@@ -140,18 +140,18 @@ class _Reader(TableCells):
             for key in ("length", "angle", "joint" if "name" in self.columns else ""):
                 if key in self.columns:
                     self.unread.append(self.grid.names[self.columns.pop(key)])
-            found = self._of_joints("joint")
+            result = self._of_joints("joint")
         elif any(key in self.columns for key in ROWS):
             if "value" in self.columns:
                 # rows have their own angle, or offset of P
                 self.unread.append(self.grid.names[self.columns.pop("value")])
-            found = self._of_joints("link")
+            result = self._of_joints("link")
         else:
             self.wrong(f"the columns describe no linkage; name them as in {EXAMPLES}")
-            found = {}, ""
-        if not found[0]:
+            result = {}, ""
+        if not result[0]:
             self.finish()
-        raw, what = found
+        raw, what = result
         unread = f"; not read: {', '.join(self.unread)}" if self.unread else ""
         return TableDescription({**described, **raw}, what + unread, self.places, self.problems)
 

@@ -48,13 +48,13 @@ def from_table(
     """
     if isinstance(source, str | os.PathLike):
         path, place = given_path("source", source), str(source)
-        found = description_of_bytes(read_bytes(path, "a linkage"), str(path))
+        result = description_of_bytes(read_bytes(path, "a linkage"), str(path))
     else:
-        found, place = described_frame(source), "table"
-    found.raw["name"] = name or found.raw["name"]
+        result, place = described_frame(source), "table"
+    result.raw["name"] = name or result.raw["name"]
     if speed is not None:
-        found.raw["drive"] = {**found.raw.get("drive", {}), "speed": speed}
-    return found.linkage(from_description, place)
+        result.raw["drive"] = {**result.raw.get("drive", {}), "speed": speed}
+    return result.linkage(from_description, place)
 
 
 def description_of_bytes(content: bytes, source: str) -> TableDescription:
@@ -87,12 +87,12 @@ def description_of_bytes(content: bytes, source: str) -> TableDescription:
         )
     grid = grids[first]
     assert grid is not None
-    found = described(grid, source, stem or "linkage")
+    result = described(grid, source, stem or "linkage")
     if len(sheets) > 1:
-        found.note += f", sheet {shown(first)}"
+        result.note += f", sheet {shown(first)}"
     points = next(
         (grid for title, grid in grids.items() if title.lower() == "points" and title != first), None
     )
     if points is not None:
-        add_points(found, points, source)
-    return found
+        add_points(result, points, source)
+    return result

@@ -58,13 +58,13 @@ def valid_tables(
     raw: Mapping[str, Any], head: str, form: type[F], context: Mapping[str, Any]
 ) -> list[tuple[str, F]]:
     """The tables of a head that have no wrong value, each with its place; others are reported elsewhere."""
-    found = []
+    result = []
     for i, table in enumerate(entries(raw, head), 1):
         try:
-            found.append((f"{head}[{i}]", form.model_validate(table, context=dict(context))))
+            result.append((f"{head}[{i}]", form.model_validate(table, context=dict(context))))
         except ValidationError:
             continue
-    return found
+    return result
 
 
 def flaws_of_value(place: str, make: Any) -> list[Problem]:

@@ -318,11 +318,11 @@ def _used_of_rows(linkage: Linkage, circuit: Circuit, inputs: Floats, position: 
         used = np.linspace(low, high, RANGE_SAMPLES)
         law = Law.of(np.arange(float(RANGE_SAMPLES)), used, 1.0, 0.0)
         try:
-            found = linkage.circuit(circuit.q[first], input=column[0], output=column[1], law=law)
+            result = linkage.circuit(circuit.q[first], input=column[0], output=column[1], law=law)
         except RequestError:
             return extremes.lowest
-        angle = found.transmission_angle
-        on = found.branch == circuit.branch[first]
+        angle = result.transmission_angle
+        on = result.branch == circuit.branch[first]
         if angle is None or int(on.sum()) != RANGE_SAMPLES or not np.isfinite(angle[on]).any():
             return extremes.lowest
         place = int(np.nanargmin(angle[on]))
@@ -424,16 +424,16 @@ def distinct(
     designs: Iterable[T], *, scale_free: bool, mirrored: bool = False, count: int | None = None
 ) -> list[T]:
     """The designs that differ, the first of those that are alike by `likeness`; at most `count`."""
-    kept: list[T] = []
+    selected: list[T] = []
     seen: list[Floats] = []
     for design in designs:
-        if count is not None and len(kept) >= count:
+        if count is not None and len(selected) >= count:
             break
         own = likeness(design.draft, scale_free=scale_free, mirrored=mirrored)
         if all(len(own) != len(other) or np.abs(own - other).max() > SAME for other in seen):
-            kept.append(design)
+            selected.append(design)
             seen.append(own)
-    return kept
+    return selected
 
 
 def ranked(

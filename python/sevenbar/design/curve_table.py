@@ -66,18 +66,18 @@ def _place(table: TextTable, letter: str, point: str, unit: str) -> int | None:
     if place is not None:
         return place
     # turn_x and the like are of a rotation
-    found = [
+    result = [
         place
         for place, name in enumerate(names)
         if name.endswith(f" {letter}") and not name.startswith("turn ")
     ]
-    if len(found) > 1:
-        both = " and ".join(table.labels[place] for place in found[:2])
+    if len(result) > 1:
+        both = " and ".join(table.labels[place] for place in result[:2])
         raise table.wrong(
             f"line {table.header_line}: {both} both hold {letter}; leave one out, "
             "or name the point that is meant"
         )
-    return found[0] if found else None
+    return result[0] if result else None
 
 
 def _input(table: TextTable, joint: str) -> int | None:
@@ -110,8 +110,8 @@ def read_turns(table: TextTable) -> Floats:
         column = table.column(name)
         if column is not None:
             # an angle: the unit of lengths has no say
-            found = table.sized(column, ("turn", 0), "m", what=name, example="deg")
-            numbers[column] = turns[:, axis] = found
+            result = table.sized(column, ("turn", 0), "m", what=name, example="deg")
+            numbers[column] = turns[:, axis] = result
     if not numbers:
         raise table.wrong(f"no column for a rotation; {table.header}; name them as in 'turn_z [deg]'")
     table.refuse_gaps(numbers, "leave the row out")

@@ -22,11 +22,11 @@ def sheets(
     columns: Sequence[tuple[str, Sequence[str]]], across: int, *, words: Sequence[str] = ()
 ) -> list[Table]:
     """Tables of columns, each a head and a cell of every design, so many of them side by side."""
-    found = []
+    result = []
     for begin in range(0, len(columns), across):
         heads, cells = zip(*columns[begin : begin + across], strict=True)
-        found.append(design_table(heads, zip(*cells, strict=True), words=[w for w in words if w in heads]))
-    return found
+        result.append(design_table(heads, zip(*cells, strict=True), words=[w for w in words if w in heads]))
+    return result
 
 
 def columns_table(designs: Sequence[Writable], heads: Mapping[str, str]) -> Table:

@@ -171,10 +171,10 @@ def wish_of_function(
 def degrees_hint(formula: str, x: tuple[float, float]) -> str | None:
     """That x may be in degrees and counts in radians: a sine of the formula goes round more than once."""
     low, high = x
-    found = greatest_angle(formula, np.linspace(low, high, DENSE_SAMPLES))
-    if found is None or found[2] <= math.tau:
+    result = greatest_angle(formula, np.linspace(low, high, DENSE_SAMPLES))
+    if result is None or result[2] <= math.tau:
         return None
-    name, argument, _ = found
+    name, argument, _ = result
     return (
         f"{name} takes radians; x goes to {high:g}: write {name}d({argument}) or x = {low:g}:{high:g}deg "
         "if these are degrees"

@@ -168,9 +168,9 @@ def _reported(pictures: Iterator[Picture], total: int, progress: Progress | None
 def _course(motion: Motion, circuit: Circuit, frames: int) -> tuple[Floats, Floats]:
     """Where on the walk each picture is (frames,), and its time [s]; between stops where there are some."""
     path = walk(circuit)
-    found = used_reach(TimedWalk(motion, circuit)) if motion.law is None else None
-    if found is not None:
-        return found.forth_and_back(frames)
+    result = used_reach(TimedWalk(motion, circuit)) if motion.law is None else None
+    if result is not None:
+        return result.forth_and_back(frames)
     rows = _rows(motion, path, frames)
     return rows, np.interp(rows, np.arange(len(path.time)), path.time)
 
@@ -281,9 +281,9 @@ def _write_gif(pictures: Iterator[Picture], file: Path, frames: int, fps: float)
 
 def _ffmpeg() -> str:
     """The ffmpeg program: on the path, else the one that imageio-ffmpeg brings."""
-    found = shutil.which("ffmpeg")
-    if found is not None:
-        return found
+    result = shutil.which("ffmpeg")
+    if result is not None:
+        return result
     try:
         return str(importlib.import_module("imageio_ffmpeg").get_ffmpeg_exe())
     except (ImportError, RuntimeError):

@@ -165,10 +165,10 @@ def circuits_text(numbers: Sequence[int]) -> str:
 
 def given_axes(ax: Any, count: int, what: str) -> list[Any]:
     """The caller's axes, as a list of so many; raises `RequestError` for another number."""
-    found = list(np.ravel(np.asarray(ax, dtype=object)))
-    if len(found) != count or not all(hasattr(axes, "plot") for axes in found):
+    result = list(np.ravel(np.asarray(ax, dtype=object)))
+    if len(result) != count or not all(hasattr(axes, "plot") for axes in result):
         raise RequestError(f"ax: give {count} axes of matplotlib, {what}")
-    return found
+    return result
 
 
 def refuse_small(figure: Figure, wide: float, tall: float, what: str, instead: str) -> None:

@@ -45,7 +45,7 @@ def film_page(
     title: str,
 ) -> str:
     """The HTML of a film: a picture at each of `rows` (n,) of the walk with its time [s], at `fps` [1/s]."""
-    found = _script_value(
+    result = _script_value(
         {
             "fps": fps,
             "linkage": _linkage(motion, frame, view, rows),
@@ -65,7 +65,7 @@ def film_page(
         "PAUSE": say("Pause"),
         "TITLE": escape(motion.linkage.heading),
         "HEADING": heading,
-        "FILM": found,
+        "FILM": result,
     }
     # in one pass: what is put in is never read for places again, whatever a name holds
     return PLACE.sub(lambda place: put[place[1]], page)

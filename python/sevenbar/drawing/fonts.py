@@ -42,15 +42,15 @@ _FILES = ("notosanscjk", "notosanssc", "notoserifcjk", "sourcehansans", "wqy", "
 
 def chinese_font() -> str | None:
     """The name of an installed font with Chinese characters; `None`, with a warning, where there is none."""
-    found = _installed()
-    if found is None:
+    result = _installed()
+    if result is None:
         warnings.warn(
             "no font with Chinese characters is installed, so figures are in English; install one, as in "
             "'apt install fonts-noto-cjk', and draw again",
             MissingFontWarning,
             stacklevel=2,
         )
-    return found
+    return result
 
 
 @cache
@@ -60,14 +60,14 @@ def _installed() -> str | None:
     logging.getLogger("matplotlib.font_manager").addFilter(
         lambda record: not record.getMessage().startswith(note)
     )
-    found = _known()
-    if found is None:
+    result = _known()
+    if result is None:
         # the list that matplotlib keeps may be older than the font
         for path in findSystemFonts():
             if Path(path).name.lower().startswith(_FILES):
                 fontManager.addfont(path)
-        found = _known()
-    return found
+        result = _known()
+    return result
 
 
 def _known() -> str | None:

@@ -61,7 +61,7 @@ def torque(
         ['input torque [N m]', 'power [W]']
     """
     count = 1 if forces.at_rest else 2
-    found = sizing or sizing_of(forces)
+    result = sizing or sizing_of(forces)
     with styled(style):
         what = "torque, then power" if count > 1 else "or none"
         page = panels_of(count, ax, what, (6.4, 2.3 * count + 1.0), figsize=figsize, style=style)
@@ -69,11 +69,11 @@ def torque(
         word = say("input force") if forces.slides else say("input torque")
         curve(panels[0], forces, forces.torque, WHOLE, shade=True)
         panels[0].set_ylabel(f"{word} [{forces.unit}]")
-        if found is not None:
+        if result is not None:
             # on the side of the peak
-            rms = math.copysign(found.rms_torque, found.peak_torque.value)
+            rms = math.copysign(result.rms_torque, result.peak_torque.value)
             look: dict[str, Any] = {"color": QUIET, "lw": 0.9 * stroke(), "ls": (0, (4, 2))}
-            value = f"{digits(found.rms_torque)} {forces.unit}"
+            value = f"{digits(result.rms_torque)} {forces.unit}"
             handles = [panels[0].axhline(rms, label=say("rms {value}", value=value), **look)]
         if count > 1:
             curve(panels[1], forces, forces.power, OTHER, shade=True)
@@ -81,11 +81,13 @@ def torque(
         input_axis(panels, forces)
         whole = say("{torque} and power", torque=word) if count > 1 else word
         page.finish(title, title_of_forces(forces, whole), handles if legend else [])
-        if found is not None:
-            mark_peak(panels[0], forces, found.peak_torque.input, found.peak_torque.value, forces.unit, WHOLE)
+        if result is not None:
+            mark_peak(
+                panels[0], forces, result.peak_torque.input, result.peak_torque.value, forces.unit, WHOLE
+            )
             if count > 1:
-                mark_peak(panels[1], forces, found.peak_power.input, found.peak_power.value, "W", OTHER)
-                if (low := found.braking_power) is not None:
+                mark_peak(panels[1], forces, result.peak_power.input, result.peak_power.value, "W", OTHER)
+                if (low := result.braking_power) is not None:
                     mark_peak(panels[1], forces, low.input, low.value, "W", OTHER)
     return page.figure
 
@@ -151,8 +153,8 @@ def reactions(
 
 def drawn_bearings(forces: Forces, joints: Sequence[str] | None = None) -> list[Reaction]:
     """The joints whose force square to the axis is determined: those of a polar picture."""
-    found = chosen_reactions(forces, joints)
-    return [one for one in found if one.determinate[3:5].all() and one.kind != "S"]
+    result = chosen_reactions(forces, joints)
+    return [one for one in result if one.determinate[3:5].all() and one.kind != "S"]
 
 
 def bearings(

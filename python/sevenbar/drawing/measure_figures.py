@@ -132,24 +132,24 @@ def axodes(
         ['fixed centrode', 'moving centrode', 'instant centre']
     """
     chosen = chosen_circuit(motion, circuit)
-    found = chosen.screw_axes(link)
+    result = chosen.screw_axes(link)
     frame = skeleton(motion, chosen)
     rows = walk(chosen).rows
-    if not (found.status == "ok").any():
+    if not (result.status == "ok").any():
         raise RequestError(
             f"link: link {link} has no screw axis along circuit {chosen.index}; nothing to draw"
         )
     # the pose in which the axis is nearest to the linkage
     solid = shown_places(frame)
     middle, size = np.nanmean(solid, axis=0), frame.span
-    away = np.linalg.norm(np.cross(found.point[rows] - middle, found.direction[rows]), axis=1)
-    first = int(np.nanargmin(np.where(found.status[rows] == "ok", away, np.nan)))
+    away = np.linalg.norm(np.cross(result.point[rows] - middle, result.direction[rows]), axis=1)
+    first = int(np.nanargmin(np.where(result.status[rows] == "ok", away, np.nan)))
     row = int(rows[first])
     # the moving axode where the link is in the pose that is drawn
     turn, place = _frame_of(chosen, link, row)
     both = (
-        (found.point[rows], found.direction[rows]),
-        (found.moving_point[rows] @ turn.T + place, found.moving_direction[rows] @ turn.T),
+        (result.point[rows], result.direction[rows]),
+        (result.moving_point[rows] @ turn.T + place, result.moving_direction[rows] @ turn.T),
     )
     ends = motion.input, motion.output
     with styled(style):

@@ -36,10 +36,10 @@ def shown_name(name: str, width: int = 40) -> str:
     >>> shown_name("theta_12"), shown_name("theta_3.1"), shown_name("crank")
     ('θ₁₂', 'θ₃.1', 'crank')
     """
-    found = _UNNAMED.fullmatch(name)
-    if found is None:
+    result = _UNNAMED.fullmatch(name)
+    if result is None:
         return short(name, width)
-    return f"θ{found[1].translate(_SUBSCRIPTS)}{found[2] or ''}"
+    return f"θ{result[1].translate(_SUBSCRIPTS)}{result[2] or ''}"
 
 
 def joint_label(linkage: Loop, joint: int) -> str:

@@ -321,7 +321,7 @@ def place_of(lines: Iterable[tuple[Floats, Floats, Floats]], value: float, at: f
 
     Each line has its inputs, its places along the panel and its values, (n,).
     """
-    found = [(math.inf, math.nan)]
+    result = [(math.inf, math.nan)]
     for inputs, across, values in lines:
         off = inputs - at
         if math.isfinite(period):
@@ -329,8 +329,8 @@ def place_of(lines: Iterable[tuple[Floats, Floats, Floats]], value: float, at: f
         for i in np.flatnonzero((off[:-1] * off[1:] <= 0) & (np.abs(off[:-1] - off[1:]) < period / 2)):
             share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.0
             x, y = (v[i] + share * (v[i + 1] - v[i]) for v in (across, values))
-            found.append((abs(y - value), x))
-    return min(found)[1]
+            result.append((abs(y - value), x))
+    return min(result)[1]
 
 
 def _cut(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str) -> bool:

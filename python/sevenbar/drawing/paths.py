@@ -244,7 +244,7 @@ def arrows_along(places: Floats, vectors: Floats) -> tuple[Integers, Floats, flo
     sizes = np.linalg.norm(vectors[rows], axis=1)
     if sizes.size:
         # next to dead centres vectors grow without bound: those are left out
-        kept = sizes <= BEYOND * np.percentile(sizes, 75)
-        rows, sizes = rows[kept], sizes[kept]
+        selected = sizes <= BEYOND * np.percentile(sizes, 75)
+        rows, sizes = rows[selected], sizes[selected]
     longest = float(sizes.max(initial=0.0))
     return rows, vectors[rows] * (LONGEST_ARROW * extent / longest if longest > 0 else 0.0), largest

@@ -193,14 +193,14 @@ def paths(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[int, str]]:
     other joints a pale one.
     """
     colours, graph = link_colours(frame.linkage, ends)[0], frame.graph
-    found = [(place, POINT_COLOURS[i % len(POINT_COLOURS)]) for i, place in enumerate(frame.points)]
+    result = [(place, POINT_COLOURS[i % len(POINT_COLOURS)]) for i, place in enumerate(frame.points)]
     grounded = graph.neighbours(graph.ground)
     for joint, place in frame.inner.items():
         apart = np.abs(frame.places[:, list(frame.points)] - frame.places[:, [place]])
         if not (np.nanmax(apart, axis=(0, 2)) < SAME * frame.span).any():
             runs = [colours[link - 1] for link in graph.between[joint] if link in grounded]
-            found.append((place, runs[-1] if runs and runs[-1] != COUPLER else PATH))
-    return found
+            result.append((place, runs[-1] if runs and runs[-1] != COUPLER else PATH))
+    return result
 
 
 def view(frame: Skeleton) -> tuple[float, float]:
@@ -311,19 +311,19 @@ def keys(frame: Skeleton, ends: tuple[str, str], seen: Projection) -> list[Line2
         alone = colours.count(COUPLER) == 1
         links.append((COUPLER, say("coupler") if alone else say("other moving links")))
     thick = stroke()
-    found = [Line2D([], [], color=colour, lw=5 * thick, label=name) for colour, name in links]
-    found.append(Line2D([], [], color=paler(GROUND, 0.35), lw=4 * thick, label=say("ground")))
+    result = [Line2D([], [], color=colour, lw=5 * thick, label=name) for colour, name in links]
+    result.append(Line2D([], [], color=paler(GROUND, 0.35), lw=4 * thick, label=say("ground")))
     for letter, kind in KINDS.items():
         if letter in frame.linkage.kind:
             shape = shape_of(kind)
             style = shape.legend_flat if seen.planar and shape.legend_flat else shape.legend
             look = {"color": JOINT, "ls": "", **style}
             look = {k: v * thick if k in ("ms", "mew") else v for k, v in look.items()}
-            found.append(Line2D([], [], **look, label=say(kind.legend)))
+            result.append(Line2D([], [], **look, label=say(kind.legend)))
     if frame.sphere is not None and not frame.sphere.free:
         radius = amount_text(frame.sphere.radius, frame.linkage.length_unit)
         look = {"color": "#f4f6f8", "mec": "#b9c0c7", "ms": 8 * thick, "ls": "", "marker": "o"}
-        found.append(Line2D([], [], **look, label=say("sphere, radius {radius}", radius=radius)))
+        result.append(Line2D([], [], **look, label=say("sphere, radius {radius}", radius=radius)))
     names = {}
     for place, colour in paths(frame, ends) if len(frame.places) > 1 else ():
         line = frame.places[:, place]
@@ -338,4 +338,4 @@ def keys(frame: Skeleton, ends: tuple[str, str], seen: Projection) -> list[Line2
                 name = say("{name} is far off, not shown", name=frame.names[place])
             width = (0.8 if colour == PATH else 1.4) * thick
             names[name] = Line2D([], [], color=colour, lw=width, label=name)
-    return found + list(names.values())
+    return result + list(names.values())

@@ -281,8 +281,8 @@ def _bends(corner: Floats, start: Floats, end: Floats) -> bool:
 def _sphere(linkage: Loop, named: Sequence[Floats]) -> DrawnSphere | None:
     """The sphere on which a loop with the places (n, 3) of its points is drawn, if it is spherical."""
     # a joint whose axes cross in the centre, universal or a ball, has no place on the sphere
-    found = sphere_of(linkage) if set(linkage.kind) == {"R"} else None
-    if found is None:
+    result = sphere_of(linkage) if set(linkage.kind) == {"R"} else None
+    if result is None:
         return None
     at = (
         linkage.joint_on(j, link)[:3, 3]
@@ -291,9 +291,9 @@ def _sphere(linkage: Loop, named: Sequence[Floats]) -> DrawnSphere | None:
     )
     free = not named and all(np.abs(place).max() <= 1e-9 for place in at)
     # a point keeps its distance from the centre, while a joint may be drawn anywhere on its axis
-    away = [np.nanmax(np.linalg.norm(places - found.centre, axis=1), initial=0.0) for places in named]
+    away = [np.nanmax(np.linalg.norm(places - result.centre, axis=1), initial=0.0) for places in named]
     farthest = float(max(away, default=0.0))
-    return DrawnSphere(found.centre, farthest if farthest > LARGER * found.radius else found.radius, free)
+    return DrawnSphere(result.centre, farthest if farthest > LARGER * result.radius else result.radius, free)
 
 
 def _on_sphere(sphere: DrawnSphere, places: Floats, axes: Floats) -> Floats:

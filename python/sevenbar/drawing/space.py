@@ -96,14 +96,14 @@ class ViewAxes:
 
     def pixels(self, places: Floats) -> Floats:
         """Where places (n, 3) are on the page [pixels] (n, 2)."""
-        found: Floats = self.axes.transData.transform(self.anchor(places))
-        return found
+        result: Floats = self.axes.transData.transform(self.anchor(places))
+        return result
 
     @property
     def figure(self) -> Figure:
         """The figure that it is a part of."""
-        found: Figure = self.axes.figure.figure
-        return found
+        result: Figure = self.axes.figure.figure
+        return result
 
     @property
     def point(self) -> float:
@@ -284,15 +284,15 @@ def draw_axes(space: ViewAxes, centre: Floats, start: float, end: float) -> None
 def _edge(space: ViewAxes, axis: int, back: Floats, front: Floats) -> tuple[Floats, Floats]:
     """The edge of the box that has an axis' numbers: the lowest on the outline, or that at the left."""
     others = [k for k in range(3) if k != axis]
-    found = []
+    result = []
     for first, second in ((back, front), (front, back)):
         start = np.where(np.arange(3) == others[0], first, second)
         start[axis], end = back[axis], start.copy()
         end[axis] = front[axis]
         pair = start if start[axis] < end[axis] else end, end if start[axis] < end[axis] else start
         seen = space.pixels(np.stack(pair)).mean(axis=0)
-        found.append((seen[0] if axis == 2 else seen[1], pair))
-    return min(found, key=lambda one: one[0])[1]
+        result.append((seen[0] if axis == 2 else seen[1], pair))
+    return min(result, key=lambda one: one[0])[1]
 
 
 def _panes(space: ViewAxes, back: Floats, front: Floats, ticks: list[list[float]]) -> None:

@@ -157,8 +157,8 @@ def wide_view(places: Floats) -> tuple[float, float]:
     """Elevation and azimuth [deg] from which places (n, 3) cover the most."""
     azimuths = (np.arange(-180.0, 180.0, 90.0)[:, None] + AZIMUTHS).ravel()
     elevation, azimuth = (grid.ravel() for grid in np.meshgrid(ELEVATIONS, azimuths))
-    kept = places[~np.isnan(places).any(axis=1)]
-    spread = (kept - kept.mean(axis=0)).T @ (kept - kept.mean(axis=0))
+    selected = places[~np.isnan(places).any(axis=1)]
+    spread = (selected - selected.mean(axis=0)).T @ (selected - selected.mean(axis=0))
     screens = [directions(*view) for view in zip(elevation, azimuth, strict=True)]
     covered = np.array([np.sqrt(max(np.linalg.det(s @ spread @ s.T), 0.0)) for s in screens])
     # among like views the usual one, x to the right and y away

@@ -189,13 +189,13 @@ def export(
 def format_of(path: Path, to: str | None) -> str:
     """The word for the kind of a file: the one given, else that of the path's ending."""
     known = {ending: word for word, form in FORMATS.items() for ending in form.endings}
-    found = known.get(path.suffix.lower())
-    word = found if to is None else _word(to)
+    result = known.get(path.suffix.lower())
+    word = result if to is None else _word(to)
     if word is None:
         endings = ", ".join(known)
         raise RequestError(f"{path}: {shown(path.suffix)} is the ending of no format; give one of {endings}")
     allowed = " or ".join(FORMATS[word].endings)
-    if path.suffix and found != word:
+    if path.suffix and result != word:
         raise RequestError(f"{path}: its ending {shown(path.suffix)} is not that of {word}; give {allowed}")
     if not path.suffix and word != "stl":
         raise RequestError(f"{path}: has no ending; give {allowed}")

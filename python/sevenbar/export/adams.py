@@ -195,13 +195,13 @@ class _LinkageFile(CommandFile):
             # the file counts the link against the ground, so I and J change places and the axis turns round
             row, turned = KINDS[joint.kind], half_turn(joint.row.half_turn)
             j_side, i_side = ((body, frame @ turned) for body, frame in (i_side, j_side))
-        found = self._connect(joint.row.adams, word, j_side, i_side)
+        result = self._connect(joint.row.adams, word, j_side, i_side)
         if joint.row.is_screw:
             # a screw joint ties the slide to the turn and nothing else; the cylindrical one holds the axis
             pitch = number(self.scale * joint.pitch)
-            self._constrain("screw", f"{word}_thread", *found[1:], pitch=pitch)
+            self._constrain("screw", f"{word}_thread", *result[1:], pitch=pitch)
         if not joint.row.is_ball:
-            self.columns |= {column: AdamsColumn(*found, step) for column, step in row.named(joint.name)}
+            self.columns |= {column: AdamsColumn(*result, step) for column, step in row.named(joint.name)}
 
     def _universal(self, i: int, word: str, j_side: Side, i_side: Side) -> None:
         joint = self.linkage.joints[i]
@@ -266,14 +266,14 @@ class _LinkageFile(CommandFile):
 
 def _distinct(words: list[str]) -> list[str]:
     """The words, those that occur before with a number behind."""
-    found: list[str] = []
+    result: list[str] = []
     for word in words:
-        lowered = [w.lower() for w in found]
+        lowered = [w.lower() for w in result]
         tail = ""
         while (word + tail).lower() in lowered:
             tail = f"_{int(tail[1:] or 1) + 1}"
-        found.append(word + tail)
-    return found
+        result.append(word + tail)
+    return result
 
 
 def _ascii(text: str) -> str:

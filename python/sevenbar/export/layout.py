@@ -49,8 +49,8 @@ def _overlap(assembly: Assembly) -> float:
     """The squared depth of all overlaps of unlike links [heights of a hub, summed over poses]."""
     pose, unit = assembly.pose, assembly.unit
     solids = [(part.body, *_segment(s)) for part in assembly.parts for s in part.add]
-    kept = zip(*(solid for solid in solids if solid[0] < len(pose.frames)), strict=True)
-    body, starts, ends, radii = map(np.array, kept)
+    selected = zip(*(solid for solid in solids if solid[0] < len(pose.frames)), strict=True)
+    body, starts, ends, radii = map(np.array, selected)
     one, two = np.triu_indices(len(body), 1)
     unlike = body[one] != body[two]
     one, two = one[unlike], two[unlike]

@@ -46,10 +46,10 @@ def masses(assembly: Assembly) -> list[BodyMass]:
     radius = GYRATION * size
     own = in_links(linkage, resolved(linkage.loading, linkage, circuit=assembly.pose.circuit.index))
     light = MASSLESS * max(one.mass for one in own.values())
-    found = [BodyMass(light, np.zeros(3), light * radius**2 * np.eye(3)) for _ in assembly.frames]
+    result = [BodyMass(light, np.zeros(3), light * radius**2 * np.eye(3)) for _ in assembly.frames]
     for link, one in own.items():
-        found[link - 1] = BodyMass(one.mass, one.centre, one.never_thin(metre * radius) / metre**2)
-    return found
+        result[link - 1] = BodyMass(one.mass, one.centre, one.never_thin(metre * radius) / metre**2)
+    return result
 
 
 def has_masses(linkage: Loop) -> bool:

@@ -44,21 +44,21 @@ def closing(
     slope = CycleSeries(energy, first, period).finer(1, 1)
     if max(float(np.abs(slope).max()), drive) <= least:
         return Closing(0.0, 0.0)
-    found = _closing(slope, total, drive, float(np.mean(total)))
-    if evaluate is None or max(found) <= ENOUGH:
-        return found
+    result = _closing(slope, total, drive, float(np.mean(total)))
+    if evaluate is None or max(result) <= ENOUGH:
+        return result
     rows = np.stack([energy, total], axis=1)
     # the slope is as large as what is given
     units = np.array([np.abs(energy).max(), max(np.abs(total).max(), np.abs(slope).max())])
     units[units == 0] = 1.0
     own = smooth_pieces(lambda inputs: evaluate(inputs) / units, rows / units, first, period)
-    if own.tail > found.power:
-        return found
+    if own.tail > result.power:
+        return result
     half = (own.ends - own.starts) / 2
     slopes = chebyshev.chebder(own.series[:, :, 0], axis=1) / half[:, None]
     given = units[1] * _values(own.series[:, :, 1])
     finer = _closing(units[0] * _values(slopes), given, drive, units[1] * mean(own.part(1)))
-    return Closing(min(found.power, finer.power), min(found.work, finer.work))
+    return Closing(min(result.power, finer.power), min(result.work, finer.work))
 
 
 def _closing(slope: Floats, total: Floats, drive: float, gained: float) -> Closing:

@@ -85,15 +85,15 @@ def least_greatest_size(constant: Floats, gradient: Floats, bounds: Bounds, *, w
         ],
         settings,
     )
-    found = solver.solve()
-    duals = -np.array(found.z)[: (size + 1) * count].reshape(count, size + 1)[:, 1:]
+    result = solver.solve()
+    duals = -np.array(result.z)[: (size + 1) * count].reshape(count, size + 1)[:, 1:]
     total = float(np.linalg.norm(duals, axis=1).sum()) or 1.0
     return ConeOptimum(
-        x=np.array(found.x)[:numbers],
+        x=np.array(result.x)[:numbers],
         duals=duals / total,
-        status=str(found.status),
-        steps=int(found.iterations),
-        primal=float(found.obj_val),
-        dual=float(found.obj_val_dual),
-        residual=max(float(found.r_prim), float(found.r_dual)),
+        status=str(result.status),
+        steps=int(result.iterations),
+        primal=float(result.obj_val),
+        dual=float(result.obj_val_dual),
+        residual=max(float(result.r_prim), float(result.r_dual)),
     )

@@ -124,19 +124,19 @@ def counterweights(
     columns = [mount.columns[:, kept] * weights[:, None] for mount in mounts]
     roots = np.sqrt(part)[:, None]
     stacked = [(roots[:, :, None] * own).reshape(-1, 4) / [1, 1, 1, size] for own in columns]
-    found = Acting.of(stacked)
+    result = Acting.of(stacked)
     target = (roots * constant).ravel()
     if most_mass is None:
-        values = found.least_squares(target)
+        values = result.least_squares(target)
         status, bound = "least squares", None
     else:
         limits = np.array([[radii[m.link], masses[m.link]] for m in mounts], dtype=np.float64)
-        values, bound, status = _within(constant, columns, limits, roots, measure, found)
+        values, bound, status = _within(constant, columns, limits, roots, measure, result)
     products, added = values[:, :3], values[:, 3] / (size if most_mass is None else 1.0)
     left = shaking.copy()
     chosen = []
     scale = float(np.linalg.norm(products, axis=1).max(initial=0.0))
-    for mount, product, mass, acts in zip(mounts, products, added, found.mass_acts, strict=True):
+    for mount, product, mass, acts in zip(mounts, products, added, result.mass_acts, strict=True):
         left += mount.columns @ np.append(product, mass)
         chosen.append(_counterweight(mount, product, mass, acts, radii[mount.link], scale))
 
@@ -152,9 +152,9 @@ def counterweights(
         before=value(shaking),
         after=after,
         bound=after if bound is None else min(bound, after),
-        rank=found.rank,
-        unknowns=int(found.used.sum()),
-        idle=tuple(found.names(mounts)),
+        rank=result.rank,
+        unknowns=int(result.used.sum()),
+        idle=tuple(result.names(mounts)),
         status=status,
         length_unit=length_unit,
     )

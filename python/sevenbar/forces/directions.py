@@ -15,12 +15,12 @@ def tidied(vectors: Floats) -> Floats:
     if len(vectors) == 0:
         return vectors
     basis = np.linalg.qr(vectors.T)[0].T
-    kept = [axis for axis in np.eye(3) if np.linalg.norm(axis - basis.T @ (basis @ axis)) < ROUNDING]
+    selected = [axis for axis in np.eye(3) if np.linalg.norm(axis - basis.T @ (basis @ axis)) < ROUNDING]
     for vector in basis:
-        rest = vector - sum((float(vector @ k) * k for k in kept), np.zeros(3))
-        if len(kept) < len(basis) and np.linalg.norm(rest) > 0.1:
-            kept.append(rest / np.linalg.norm(rest))
-    return np.array(kept[: len(basis)])
+        rest = vector - sum((float(vector @ k) * k for k in selected), np.zeros(3))
+        if len(selected) < len(basis) and np.linalg.norm(rest) > 0.1:
+            selected.append(rest / np.linalg.norm(rest))
+    return np.array(selected[: len(basis)])
 
 
 def direction_text(vector: Floats) -> str:

@@ -76,12 +76,12 @@ def _acting(name: str, given: Any) -> tuple[Any, ...]:
     kind: type = Load if name == "loads" else Spring
     example = f"give {name} in a list, as in [sevenbar.{kind.__name__}(..)]"
     try:
-        found = tuple(given)
+        result = tuple(given)
     except TypeError:
         raise RequestError(f"{name}: {shown(given)} is no list; {example}") from None
-    for i, one in enumerate(found):
+    for i, one in enumerate(result):
         check_kind(f"{name}[{i}]", one, kind, f"a {kind.__name__.lower()}; {example}")
-    return found
+    return result
 
 
 def _by_link(given: Mapping[int, Body | Sequence[Body]]) -> dict[int, tuple[Body, ...]]:
@@ -91,7 +91,7 @@ def _by_link(given: Mapping[int, Body | Sequence[Body]]) -> dict[int, tuple[Body
     from sevenbar.forces.bodies import Body
 
     check_kind("bodies", given, Mapping, "a mapping of links; give one, as in {2: sevenbar.Body(..)}")
-    found = {}
+    result = {}
     for link, own in given.items():
         whole_number("bodies", link, 1, None, "a link")
         bodies = tuple(own) if isinstance(own, (list, tuple)) else (own,)
@@ -101,8 +101,8 @@ def _by_link(given: Mapping[int, Body | Sequence[Body]]) -> dict[int, tuple[Body
                     f"bodies[{shown(link)}]: {shown(body)} is not a body; give one, as in "
                     "sevenbar.Body(1.2, solid='rod')"
                 )
-        found[link] = bodies
-    return found
+        result[link] = bodies
+    return result
 
 
 #: What acts on a linkage that was given no bodies and no loads.

@@ -72,9 +72,9 @@ class Acting:
         Source: docs/theory_forces.md, (20).
         """
         left, values, right = np.linalg.svd(np.hstack(self.columns)[:, self.used], full_matrices=False)
-        kept = slice(0, self.rank)
+        selected = slice(0, self.rank)
         numbers = np.zeros(len(self.used))
-        numbers[self.used] = -right[kept].T @ ((left[:, kept].T @ target) / values[kept])
+        numbers[self.used] = -right[selected].T @ ((left[:, selected].T @ target) / values[selected])
         return numbers.reshape(-1, 4)
 
     def names(self, mounts: Sequence[Mount]) -> list[str]:

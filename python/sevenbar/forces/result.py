@@ -202,8 +202,8 @@ class Forces(ReadOnly, Drawable):
         """
         moments = [_greatest(reaction.moment) for reaction in self.reactions.values()]
         rounding = NO_MOMENT * max([*moments, 0.0])
-        found = {link: _greatest(moment) for link, moment in self.spin.items()}
-        return {link: most if most > rounding else 0.0 for link, most in found.items()}
+        result = {link: _greatest(moment) for link, moment in self.spin.items()}
+        return {link: most if most > rounding else 0.0 for link, most in result.items()}
 
     @property
     def unit(self) -> str:
@@ -300,10 +300,10 @@ class Forces(ReadOnly, Drawable):
                 "evens it; leave it out"
             )
         delta = unevenness_of(unevenness)
-        found = loads_of(self)
-        if own is None or found is None:
+        result = loads_of(self)
+        if own is None or result is None:
             return None
-        return found.sizing(delta).in_units(own.unit, own.length_unit if own.slides else "rad")
+        return result.sizing(delta).in_units(own.unit, own.length_unit if own.slides else "rad")
 
     @property
     def balance(self) -> float | None:
@@ -437,7 +437,7 @@ def loads_of(forces: Forces) -> CycleLoads | None:
         return None
     if own.through_change_points and len(breaks):
         return None
-    found = cycle_loads(
+    result = cycle_loads(
         own,
         period=period,
         speed=own.even_speed * own.metre if period is not None else None,
@@ -445,7 +445,7 @@ def loads_of(forces: Forces) -> CycleLoads | None:
         breaks=breaks,
         gaps=own.status == "change-point" if own.through_change_points else None,
     )
-    if found is None or found.tail > WITHHELD or not own.closes:
+    if result is None or result.tail > WITHHELD or not own.closes:
         return None
     # between stops force by length unit, in joule
-    return found if own.part is None else replace(found, work=own.metre)
+    return result if own.part is None else replace(result, work=own.metre)

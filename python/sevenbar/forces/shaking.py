@@ -84,12 +84,12 @@ def shaking_of(
             both if isinstance(both, CycleSeries) else CycleSeries(wrench / units, float(input[0]), period)
         )
         orders = np.abs(waves.spectrum) * units
-    found = []
+    result = []
     for part in (FORCE, MOMENT):
         squares, unit = both.part(part).squared(), float(units[part[0]])
         top = squares.highest()
-        found.append((Peak(unit * _root(top.value), top.input), unit * _root(mean(squares))))
-    (force, rms_force), (moment, rms_moment) = found
+        result.append((Peak(unit * _root(top.value), top.input), unit * _root(mean(squares))))
+    (force, rms_force), (moment, rms_moment) = result
     return Shaking(force, moment, rms_force, rms_moment, orders, both.tail)
 
 
@@ -108,10 +108,10 @@ def shaking_along(forces: Forces) -> Shaking | None:
     evaluate = None if between is None else lambda inputs: between(inputs).shaking
     ends = None if forces.part is None or between is None else (forces.part.start, forces.part.end)
     period, time = forces.period, forces.time
-    found = shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate, ends=ends)
-    if found.tail > WITHHELD or not forces.closes:
+    result = shaking_of(forces.shaking, forces.input, period=period, time=time, evaluate=evaluate, ends=ends)
+    if result.tail > WITHHELD or not forces.closes:
         return None
-    return replace(found, input_unit=forces.length_unit if forces.slides else "rad")
+    return replace(result, input_unit=forces.length_unit if forces.slides else "rad")
 
 
 def _root(square: float) -> float:

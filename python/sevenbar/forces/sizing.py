@@ -211,16 +211,16 @@ def cycle_loads(
         return np.where(known, _table(evaluate(inputs), names), 0.0) / units
 
     every: Curve
-    found: Found
+    result: Found
     if period is None:
-        every, found = TimedRows(table / units, rows.input, rows.time), "rows"
+        every, result = TimedRows(table / units, rows.input, rows.time), "rows"
     elif len(breaks):
-        every, found = pieces(between, table / units, float(rows.input[0]), period, breaks), "pieces"
+        every, result = pieces(between, table / units, float(rows.input[0]), period, breaks), "pieces"
     else:
         ask = between if evaluate is not None else None
         every = cycle_curve(ask, table / units, float(rows.input[0]), period)
-        found = "series" if isinstance(every, CycleSeries) else "refined"
-    return CycleLoads(rows, every, units, known, found, period, speed or 0.0)
+        result = "series" if isinstance(every, CycleSeries) else "refined"
+    return CycleLoads(rows, every, units, known, result, period, speed or 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -390,21 +390,21 @@ def _wrench_parts(table: Floats, known: npt.NDArray[np.bool_]) -> list[Floats]:
     sizes = np.where(known, np.abs(np.where(known, table, 0.0)), 0.0)[:, 1:]
     # of most rows: some may have no bound
     typical = np.median(sizes, axis=0).reshape(-1, 2, 3).max(axis=(0, 2), initial=0.0)
-    found = []
+    result = []
     for k in range(sizes.shape[1] // 3):
         own = slice(1 + 3 * k, 4 + 3 * k)
         part = table[:, own][:, known[own]]
         heard = np.abs(part).max(initial=0.0) > ROUNDING * typical[k % 2]
-        found.append(part if heard else part[:, :0])
-    return found
+        result.append(part if heard else part[:, :0])
+    return result
 
 
 def _table(rows: Rows, names: tuple[str, ...]) -> Floats:
     """Torque, then moment and force of each joint, (n, 1 + 6 joints)."""
-    found = [rows.torque[:, None]]
+    result = [rows.torque[:, None]]
     for name in names:
-        found += [rows.reactions[name].moment, rows.reactions[name].force]
-    return np.concatenate(found, axis=1)
+        result += [rows.reactions[name].moment, rows.reactions[name].force]
+    return np.concatenate(result, axis=1)
 
 
 def _units(table: Floats) -> Floats:

@@ -156,21 +156,21 @@ class LinkageAnswers:
             solver = ForceSolver(self.linkage, self.loading(circuit, given), circuit.input_column)
         else:
             solver = self._solver(circuit)
-        found = forces_of(solver, circuit, at_rest=at_rest)
+        result = forces_of(solver, circuit, at_rest=at_rest)
         if not self.linkage.stops.stops or math.isnan(circuit.speed):
             # a law, and a free motion, have their own rows
-            return found
-        return replace(found, _parts=cache(partial(self._parts, solver, circuit, found, at_rest)))
+            return result
+        return replace(result, _parts=cache(partial(self._parts, solver, circuit, result, at_rest)))
 
     def _solver(self, circuit: Circuit) -> ForceSolver:
         """What solves for the forces of a circuit under what acts on its linkage."""
         from sevenbar.kinematics.dynamics.forces import ForceSolver
 
-        kept = self._solvers.get(circuit.input_column)
-        if kept is None:
-            kept = ForceSolver(self.linkage, self.loading(circuit, {}), circuit.input_column)
-            self._solvers[circuit.input_column] = kept
-        return kept
+        selected = self._solvers.get(circuit.input_column)
+        if selected is None:
+            selected = ForceSolver(self.linkage, self.loading(circuit, {}), circuit.input_column)
+            self._solvers[circuit.input_column] = selected
+        return selected
 
     def force_waves(self, circuit: Circuit) -> ForceWaves | None:
         """Torque and shaking of a circuit as series, where these are enough for measures."""
@@ -186,12 +186,12 @@ class LinkageAnswers:
         from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 
         try:
-            found = self._stretches(circuit)
+            result = self._stretches(circuit)
         except NotFollowedError:
             return None
-        if found is None or any(one.is_whole for one in found):
+        if result is None or any(one.is_whole for one in result):
             return None
-        return parts_of(solver, circuit, found, whole, at_rest=at_rest)
+        return parts_of(solver, circuit, result, whole, at_rest=at_rest)
 
     def loading(self, circuit: Circuit, given: Mapping[str, Any]) -> Loading:
         """What acts on the linkage, with what is given in place of what it has; its loads go by the input."""
@@ -266,8 +266,8 @@ class LinkageAnswers:
         """How a circuit moves by itself."""
         from sevenbar.kinematics.dynamics.free import free_motion_of
 
-        found = self._stretches(circuit)
-        return free_motion_of(self.linkage, circuit, loading, duration, stretches=found, **how)
+        result = self._stretches(circuit)
+        return free_motion_of(self.linkage, circuit, loading, duration, stretches=result, **how)
 
     def _stretches(self, circuit: Circuit) -> tuple[StopStretch, ...] | None:
         """The parts of a circuit between stops; `None` where the linkage has no stops."""

@@ -378,12 +378,12 @@ class Linkage(Solvable):
         column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
         agreeing = self.agreeing(agree)
         if self._has_closed_form(method):
-            found = self._closed_form.motion(column, samples, rate, law)
+            result = self._closed_form.motion(column, samples, rate, law)
         else:
             self._refuse_unheld()
-            found = agreeing._general.motion(column, output_column, samples, rate, law)
+            result = agreeing._general.motion(column, output_column, samples, rate, law)
         written = speed if speed is not None else self.speed_written(column)
-        return replace(found, speed_written=written) if isinstance(written, str) and written else found
+        return replace(result, speed_written=written) if isinstance(written, str) and written else result
 
     @ends_here
     def circuit(

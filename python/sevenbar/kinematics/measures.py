@@ -109,8 +109,8 @@ def _ends(name: str, quantity: Quantity, lowest: str, highest: str) -> list[Meas
 
     def value(end: str, circuit: Circuit) -> float | None:
         extremes: Extremes | None = getattr(circuit, name)
-        found = None if extremes is None else getattr(extremes, end)
-        return math.degrees(found) if found is not None and quantity == "angle" else found
+        result = None if extremes is None else getattr(extremes, end)
+        return math.degrees(result) if result is not None and quantity == "angle" else result
 
     titles = {"lowest": lowest, "highest": highest}
     return [
@@ -128,8 +128,8 @@ def _of_sizing(name: str, quantity: Quantity, pick: Callable[[CycleLoads], float
     """A number of a circuit's sizing; none where its torque has no bound."""
 
     def value(circuit: Circuit) -> float | None:
-        found = sized(circuit)
-        return None if found is None else pick(found)
+        result = sized(circuit)
+        return None if result is None else pick(result)
 
     return Measure(name, "circuit", quantity, value, title)
 
@@ -140,15 +140,15 @@ def _joint_extent(circuit: Circuit, joint: str) -> float | None:
         ranges = circuit.joint_ranges
     except NotFollowedError:
         return None
-    found = ranges.get(joint) or ranges.get(f"{joint}.1")
-    if found is None:
+    result = ranges.get(joint) or ranges.get(f"{joint}.1")
+    if result is None:
         if joint in {name.rpartition(".")[0] or name for name in circuit.columns}:
             raise RequestError(
                 f"measure: joint {shown(joint)} is a ball, which has no range; give ball_angle:{joint}"
             )
         raise RequestError(f"measure: {no_joint(joint, list(ranges))}")
-    extent = found.extent
-    return math.degrees(extent) if extent is not None and found.turns else extent
+    extent = result.extent
+    return math.degrees(extent) if extent is not None and result.turns else extent
 
 
 def _greatest_bend(circuit: Circuit, joint: str) -> float | None:
@@ -164,10 +164,10 @@ def _greatest_bend(circuit: Circuit, joint: str) -> float | None:
 def _least_gap(circuit: Circuit) -> float | None:
     """The least distance of links less their radii [length], of those with a radius where there are any."""
     try:
-        found = circuit.clearances
+        result = circuit.clearances
     except NotFollowedError:
         return None
-    thick = [one for one in found if one.radii] or found
+    thick = [one for one in result if one.radii] or result
     return min((one.gap for one in thick), default=None)
 
 
@@ -222,8 +222,8 @@ def _of_bearing(pick: Callable[[Bearing], float]) -> Callable[[Circuit, str], fl
     """A number of what a joint bears; none where it has no bound."""
 
     def value(circuit: Circuit, joint: str) -> float | None:
-        found = sized(circuit, (joint,))
-        number = math.nan if found is None else pick(found.bearing(joint))
+        result = sized(circuit, (joint,))
+        number = math.nan if result is None else pick(result.bearing(joint))
         return number if math.isfinite(number) else None
 
     return value
@@ -289,14 +289,14 @@ def measures_named(given: Iterable[str | Measure | Callable[[Motion], float]]) -
 
     Raises `RequestError` for an unknown name, for none, and for two of one name.
     """
-    found = [_measure(one) for one in given]
-    names = [measure.name for measure in found]
-    if not found:
+    result = [_measure(one) for one in given]
+    names = [measure.name for measure in result]
+    if not result:
         raise RequestError(f"measure: none given; give some of {', '.join(MEASURES)}")
     for name in names:
         if names.count(name) > 1:
             raise RequestError(f"measure: {shown(name)} is given twice; leave one out")
-    return tuple(found)
+    return tuple(result)
 
 
 def _measure(given: object) -> Measure:
@@ -365,14 +365,14 @@ def circuit_gradient(
     numbers, speed = Numbers(linkage), chosen.speed
     names = None if only is None else [one.name for one in measures_named(only)]
     extents = stopped_measures(numbers) if names is None else list(filter(is_extent, names))
-    found: list[MeasureSlopes] = []
+    result: list[MeasureSlopes] = []
     if names is None or not all(is_extent(name) or is_of_forces(name) for name in names):
-        found += measure_slopes(numbers, chosen, speed, names)
+        result += measure_slopes(numbers, chosen, speed, names)
         if names is None or any(name.startswith("transmission") for name in names):
-            found += transmission_slopes(numbers, chosen)
-    found += force_slopes(numbers, chosen, speed, names)
-    found += extent_slopes(numbers, chosen, extents)
-    return {one.name: one for one in found if names is None or one.name in names}
+            result += transmission_slopes(numbers, chosen)
+    result += force_slopes(numbers, chosen, speed, names)
+    result += extent_slopes(numbers, chosen, extents)
+    return {one.name: one for one in result if names is None or one.name in names}
 
 
 def mass_gradient(
@@ -399,5 +399,5 @@ def circuit_mass_gradient(
 ) -> dict[str, MeasureSlopes]:
     """`mass_gradient` of a circuit of a linkage that need not be one of a motion."""
     names = None if only is None else [one.name for one in measures_named(only)]
-    found = mass_slopes(Numbers(linkage), chosen, chosen.speed, names)
-    return {one.name: one for one in found}
+    result = mass_slopes(Numbers(linkage), chosen, chosen.speed, names)
+    return {one.name: one for one in result}

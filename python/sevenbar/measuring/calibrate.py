@@ -208,19 +208,19 @@ def _named(numbers: Numbers, free: Sequence[str], hold: Sequence[str], follow: S
     named: dict[str, set[str]] = {}
     for option, patterns in (("free", free), ("hold", hold)):
         matched = {pattern: fnmatch.filter(dimensions, pattern) for pattern in patterns}
-        for pattern, found in matched.items():
-            if not found:
+        for pattern, result in matched.items():
+            if not result:
                 raise RequestError(
                     f"{option}: no dimension {shown(pattern)}; {suggestion(pattern, dimensions)}"
                     f"this linkage has {', '.join(dimensions)}"
                 )
-        named[option] = {name for found in matched.values() for name in found}
+        named[option] = {name for result in matched.values() for name in result}
     for name in follow:
         for option, patterns in (("free", free), ("hold", hold)):
             if name in patterns:
                 raise RequestError(f"follow: {name} is in --{option} too; give it in one of them")
-    kept = named["free"] - named["hold"] - set(follow)
-    return [name for name in dimensions if name in kept]
+    selected = named["free"] - named["hold"] - set(follow)
+    return [name for name in dimensions if name in selected]
 
 
 def _refuse_what_stays(measured: Measured, ends: Ends) -> None:

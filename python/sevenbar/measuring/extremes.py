@@ -97,7 +97,7 @@ def compare_extremes(
 
 
 def _extents(circuit: Circuit, measured: MeasuredExtremes, ends: Ends) -> tuple[Extent, ...] | None:
-    found = []
+    result = []
     for quantity in measured.outputs:
         extremes = getattr(circuit, quantity)
         if extremes is None:
@@ -107,8 +107,8 @@ def _extents(circuit: Circuit, measured: MeasuredExtremes, ends: Ends) -> tuple[
         if quantity == "angle" and not ends.output_slides:
             turn = math.tau * round((sum(m) - sum(values)) / 2 / math.tau)
             values = values[0] + turn, values[1] + turn
-        found.append(Extent(quantity, values, m))
-    return tuple(found)
+        result.append(Extent(quantity, values, m))
+    return tuple(result)
 
 
 def _residual(extents: Sequence[Extent]) -> float:

@@ -286,9 +286,9 @@ class CurveFit:
         if not held:
             return {}
         own = directions @ np.linalg.inv(directions[held])
-        found = {}
+        result = {}
         for column, place in enumerate(held):
             shares = np.abs(own[:, column])
             others = [k for k in range(len(shares)) if k != place and shares[k] > TAKES_PART * shares.max()]
-            found[self.wanted[place]] = tuple(self.wanted[k] for k in others)
-        return dict(sorted(found.items()))
+            result[self.wanted[place]] = tuple(self.wanted[k] for k in others)
+        return dict(sorted(result.items()))

@@ -182,7 +182,7 @@ def read_measured(
 
 def pairs(given: Iterable[str], option: str) -> dict[str, str]:
     """`{"angle": "deg"}` of words like "angle=deg"; `RequestError` for another word, or one given twice."""
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for word in given:
         name, value = split_name(word) or ("", "")
         quantity = name.lower()
@@ -192,10 +192,10 @@ def pairs(given: Iterable[str], option: str) -> dict[str, str]:
                 f"{option}: {shown(word)} is not understood; give one of {', '.join(QUANTITIES)} and its "
                 f"{option.removeprefix('--')}, as in {example}"
             )
-        if quantity in found:
+        if quantity in result:
             raise RequestError(f"{option}: {quantity} is given twice; give it once")
-        found[quantity] = value
-    return found
+        result[quantity] = value
+    return result
 
 
 def _quantity(name: str, unit: MeasuredUnit | None, ends: Ends) -> str | None:
@@ -209,17 +209,17 @@ def _quantity(name: str, unit: MeasuredUnit | None, ends: Ends) -> str | None:
             if quantity == "input":
                 return "input" if order == 0 else None
             return OUTPUTS[order] if order < len(OUTPUTS) else None
-    found = set(plain.split())
+    result = set(plain.split())
     if plain in _WORDS["time"]:
         return "time"
-    if found & _WORDS["input"]:
-        return "input" if (unit is None or unit.order == 0) and not found & _WORDS["velocity"] else None
+    if result & _WORDS["input"]:
+        return "input" if (unit is None or unit.order == 0) and not result & _WORDS["velocity"] else None
     if unit is not None and unit.order >= len(OUTPUTS):
         return None
     for quantity in ("acceleration", "velocity"):
-        if found & _WORDS[quantity]:
+        if result & _WORDS[quantity]:
             return quantity
-    if found & _WORDS["angle"]:
+    if result & _WORDS["angle"]:
         return OUTPUTS[unit.order] if unit is not None and unit.kind != "time" else "angle"
     return None
 
@@ -234,15 +234,15 @@ def _places(table: TextTable, ends: Ends, columns: Mapping[str, str]) -> dict[st
             quantity = _quantity(table.name_and_unit(place)[0], table.unit(place), ends)
             if quantity is not None and quantity not in places:
                 candidates.setdefault(quantity, []).append(place)
-    for quantity, found in candidates.items():
-        if len(found) > 1:
-            names = " and ".join(table.labels[place] for place in found[:2])
-            different = len({table.unit(place) for place in found}) > 1
+    for quantity, result in candidates.items():
+        if len(result) > 1:
+            names = " and ".join(table.labels[place] for place in result[:2])
+            different = len({table.unit(place) for place in result}) > 1
             raise table.wrong(
                 f"line {table.header_line}: {'mixed units: ' if different else ''}{names} "
                 f"both hold the {quantity}; choose with --column {quantity}=NAME"
             )
-    return places | {quantity: found[0] for quantity, found in candidates.items()}
+    return places | {quantity: result[0] for quantity, result in candidates.items()}
 
 
 def _named(table: TextTable, quantity: str, text: str) -> int:

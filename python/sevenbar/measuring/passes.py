@@ -133,9 +133,9 @@ def ways_through(stretches: Stretches, passes: int) -> list[tuple[int, ...]]:
     One pass for all rows; and, where the input turns back, those on which it goes on to the next pass at its
     upper turns, its lower turns, or both. Rows in no order are of one pass.
     """
-    found: list[tuple[int, ...]] = [(branch,) for branch in range(passes)]
+    result: list[tuple[int, ...]] = [(branch,) for branch in range(passes)]
     if len(stretches) < 2 or passes < 2 or not stretches.in_order:
-        return found
+        return result
     # beyond two passes the walk along the circuit has a direction
     directions: Sequence[int] = (1,) if passes == 2 else (1, -1)
     for first, direction, goes_on in product(
@@ -149,6 +149,6 @@ def ways_through(stretches: Stretches, passes: int) -> list[tuple[int, ...]]:
                 # back along the same pass
                 way.append(way[-1])
                 step = -step
-        if tuple(way) not in found and len(set(way)) > 1:
-            found.append(tuple(way))
-    return found
+        if tuple(way) not in result and len(set(way)) > 1:
+            result.append(tuple(way))
+    return result

@@ -28,11 +28,11 @@ def calibrated_toml(text: str, calibration: Calibration, *, source: str = "calib
     `MissingExtraError` without tomlkit.
     """
     draft = Draft.of(text, source)
-    found = {p.name: p.value for p in calibration.calibrated if not p.name.endswith("_offset")}
-    if found and "L2" in calibration.linkage.dimensions and "L2" not in calibration.follow:
-        found = {"L2": calibration.parameter("L2").value} | found
+    result = {p.name: p.value for p in calibration.calibrated if not p.name.endswith("_offset")}
+    if result and "L2" in calibration.linkage.dimensions and "L2" not in calibration.follow:
+        result = {"L2": calibration.parameter("L2").value} | result
     units = {dimension.name: dimension.scale for dimension in draft.dimensions}
-    written = draft.with_values({name: value / units[name] for name, value in found.items()}).toml()
+    written = draft.with_values({name: value / units[name] for name, value in result.items()}).toml()
     whole = "".join(f"# {line}\n" for line in _head(calibration)) + "\n" + written
     try:
         again = loads(whole, "calibrated.toml")

@@ -287,12 +287,14 @@ def cells_of(
         return quantity.role == "input range" and {*map(quantity.cells, motion)} == {(say("full turns"),)}
 
     shown = motion.circuits if circuits is None else circuits
-    found = [
+    result = [
         (quantity, [quantity.cells(circuit) for circuit in shown])
         for quantity in quantities_of(motion)
         if quantity.only in ("", form) and (quantity.role or not in_brief) and not is_held(quantity)
     ]
-    return [(quantity, cells) for quantity, cells in found if any(cell[0] not in nothing() for cell in cells)]
+    return [
+        (quantity, cells) for quantity, cells in result if any(cell[0] not in nothing() for cell in cells)
+    ]
 
 
 def nothing() -> Texts:
@@ -302,13 +304,13 @@ def nothing() -> Texts:
 
 def _dead_centres(circuit: Circuit, *, kind: str, show: Shown, within: bool = False) -> Texts:
     """Where the input or the output stands still; `within`: the ends of its range left out."""
-    found: Sequence[DeadCentre] = [d for d in circuit.dead_centres if d.kind == kind]
+    result: Sequence[DeadCentre] = [d for d in circuit.dead_centres if d.kind == kind]
     if within:
         angle = circuit.angle
         ends = (angle.lowest_at, angle.highest_at) if kind == "output" and angle else ()
         ends = circuit.input_range or () if kind == "input" else ends
-        found = [d for d in found if not any(show.same(d.input, end) for end in ends)]
-    places = list(dict.fromkeys(show(d.input, whole=True) for d in found))
+        result = [d for d in result if not any(show.same(d.input, end) for end in ends)]
+    places = list(dict.fromkeys(show(d.input, whole=True) for d in result))
     more = len(places) - MOST_DEAD_CENTRES
     return (*places[:MOST_DEAD_CENTRES], *([say("and {count} more", count=more)] if more > 0 else [])) or (
         say("none"),

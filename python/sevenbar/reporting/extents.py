@@ -68,17 +68,17 @@ def _of_circuit(linkage: Loop, circuit: Circuit) -> Iterator[Row]:
     if ranges is None:
         yield (number, say("cannot be followed by its own length"), "-", "-", "-", "-")
         return
-    for name, found in ranges.items():
-        show = degrees if found.turns else length
+    for name, result in ranges.items():
+        show = degrees if result.turns else length
         stop = say(" to ").join(map(show, stops.ranges[name])) if name in stops.ranges else "-"
-        if found.low is None or found.high is None or found.extent is None:
+        if result.low is None or result.high is None or result.extent is None:
             yield (number, name, "-", "-", say("without end"), stop)
         else:
             turn = 0.0
-            if found.turns and name not in stops.ranges:
-                turn = turned(found.low.value, found.high.value)
-            low, high = (replace(end, value=end.value + turn) for end in (found.low, found.high))
-            yield (number, name, *ends(low, high, show), show(found.extent), stop)
+            if result.turns and name not in stops.ranges:
+                turn = turned(result.low.value, result.high.value)
+            low, high = (replace(end, value=end.value + turn) for end in (result.low, result.high))
+            yield (number, name, *ends(low, high, show), show(result.extent), stop)
     for name, cone in (known(lambda: circuit.ball_cones) or {}).items():
         stop = "-" if cone.limit is None else degrees(cone.limit)
         middle = say("{angle} from the middle", angle=degrees(cone.spread))
@@ -100,12 +100,12 @@ def span_rows(motion: Motion) -> tuple[Row, list[Row]]:
     place = Shown("rad" if motion.linkage.unit_of(motion.input) == "rad" else motion.linkage.length_unit)
     rows: list[Row] = []
     for circuit in motion:
-        found = known(lambda circuit=circuit: circuit.allowed)  # type: ignore[misc]
-        if found is None or not found.spans:
-            rows.append((f"{circuit.index}", say("none") if found else "-", "-", "-", _reasons(found)))
-        for span in found.spans if found else ():
+        result = known(lambda circuit=circuit: circuit.allowed)  # type: ignore[misc]
+        if result is None or not result.spans:
+            rows.append((f"{circuit.index}", say("none") if result else "-", "-", "-", _reasons(result)))
+        for span in result.spans if result else ():
             ends = (place(span.start, whole=True), place(span.end, whole=True))
-            if found and found.whole:
+            if result and result.whole:
                 ends = ("-", "-")
             by = "; ".join(dict.fromkeys(filter(None, (span.first_stop, span.last_stop)))) or "-"
             rows.append((f"{circuit.index}", _percent(span.share), *ends, by))
@@ -128,9 +128,9 @@ def usable_text(circuits: Sequence[Circuit]) -> str:
     """What part of each circuit is within the stops: "circuit 0: 43.9 %, circuit 1: none"."""
     parts = []
     for circuit in circuits[:MOST_LISTED]:
-        found = known(lambda circuit=circuit: circuit.allowed)  # type: ignore[misc]
-        part = "-" if found is None else say("all") if found.whole else _percent(found.share)
-        if found is not None and not found.spans:
+        result = known(lambda circuit=circuit: circuit.allowed)  # type: ignore[misc]
+        part = "-" if result is None else say("all") if result.whole else _percent(result.share)
+        if result is not None and not result.spans:
             part = say("none")
         parts.append(say("circuit {number}: {part}", number=circuit.index, part=part))
     return say(", ").join(parts) + (" .." if len(circuits) > MOST_LISTED else "")
@@ -144,7 +144,7 @@ def extents_dict(circuit: Circuit, linkage: Loop) -> dict[str, Any]:
     ranges = known(lambda: circuit.joint_ranges)
     cones = known(lambda: circuit.ball_cones)
     gaps = known(lambda: circuit.clearances) if linkage.stops.radii else ()
-    found = known(lambda: circuit.allowed) if linkage.stops.stops else None
+    result = known(lambda: circuit.allowed) if linkage.stops.stops else None
     return {
         "joint_ranges": None
         if ranges is None
@@ -166,8 +166,8 @@ def extents_dict(circuit: Circuit, linkage: Loop) -> dict[str, Any]:
             if one.radii
         ],
         "allowed": None
-        if found is None
-        else {"share": found.share, "spans": [vars(span) for span in found.spans]},
+        if result is None
+        else {"share": result.share, "spans": [vars(span) for span in result.spans]},
     }
 
 

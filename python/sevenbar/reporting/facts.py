@@ -302,15 +302,15 @@ def _circuit_count(motion: Motion) -> str:
         (sum(c.closed and c.turns == 0 for c in motion), say("goes to and fro"), say("go to and fro")),
         (sum(not c.closed for c in motion), say("is not known to close"), say("are not known to close")),
     ]
-    found = [way for way in ways if way[0]]
+    result = [way for way in ways if way[0]]
     total = len(motion.circuits)
-    if len(found) == 1:
-        ((_, one, _),) = found
+    if len(result) == 1:
+        ((_, one, _),) = result
         if total > 1:
             return say("{count}, each {way}", count=total, way=one)
         return say("{count}, it {way}", count=total, way=one)
     each = (
-        say("{count} {way}", count=count, way=several if count > 1 else one) for count, one, several in found
+        say("{count} {way}", count=count, way=several if count > 1 else one) for count, one, several in result
     )
     return say("{count}: {ways}", count=total, ways=say(", ").join(each))
 

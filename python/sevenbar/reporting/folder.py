@@ -101,10 +101,10 @@ def fill_folder(folder: Path, fill: Callable[[Path], object], *, force: bool = F
         _undo(made, staging)
         raise _unwritable(folder, (error.strerror or str(error)).lower()) from None
     except KeyboardInterrupt:
-        kept = _keep(whole, folder, force=force)
-        _undo([] if kept else made, staging)
-        if kept:
-            raise Stopped(kept) from None
+        selected = _keep(whole, folder, force=force)
+        _undo([] if selected else made, staging)
+        if selected:
+            raise Stopped(selected) from None
         raise
     except BaseException:
         _undo(made, staging)

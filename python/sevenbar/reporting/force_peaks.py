@@ -37,12 +37,12 @@ def peaks_of(circuit: Circuit) -> ForcePeaks | None:
     forces = circuit.forces().within_stops
     if forces is None or (forces.part is None and not circuit.goes_round):
         return None
-    found = forces.sizing()
-    if found is None:
+    result = forces.sizing()
+    if result is None:
         return None
-    peaks = {name: bearing.force.peak for name, bearing in found.bearings.items()}
+    peaks = {name: bearing.force.peak for name, bearing in result.bearings.items()}
     known = {name: peak for name, peak in peaks.items() if math.isfinite(peak.value)}
-    return ForcePeaks(found.peak_torque, forces.unit, known)
+    return ForcePeaks(result.peak_torque, forces.unit, known)
 
 
 def peaks_dict(circuit: Circuit) -> dict[str, Any] | None:

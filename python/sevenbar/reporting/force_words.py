@@ -165,8 +165,8 @@ def part_facts(forces: Forces, others: Sequence[Forces] = ()) -> list[tuple[str,
         return []
     facts = [(say("within the stops"), part_text(forces))]
     for one in others:
-        found = one.sizing()
-        peak = no_peak(one) if found is None else Places(one).at(found.peak_torque, one.unit)
+        result = one.sizing()
+        peak = no_peak(one) if result is None else Places(one).at(result.peak_torque, one.unit)
         text = say("{part}, pass {number}: {peak}", part=part_text(one), number=int(one.branch[0]), peak=peak)
         facts.append((say("another part"), text))
     return facts
@@ -387,15 +387,15 @@ def unbounded_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str
 
 def known_alone(forces: Forces) -> list[str]:
     """Forces square to a joint's axis that are determined while the other one is not."""
-    found = []
+    result = []
     for name, reaction in forces.reactions.items():
         x, y = reaction.determinate[3:5]
         if x != y:
             which = 0 if x else 1
             size = f"{number(greatest(reaction.force[:, which]))} N"
             known = COMPONENTS[3 + which]
-            found.append(say("{force} of {joint}, up to {size}", force=known, joint=name, size=size))
-    return found
+            result.append(say("{force} of {joint}, up to {size}", force=known, joint=name, size=size))
+    return result
 
 
 def shaking_facts(forces: Forces, found: Shaking | None) -> list[tuple[str, str]]:

@@ -61,10 +61,10 @@ class CircuitForces:
                 f"circuit: no pose of circuit {circuit.index} is within the stops of the linkage; take "
                 "another circuit, or leave a [[stop]] out"
             )
-        found = own.sizing(unevenness=unevenness)
+        result = own.sizing(unevenness=unevenness)
         shakes = own.bodies and not own.at_rest
         others = tuple(one for one in forces.parts if one is not own)
-        return cls(motion, circuit, own, found, shaking_along(own) if shakes else None, others=others)
+        return cls(motion, circuit, own, result, shaking_along(own) if shakes else None, others=others)
 
 
 def forces_report(
@@ -254,30 +254,30 @@ def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
     """
     slides = forces.slides
     head = joint_column(forces.driver, slides=slides, order=0, length=forces.length_unit, angle="deg")
-    found: dict[str, npt.NDArray[Any]] = {} if forces.at_rest else {"time_s": forces.time}
-    found |= {
+    result: dict[str, npt.NDArray[Any]] = {} if forces.at_rest else {"time_s": forces.time}
+    result |= {
         head: forces.input if slides else np.degrees(forces.input),
         "branch": forces.branch,
         "status": forces.status,
         "force_N" if slides else "torque_Nm": forces.torque,
     }
     if not forces.at_rest:
-        found |= {"power_W": forces.power, "supplied_W": forces.supplied, "kinetic_energy_J": forces.kinetic}
-    found["potential_energy_J"] = forces.potential
+        result |= {"power_W": forces.power, "supplied_W": forces.supplied, "kinetic_energy_J": forces.kinetic}
+    result["potential_energy_J"] = forces.potential
     units = ("Nm",) * 3 + ("N",) * 3
     for name, reaction in forces.reactions.items():
         six = np.concatenate([reaction.moment, reaction.force], axis=1)
         for i in (3, 4, 5, 0, 1, 2):
-            found[f"{name}_{COMPONENTS[i]}_{units[i]}"] = six[:, i]
+            result[f"{name}_{COMPONENTS[i]}_{units[i]}"] = six[:, i]
         known = reaction.determinate[3:]
         if known.sum() == 2:
-            found[f"{name}_F_in_plane_N"] = np.linalg.norm(reaction.force[:, known], axis=1)
+            result[f"{name}_F_in_plane_N"] = np.linalg.norm(reaction.force[:, known], axis=1)
     if not forces.at_rest:
         for i in (3, 4, 5, 0, 1, 2):
-            found[f"shaking_{COMPONENTS[i]}_{units[i]}"] = forces.shaking[:, i]
+            result[f"shaking_{COMPONENTS[i]}_{units[i]}"] = forces.shaking[:, i]
     for link, moment in forces.spin.items():
-        found[f"{link.replace(' ', '')}_spin_moment_Nm"] = moment
-    return found
+        result[f"{link.replace(' ', '')}_spin_moment_Nm"] = moment
+    return result
 
 
 def _weights(found: Balance) -> dict[str, Any]:

@@ -137,7 +137,7 @@ def _vectors(linkage: Loop, known: Sequence[tuple[str, OnePose]], room: int) -> 
     points = [(mode, pose, point.name) for mode, pose in known for point in linkage.points]
     if points:
         first = [(say("mode"), [mode for mode, *_ in points]), (say("point"), [name for *_, name in points])]
-        kept: list[Column] = []
+        selected: list[Column] = []
         for order, (mark, end) in enumerate((("", ""), ("v", "/s"), ("a", "/s²"))):
             rows = np.array(
                 [
@@ -150,10 +150,10 @@ def _vectors(linkage: Loop, known: Sequence[tuple[str, OnePose]], room: int) -> 
                 for axis, own in zip("xyz", rows.T, strict=True)
             ]
             # places and velocities in one table
-            kept = [*kept, *columns]
+            selected = [*selected, *columns]
             if order:
-                sheets += wide_sheets(first, kept, room)
-                kept = []
+                sheets += wide_sheets(first, selected, room)
+                selected = []
     links = [(mode, pose, link) for mode, pose in known for link in pose.links]
     first = [(say("mode"), [mode for mode, *_ in links]), (say("link"), [f"{link}" for *_, link in links])]
     columns = []
@@ -187,8 +187,8 @@ def in_report(reaction: Reaction, word: str) -> Floats:
     first = 3 if word == "force" else 0
     known = reaction.determinate[first : first + 3]
     axes, own = reaction.axes[0], getattr(reaction, word)[0]
-    found = axes[:, known] @ own[known]
-    return np.where(np.abs(axes[:, ~known]).max(axis=1, initial=0.0) > OPEN, np.nan, found)
+    result = axes[:, known] @ own[known]
+    return np.where(np.abs(axes[:, ~known]).max(axis=1, initial=0.0) > OPEN, np.nan, result)
 
 
 def reaction_rows(reactions: Sequence[Reaction]) -> tuple[list[str], list[list[str]]]:

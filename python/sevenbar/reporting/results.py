@@ -85,13 +85,13 @@ def _(modes: Modes) -> str:
 @text_of.register(Motion)
 def _(motion: Motion) -> str:
     facts: list[tuple[str, str]] = []
-    kept = False
+    selected = False
     for label, text in facts_of(motion):
         # a line without a name goes on with the one above
-        kept = label in OF_MOTION if label else kept
+        selected = label in OF_MOTION if label else selected
         # whether a four-bar can be put together at all is seen by its sum of links
-        kept = kept or (label == "Grashof" and not motion.circuits)
-        if kept:
+        selected = selected or (label == "Grashof" and not motion.circuits)
+        if selected:
             facts.append((label, text))
         if label == "circuits":
             facts += _circuits(motion)
@@ -188,8 +188,8 @@ def _(trace: Trace) -> str:
 @text_of.register(ScrewAxes)
 def _(axes: ScrewAxes) -> str:
     head = f"Screw axes of link {axes.link} against link {axes.relative_to}: {len(axes.status)} rows"
-    found = (("pitch", axes.pitch), ("rate", axes.rate), ("slide rate", axes.slide_rate))
-    return _of_rows(head, axes.status, found)
+    result = (("pitch", axes.pitch), ("rate", axes.rate), ("slide rate", axes.slide_rate))
+    return _of_rows(head, axes.status, result)
 
 
 @text_of.register(InstantCentre)
@@ -230,8 +230,8 @@ def _(found: Sensitivity) -> str:
 def _(output: Output) -> str:
     head = f"Output of both branches at {output.position.shape[1]} inputs"
     names = ("position", "velocity", "acceleration", "jerk")
-    found = [(name, getattr(output, name)) for name in names if getattr(output, name) is not None]
-    return _of_rows(head, output.status.ravel(), found)
+    result = [(name, getattr(output, name)) for name in names if getattr(output, name) is not None]
+    return _of_rows(head, output.status.ravel(), result)
 
 
 @figure_of.register(Linkage)

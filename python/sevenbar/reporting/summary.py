@@ -83,11 +83,11 @@ def summary(motion: Motion, room: int = 100, *, ranges: bool = False, short: boo
 
 def _short(facts: Sequence[tuple[str, str]], *, sure: bool) -> list[tuple[str, str]]:
     """The facts of a brief report and their sentences; unless it is `sure`, also whether all is found."""
-    found, takes = [], False
+    result, takes = [], False
     for name, fact in facts:
         takes = name in BRIEF or (name == "completeness" and not sure) if name else takes
-        found += [(name, fact)] * takes
-    return found
+        result += [(name, fact)] * takes
+    return result
 
 
 def _extents(motion: Motion) -> list[Sheet]:
@@ -153,19 +153,19 @@ def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
     for key, value in linkage.dimensions.items():
         word, row, *rest = key.split("_")
         numbers["_".join([word, *rest])][int(row)] = value
-    kept = [key for key in columns if numbers[key]]
+    selected = [key for key in columns if numbers[key]]
     rows = []
     for place, joint in enumerate(linkage.joints, start=1):
         own = {"angle": "angle_deg"}.get(joint.row.moving_key, "offset")
         cells = [
             digits(numbers[key][place]) if place in numbers[key] else say("moves") if key == own else "-"
-            for key in kept
+            for key in selected
         ]
         named = f"{joint.kind} {joint.name}"
         if place == linkage.graph.ground:
             named = say("{joint} (ground)", joint=named)
         rows.append((f"{place}", named, *cells))
-    heads = (say("link"), say("joint before it"), *(columns[key] for key in kept))
+    heads = (say("link"), say("joint before it"), *(columns[key] for key in selected))
     return Sheet(heads, tuple(rows), frozenset(range(len(heads))) - {1})
 
 

@@ -43,13 +43,13 @@ class PlacedMass:
 
 def in_links(linkage: Loop, bodies: Mapping[int, Body]) -> dict[int, PlacedMass]:
     """Bodies with their centre and inertia, written as points are, in the frames of their links."""
-    found = {}
+    result = {}
     for link, body in bodies.items():
         assert body.centre is not None
         frame = linkage.point_frames[link - 1]
         turn = frame[:3, :3]
-        found[link] = PlacedMass(body.mass, placed(frame, body.centre), turn @ body.tensor @ turn.T)
-    return found
+        result[link] = PlacedMass(body.mass, placed(frame, body.centre), turn @ body.tensor @ turn.T)
+    return result
 
 
 @dataclass(frozen=True, eq=False)

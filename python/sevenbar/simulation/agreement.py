@@ -62,12 +62,12 @@ def compared_forces(course: Course, model: Prototype, record: Record) -> tuple[C
     )
     if record.reactions is None:
         return (drive,)
-    found = [drive]
+    result = [drive]
     for joint, seat in zip(linkage.joints, model.seats, strict=True):
         row = model.connections[seat].row
         if not row.is_screw:
-            found += _reaction(forces, joint.name, rows, row.free, record.reactions[first:, seat])
-    return tuple(found)
+            result += _reaction(forces, joint.name, rows, row.free, record.reactions[first:, seat])
+    return tuple(result)
 
 
 def _reaction(
@@ -76,7 +76,7 @@ def _reaction(
     """The force and the moment in a joint, where any of their components is determinate."""
     reaction = forces.reactions[name]
     slides, turns = np.array(free[:3]), np.array(free[3:])
-    found = []
+    result = []
     for what, unit, own, held, part in (
         ("force", "N", reaction.force, reaction.determinate[3:] & ~slides, engine[:, :3]),
         ("moment", "N m", reaction.moment, reaction.determinate[:3] & ~turns, engine[:, 3:]),
@@ -84,8 +84,8 @@ def _reaction(
         if held.any():
             along = np.einsum("nji,nj->ni", reaction.axes[rows], part)
             axes = tuple(axis for axis, here in zip("xyz", held, strict=True) if here)
-            found.append(ComparedForce(name, what, unit, axes, along[:, held], own[rows][:, held]))
-    return found
+            result.append(ComparedForce(name, what, unit, axes, along[:, held], own[rows][:, held]))
+    return result
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ class Simulation(Printed):
 
     def difference(self, quantity: str) -> Difference:
         """The difference of this name; `KeyError` where there is none."""
-        return {found.quantity: found for found in self.differences}[quantity]
+        return {result.quantity: result for result in self.differences}[quantity]
 
 
 def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
@@ -186,8 +186,8 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
         askew = np.linalg.norm(turn - np.eye(3), axis=(-1, -2)).max() / math.sqrt(2)
         returned = (float(apart), float(askew))
     forces = compared_forces(course, model, record)
-    found = Simulation(course, model, record, values, theory, points, returned, forces)
-    return replace(found, differences=tuple(_differences(found)))
+    result = Simulation(course, model, record, values, theory, points, returned, forces)
+    return replace(result, differences=tuple(_differences(result)))
 
 
 def _links(model: Prototype, record: Record, first: int) -> BodyStates:

@@ -118,7 +118,7 @@ def constraint_forces(
     # where the body after carries the slide, its constraint is the other way round
     given = turns[-1, :, axis] if drive.turns else (1.0 if carried else -1.0) * places[-1, :, axis]
     metre = LENGTHS[model.length_unit]
-    found = []
+    result = []
     for number, joint in enumerate(model.connections):
         before = _placed(frames, joint.before) @ joint.frame_before
         after = _placed(frames, joint.after) @ joint.frame_after
@@ -129,8 +129,8 @@ def constraint_forces(
         if number == drive.connection:
             along = (after if carried else before)[:, :3, axis] * given[:, None]
             force, moment = (force, moment + along) if drive.turns else (force + along, moment)
-        found.append(np.concatenate([force, moment], axis=1))
-    return ConstraintForces(given, np.stack(found, axis=1))
+        result.append(np.concatenate([force, moment], axis=1))
+    return ConstraintForces(given, np.stack(result, axis=1))
 
 
 def _moment(joint: Connection, before: Floats, after: Floats, turns: Floats) -> Floats:

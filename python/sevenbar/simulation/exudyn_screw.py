@@ -52,27 +52,27 @@ class ScrewConstraint:
         by_first[:, 3] = -first[:3, 2]
         by_second[:, 0] = share * (sine * first[:3, 0] - cosine * first[:3, 1])
         by_second[:, 3] = first[:3, 2]
-        found: list[float] = []
+        result: list[float] = []
         for moves, frame, own, by in zip(
             self._moves, self._frames, (own_first, own_second), (by_first, by_second), strict=True
         ):
             if moves:
                 # a frame is R(p) frame + place
-                found += list(by[:, 3])
-                found += [float(np.vdot(by, _rotation(own[3:], d) @ frame[:3, :])) for d in np.eye(4)]
-        return np.array([found])
+                result += list(by[:, 3])
+                result += [float(np.vdot(by, _rotation(own[3:], d) @ frame[:3, :])) for d in np.eye(4)]
+        return np.array([result])
 
     def _placed(self, q: Any) -> list[tuple[Floats, Floats]]:
         """The joint's frame in each body, and that body's own coordinates, none of the ground."""
         coordinates = np.asarray(q)
-        found: list[tuple[Floats, Floats]] = []
+        result: list[tuple[Floats, Floats]] = []
         for moves, frame in zip(self._moves, self._frames, strict=True):
             if moves:
                 own, coordinates = coordinates[:7], coordinates[7:]
-                found.append((pose(0.5 * _rotation(own[3:], own[3:]), own[:3]) @ frame, own))
+                result.append((pose(0.5 * _rotation(own[3:], own[3:]), own[:3]) @ frame, own))
             else:
-                found.append((frame, coordinates[:0]))
-        return found
+                result.append((frame, coordinates[:0]))
+        return result
 
 
 def _rotation(p: Floats, d: Floats) -> Floats:

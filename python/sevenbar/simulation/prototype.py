@@ -283,15 +283,17 @@ def _without_idle(linkage: Solvable) -> str:
     letters, changes = [], []
     for i, (joint, own) in enumerate(zip(linkage.joints, linkage.places, strict=True)):
         freedoms = linkage.column_kinds[own]
-        kept = [
+        selected = [
             "R" if freedom == "turn" else "P"
             for column, freedom in enumerate(freedoms, own.start)
             if column not in held
         ]
         # of a link between two balls an engine holds the spin
-        if i in spun or len(kept) == len(freedoms):
+        if i in spun or len(selected) == len(freedoms):
             letters.append(joint.kind)
             continue
-        letters += kept
-        changes.append(f"{' '.join(kept)} in place of {joint.name}" if kept else f"without {joint.name}")
+        letters += selected
+        changes.append(
+            f"{' '.join(selected)} in place of {joint.name}" if selected else f"without {joint.name}"
+        )
     return f": {' '.join(letters)} moves alike, {', '.join(changes)}"

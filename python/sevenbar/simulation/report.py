@@ -43,7 +43,7 @@ def as_dict(run: Simulation) -> dict[str, Any]:
             "lead": len(way.lead),
             "step": way.step,
         },
-        "differences": [vars(found) for found in run.differences],
+        "differences": [vars(result) for result in run.differences],
         "closure_error": {"length": run.gap, "angle": run.tilt},
         "returned": returned,
     }
@@ -71,7 +71,7 @@ def text(run: Simulation) -> RenderableType:
     at = f"at {short(motion.input, 12)}"
     heads = (f"{record.engine} minus Sevenbar", "greatest", at, "median", "values up to")
     slide = linkage.unit_of(motion.input) != "rad"
-    table = number_table(heads, (_cells(found, slide, unit) for found in run.differences))
+    table = number_table(heads, (_cells(result, slide, unit) for result in run.differences))
     return page(linkage.heading, facts, table)
 
 
@@ -142,28 +142,28 @@ def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
     """Every row, column by column, Sevenbar's and the engine's; each name ends in its unit."""
     linkage, unit = run.linkage, run.linkage.length_unit
     who = ("sevenbar", run.record.engine.lower())
-    found: dict[str, npt.NDArray[Any]] = {"row": np.arange(len(run.time)), "time_s": run.time}
+    result: dict[str, npt.NDArray[Any]] = {"row": np.arange(len(run.time)), "time_s": run.time}
     for column in linkage.each_column:
         name, index, slides = column.name, column.number, not column.turns
         for order, quantity in enumerate(("q", "dq", "ddq")):
             for side, joints in zip(who, (run.theory, run.engine), strict=True):
                 head = joint_column(name, slides=slides, order=order, length=unit, angle="deg", who=side)
                 values = getattr(joints, quantity)[:, index]
-                found[head] = np.degrees(values) if head.endswith("_deg") else values
+                result[head] = np.degrees(values) if head.endswith("_deg") else values
     for name, (engine, theory) in run.points.items():
         for order, quantity in enumerate(("position", "velocity", "acceleration")):
             for axis, letter in enumerate("xyz"):
                 for side, point in zip(who, (theory, engine), strict=True):
                     head = point_column(name, letter, order=order, length=unit, who=side)
-                    found[head] = getattr(point, quantity)[:, axis]
+                    result[head] = getattr(point, quantity)[:, axis]
     for force in run.forces:
         for place, letter in enumerate(force.axes):
             for side, own in zip(who, (force.theory, force.engine), strict=True):
                 words = [force.name, force.what, letter, side, force.unit.replace(" ", "")]
-                found["_".join(word for word in words if word)] = own[:, place]
-    found[f"closure_error_{unit}"] = run.engine.gap.max(axis=1)
-    found["closure_error_rad"] = run.engine.tilt.max(axis=1)
-    return found
+                result["_".join(word for word in words if word)] = own[:, place]
+    result[f"closure_error_{unit}"] = run.engine.gap.max(axis=1)
+    result["closure_error_rad"] = run.engine.tilt.max(axis=1)
+    return result
 
 
 @text_of.register(Simulation)

@@ -119,14 +119,14 @@ def _of_circuits(plan: SweepPlan, motions: Motions) -> Block:
         circuit = np.full(len(linkage), NO_CIRCUIT)
     else:
         without = np.flatnonzero(motions.clear & (motions.circuits == 0))
-        kept = np.flatnonzero(motions.clear[motions.linkage])
-        linkage = np.concatenate([motions.linkage[kept], without])
-        circuit = np.concatenate([motions.circuit[kept], np.full(len(without), NO_CIRCUIT)])
+        selected = np.flatnonzero(motions.clear[motions.linkage])
+        linkage = np.concatenate([motions.linkage[selected], without])
+        circuit = np.concatenate([motions.circuit[selected], np.full(len(without), NO_CIRCUIT)])
     columns = _of_linkages(plan, linkage, motions.types, motions.limits)
     if "circuits" in plan.measures:
         columns["circuits"] = motions.circuits[linkage].astype(np.float64)
     for measure in own:
-        column = motions.columns[measure.name][kept]
+        column = motions.columns[measure.name][selected]
         missing = None if column.dtype == object else np.nan
         columns[measure.name] = np.concatenate([column, np.full(len(without), missing, column.dtype)])
     return Block.measured(linkage, circuit, columns)

@@ -44,11 +44,11 @@ def flaw(content: bytes, mark: str, part: int, linkages: range) -> str:
         return "is damaged or was changed: its checksum is that of other bytes"
     import pyarrow.parquet as pq
 
-    found: Mapping[bytes, bytes] = pq.read_metadata(BytesIO(content)).metadata
-    if found.get(MARK) != mark.encode():
+    result: Mapping[bytes, bytes] = pq.read_metadata(BytesIO(content)).metadata
+    if result.get(MARK) != mark.encode():
         return "is no part of this sweep"
-    if found.get(PART) != part_words(part, linkages):
-        number = found.get(PART, b"").partition(b":")[0].decode()
+    if result.get(PART) != part_words(part, linkages):
+        number = result.get(PART, b"").partition(b":")[0].decode()
         return f"is part {number} of this sweep, not part {part}"
     return ""
 

@@ -72,11 +72,11 @@ class Cluster:
         """What makes parts there, as of the workers that are there now; raises `EngineError` for none."""
         self._wait_for_workers()
         try:
-            found = self._client.run(maker, on_error="return")
+            result = self._client.run(maker, on_error="return")
         except Exception as error:
             self._lost(error)
         makers: list[Mapping[str, str]] = []
-        for worker, known in found.items():
+        for worker, known in result.items():
             if not isinstance(known, dict):
                 raise EngineError(
                     f"scheduler: worker {worker} cannot run Sevenbar: {known}; install the same version there"

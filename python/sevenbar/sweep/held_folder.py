@@ -126,11 +126,11 @@ class HeldFolder:
 
     def _unwritable(self, error: OSError) -> OutputError:
         reason = (error.strerror or str(error)).lower()
-        kept = ""
+        selected = ""
         if self.done:
-            kept = f"; {len(self.done)} of {self._plan.parts} parts are kept, --resume goes on with them"
+            selected = f"; {len(self.done)} of {self._plan.parts} parts are kept, --resume goes on with them"
         return OutputError(
-            f"{self.path}: cannot be written: {reason}; make room or give a folder that can be written{kept}"
+            f"{self.path}: cannot be written: {reason}; make room or give a folder that can be written{selected}"
         )
 
 
@@ -170,8 +170,8 @@ def differences(there: Any, here: Any, place: str = "") -> list[str]:
     """Where two values of JSON differ, in words."""
     if isinstance(there, dict) and isinstance(here, dict):
         keys = [*here, *(key for key in there if key not in here)]
-        found = (differences(there.get(key), here.get(key), f"{place}.{key}".lstrip(".")) for key in keys)
-        return [one for some in found for one in some]
+        result = (differences(there.get(key), here.get(key), f"{place}.{key}".lstrip(".")) for key in keys)
+        return [one for some in result for one in some]
     if isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
         pairs = enumerate(zip(there, here, strict=True), 1)
         return [one for i, pair in pairs for one in differences(*pair, f"{place}[{i}]")]

@@ -32,19 +32,19 @@ def analysed(plan: SweepPlan, values: Floats, first: int, which: Integers) -> Bl
     rows: list[Row] = []
     for index in which:
         outcome: str = OK
-        found: list[Row] = [{"circuit": None, **{measure.name: None for measure in measures}}]
+        result: list[Row] = [{"circuit": None, **{measure.name: None for measure in measures}}]
         try:
             linkage_there = plan.draft_of(values[:, index]).linkage
             motion = linkage_there.motion(plan.samples, input=plan.input, output=plan.output)
         except SevenbarError as error:
             outcome = "; ".join(str(error).splitlines())
         else:
-            found = list(_measured(motion, measures, first + int(index)))
+            result = list(_measured(motion, measures, first + int(index)))
             inputs = np.degrees(motion.limits)
-            found = [row | dict(zip(limits, inputs, strict=False)) for row in found]
-        linkage += [int(index)] * len(found)
-        status += [outcome] * len(found)
-        rows += found
+            result = [row | dict(zip(limits, inputs, strict=False)) for row in result]
+        linkage += [int(index)] * len(result)
+        status += [outcome] * len(result)
+        rows += result
     columns: dict[str, npt.NDArray[Any]] = {}
     for measure in measures:
         column = [row[measure.name] for row in rows]

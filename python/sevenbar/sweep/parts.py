@@ -40,26 +40,26 @@ def read_description(folder: Path) -> dict[str, Any]:
     """What `sweep.json` of a folder holds; raises `OutputError` where that is no sweep's."""
     path = folder / DESCRIPTION
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        result = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise OutputError(f"{path}: cannot be read: {reason}; give the folder of a sweep") from None
     except (ValueError, RecursionError):
-        found = None
-    if not isinstance(found, dict) or not isinstance(found.get("made_by"), list):
+        result = None
+    if not isinstance(result, dict) or not isinstance(result.get("made_by"), list):
         raise OutputError(f"{path}: is no description of a sweep of format {FORMAT}; give another folder")
-    if found.get("format") == WITHOUT_CHECKSUMS:
+    if result.get("format") == WITHOUT_CHECKSUMS:
         raise OutputError(
             f"{path}: is a sweep of format {WITHOUT_CHECKSUMS}, whose parts carry no checksums; "
             "sweep into another folder, or read its parts with pandas or DuckDB"
         )
-    if found.get("format") != FORMAT:
+    if result.get("format") != FORMAT:
         raise OutputError(f"{path}: is no description of a sweep of format {FORMAT}; give another folder")
-    if found.get(OWN) != checksum(found):
+    if result.get(OWN) != checksum(result):
         raise OutputError(
             f"{path}: is damaged or was changed: its checksum is that of other values; give another folder"
         )
-    return found
+    return result
 
 
 def read_part(folder: Path, part: int, description: Mapping[str, Any]) -> bytes:
@@ -79,8 +79,8 @@ def read_part(folder: Path, part: int, description: Mapping[str, Any]) -> bytes:
 
 def parts_there(folder: Path) -> list[int]:
     """The numbers of the parts that a folder holds, rising."""
-    found = (_PART.fullmatch(path.name) for path in folder.iterdir())
-    return sorted(int(match[1]) for match in found if match)
+    result = (_PART.fullmatch(path.name) for path in folder.iterdir())
+    return sorted(int(match[1]) for match in result if match)
 
 
 def is_finished(folder: Path) -> bool:

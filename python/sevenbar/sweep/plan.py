@@ -82,13 +82,13 @@ class SweepPlan:
         for axis in space.axes:
             if axis.name in follow:
                 raise RequestError(f"follow: {axis.name} is swept itself; leave one of the two out")
-        found = measures_named(measures)
+        result = measures_named(measures)
         # whatever is wrong with the request as a whole is wrong with the linkage that was given, too
         motion = draft.linkage.motion(samples, input=input, output=output)
         if part_size is None:
-            part_size = _part_size(draft, found)
+            part_size = _part_size(draft, result)
         size = whole_number("part_size", part_size, 1, MOST_IN_A_PART, "a count of linkages")
-        names = tuple(m.name if MEASURES.get(m.name) is m else m for m in found)
+        names = tuple(m.name if MEASURES.get(m.name) is m else m for m in result)
         bare = replace(draft)  # without what it has cached
         return SweepPlan(bare, space, names, motion.samples, motion.input, motion.output, size)
 

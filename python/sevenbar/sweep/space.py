@@ -61,24 +61,24 @@ class Space:
             raise RequestError("over: no dimension is given; give one or more, as in L1=200:300:51")
         if len(axes) > MOST_AXES:
             raise RequestError(f"over: {len(axes)} dimensions are too many; give at most {MOST_AXES}")
-        found = tuple(axis_of(draft.dimension(name), given) for name, given in axes.items())
-        check_apart("over", [axis.dimension for axis in found])
-        names = [axis.name for axis in found]
+        result = tuple(axis_of(draft.dimension(name), given) for name, given in axes.items())
+        check_apart("over", [axis.dimension for axis in result])
+        names = [axis.name for axis in result]
         for name in names:
             if names.count(name) > 1:
                 raise RequestError(f"over: dimension {shown(name)} is given twice; leave one out")
-        spans = [axis for axis in found if axis.count is None]
+        spans = [axis for axis in result if axis.count is None]
         if method is None:
             method = "sobol" if spans else "grid"
         check_word("method", method, METHODS, "a way to choose linkages")
         if method == "grid":
-            return _grid(found, spans, count, seed)
+            return _grid(result, spans, count, seed)
         number = whole_number("seed", 0 if seed is None else seed, 0, MOST_SEED, "a seed")
         if count is None:
             raise RequestError(f"count: missing; a {method} sample needs one, as in 1000")
         most = MOST_SOBOL if method == "sobol" else MOST_LINKAGES
         hint = ", or the method random" if method == "sobol" else ""
-        return Space(found, method, whole_number("count", count, 1, most, "a count", hint), number)
+        return Space(result, method, whole_number("count", count, 1, most, "a count", hint), number)
 
     def values(self, first: int, stop: int) -> Floats:
         """The values (axes, n) of linkages `first` to `stop`, each in its dimension's unit of the file."""

@@ -100,10 +100,10 @@ def lacks_unit(text: str, kind: Kind) -> bool:
     [True, True, False, False, False, False]
     """
     try:
-        found = _computed(text, kind, "mm", "deg")
+        result = _computed(text, kind, "mm", "deg")
     except WrongFormulaError:
         return False
-    return found.plain and found.number != 0 and not (kind == "angle" and found.turns)
+    return result.plain and result.number != 0 and not (kind == "angle" and result.turns)
 
 
 def _computed(text: str, kind: Kind, length_unit: str, angle_unit: str) -> _Amount:
@@ -120,8 +120,8 @@ def _computed(text: str, kind: Kind, length_unit: str, angle_unit: str) -> _Amou
         names[CALLED[unit]] = _Amount(1.0 if same else size / own, angle=1, turns=not same)
     body = parsed(text, names)
     with np.errstate(all="ignore"):
-        found = evaluated(body, names, partial(_operated, own=own), partial(_applied, own=own))
-    return found if isinstance(found, _Amount) else _Amount(float(found))
+        result = evaluated(body, names, partial(_operated, own=own), partial(_applied, own=own))
+    return result if isinstance(result, _Amount) else _Amount(float(result))
 
 
 #: What a dimension may look like, for messages.

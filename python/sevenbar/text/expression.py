@@ -146,13 +146,13 @@ def greatest_angle(text: str, x: Floats) -> tuple[str, str, float] | None:
         >>> greatest_angle("sin(x) + cos(2*x)", np.array([0.0, 90.0]))
         ('cos', '2 * x', 180.0)
     """
-    found = []
+    result = []
     for node in _calls(_of_x(text)):
         name, argument = ast.unparse(node.func), node.args[0]
         if name in TRIGONOMETRIC and _holds_x(argument):
             size = float(np.abs(np.nan_to_num(_values(argument, x))).max())
-            found.append((name, ast.unparse(argument).replace("unit_", ""), size))
-    return max(found, key=lambda one: one[2], default=None)
+            result.append((name, ast.unparse(argument).replace("unit_", ""), size))
+    return max(result, key=lambda one: one[2], default=None)
 
 
 def _calls(body: ast.AST) -> list[ast.Call]:

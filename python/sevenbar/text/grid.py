@@ -67,9 +67,9 @@ def grid_of_text(text: str, is_header: IsHeader) -> CellTable | None:
     """The table of a text; `None` where no line of it is a header."""
     for delimiter in ("\t", ";", ",", ""):
         cells = list(_cells(text, delimiter))
-        found = _grid(cells, is_header, decimal_comma=delimiter != ",")
-        if found is not None:
-            return found
+        result = _grid(cells, is_header, decimal_comma=delimiter != ",")
+        if result is not None:
+            return result
     return None
 
 
@@ -117,18 +117,18 @@ def _grid(
     decimal_comma: bool = False,
     remarks: bool = True,
 ) -> CellTable | None:
-    kept = [(n, cells) for n, cells in lines if any(cells) and not (remarks and _is_remark(cells))]
-    heads = [[name_and_unit(cell)[0] for cell in cells] for _, cells in kept]
+    selected = [(n, cells) for n, cells in lines if any(cells) and not (remarks and _is_remark(cells))]
+    heads = [[name_and_unit(cell)[0] for cell in cells] for _, cells in selected]
     first = next((i for i, head in enumerate(heads) if is_header(head)), None)
     if first is None:
         return None
-    above = [[cell for cell in cells if cell] for _, cells in kept[:first]]
+    above = [[cell for cell in cells if cell] for _, cells in selected[:first]]
     title = next((cells[0] for cells in above if len(cells) == 1), "")
-    names = list(kept[first][1])
+    names = list(selected[first][1])
     while names and not names[-1]:
         names.pop()
     width = len(names)
-    body = kept[first + 1 :]
+    body = selected[first + 1 :]
     units = [""] * width
     if body and _only_units(body[0][1]):
         units = ([re.sub(r"[\[\]()]", "", cell) for cell in body[0][1]] + units)[:width]

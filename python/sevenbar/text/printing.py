@@ -103,10 +103,10 @@ def figure_of(value: object, **options: Any) -> Any:
 
 def lines(head: str, facts: Iterable[tuple[str, str]]) -> str:
     """A head, and below it facts: labels and texts in two columns, long texts in several lines."""
-    kept = [(label, text) for label, text in facts if text]
-    left = max((len(label) for label, _ in kept), default=0)
+    selected = [(label, text) for label, text in facts if text]
+    left = max((len(label) for label, _ in selected), default=0)
     printed = [head]
-    for label, text in kept:
+    for label, text in selected:
         parts = wrap(text, max(WIDTH - left - 4, LEAST_WIDTH), break_long_words=False) or [""]
         printed.append(f"  {label:{left}}  {parts[0]}")
         printed += [f"  {'':{left}}  {part}" for part in parts[1:]]

@@ -121,14 +121,14 @@ def unit_of(text: str) -> _Unit:
     >>> float(unit_of("N/mm").size), unit_of("kg m^2").powers
     (1000.0, (1, 2, 0, 0))
     """
-    found, sign = _ONE, ""
+    result, sign = _ONE, ""
     for i, word in enumerate(_NEXT.split(text.strip())):
         if i % 2:
             sign = word
             continue
         name, power = (word.rstrip("23^"), int(word[-1])) if word[-1] in "23" else (word, 1)
-        found = found.times(_UNITS[name], -power if sign == "/" else power)
-    return found
+        result = result.times(_UNITS[name], -power if sign == "/" else power)
+    return result
 
 
 def _bare(what: str) -> str:

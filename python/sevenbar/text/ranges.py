@@ -39,16 +39,16 @@ def split_named(option: str, words: Iterable[str], what: str, hint: str) -> dict
 
     Raises `RequestError` for a word that has another form, and so is not `what`, and for a name given twice.
     """
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for word in words:
         parts = split_name(word)
         if parts is None:
             raise RequestError(f"{option}: {shown(word)} is not {what}; {hint}")
         name, value = parts
-        if name in found:
+        if name in result:
             raise RequestError(f"{option}: {shown(name)} is given twice; leave one out")
-        found[name] = value
-    return found
+        result[name] = value
+    return result
 
 
 def split_range(text: str) -> tuple[str, str] | None:

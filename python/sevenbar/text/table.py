@@ -197,11 +197,11 @@ def unit_size(
     where: str, unit: str, sort: tuple[str, int], length_unit: str, *, what: str, example: str
 ) -> float:
     """The factor from a unit to s, rad or `length_unit`; `TableError` if it is not a unit of this `sort`."""
-    found = measured_unit(unit)
-    if found is None or (found.kind, found.order) != sort:
-        fault = "known here" if found is None else f"of the {what}"
+    result = measured_unit(unit)
+    if result is None or (result.kind, result.order) != sort:
+        fault = "known here" if result is None else f"of the {what}"
         raise TableError(f"{where}: {shown(unit)} is not a unit {fault}; give one like {example}")
-    return found.size_in(length_unit)
+    return result.size_in(length_unit)
 
 
 def plain_name(name: str) -> str:

@@ -64,8 +64,8 @@ def say(sentence: str, /, **values: object) -> str:
     >>> say("{count} circuits", count=3)
     '3 circuits'
     """
-    found = catalogue(_spoken.get()).get(sentence, sentence)
-    return found.format(**values) if values else found
+    result = catalogue(_spoken.get()).get(sentence, sentence)
+    return result.format(**values) if values else result
 
 
 def retold(text: str) -> str:

@@ -116,7 +116,7 @@ def designed(
     """
     if abs(P) < NOTHING and abs(S) < NOTHING:
         tries = [_sized(c, K, ratio, 0.0, Q, H, (u, v)) for ratio in RATIOS]
-        return next((found for found in tries if found is not None), None)
+        return next((result for result in tries if result is not None), None)
     if abs(P) < NOTHING or abs(S) < NOTHING:
         return None
     if S / P < 0:

@@ -49,17 +49,17 @@ def cc_dyads(poses: npt.ArrayLike, *, length_unit: str = "mm") -> ExactAnswers:
     """
     task = poses_given(poses, 5, 5)
     _refuse_special(task)
-    found = solutions(task.turns - np.eye(3))
-    if found is None:
+    result = solutions(task.turns - np.eye(3))
+    if result is None:
         raise RequestError(
             "poses: infinitely many directions of dyads take these five orientations; change one of them"
         )
-    real = [(found.a[i].real, found.b[i].real) for i in np.flatnonzero(found.real)]
+    real = [(result.a[i].real, result.b[i].real) for i in np.flatnonzero(result.real)]
     every = [found_dyad(a, b, "CC", task) for a, b in real if np.linalg.norm(np.cross(a, b)) >= NOTHING]
     dyads = [dyad for dyad in every if dyad is not None]
     answers = all_loops(dyads, task, "Linkage CCCC", length_unit)
     how = f"{POINTS} pairs of directions as of spherical dyads, the places of each from 4 linear equations"
-    known = int(found.multiplicity.sum())
+    known = int(result.multiplicity.sum())
     return ExactAnswers(
         "5 poses in space", "dyads", DYADS, known, len(dyads), answers, how, drawn(dyads, task)
     )
@@ -81,8 +81,8 @@ def rccc_poses(
     answers: list[ExactAnswer] = []
     for draw in directions(samples, 8, seed):
         ways = (("RC", draw[:3], None), ("CC", draw[3:6], 3 * draw[6:]))
-        found = [found_dyad(np.cross(*(forms @ b)), b, kind, task, free) for kind, b, free in ways]
-        dyads = [dyad for dyad in found if dyad is not None]
+        result = [found_dyad(np.cross(*(forms @ b)), b, kind, task, free) for kind, b, free in ways]
+        dyads = [dyad for dyad in result if dyad is not None]
         if len(dyads) == 2:
             title = f"Linkage RCCC {len(answers) + 1}"
             answers.append(loop(dyads[0], dyads[1], task, title, length_unit))

@@ -29,8 +29,8 @@ def directions(samples: int, size: int, seed: int) -> Floats:
     samples = whole_number("samples", samples, 1, MOST, "a number of members")
     # a sequence is even in powers of two only
     draws = qmc.Sobol(size, seed=seed).random_base2(max(samples - 1, 1).bit_length())[:samples]
-    found = ndtri(np.clip(draws, 1e-9, 1 - 1e-9))
-    return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
+    result = ndtri(np.clip(draws, 1e-9, 1 - 1e-9))
+    return np.asarray(result / np.linalg.norm(result, axis=1, keepdims=True))
 
 
 def family(
@@ -52,11 +52,11 @@ def family(
 
 def on_curve(forms: Floats, samples: int, seed: int) -> list[Pair]:
     """Pairs of three forms (3, 3, 3), whose b lie on a cubic: where lines of a Sobol sequence meet it."""
-    found: list[Pair] = []
+    result: list[Pair] = []
     for line in directions(samples, 6, seed):
         for b in on_cubic(forms, line[:3], line[3:]):
-            found.append((partner(forms, b).real, b))
-    return found[:samples]
+            result.append((partner(forms, b).real, b))
+    return result[:samples]
 
 
 def anywhere(forms: Floats, moving: Floats) -> list[Pair]:
@@ -64,7 +64,7 @@ def anywhere(forms: Floats, moving: Floats) -> list[Pair]:
 
     Raises `RequestError` for one that has infinitely many.
     """
-    found: list[Pair] = []
+    result: list[Pair] = []
     sizes = np.linalg.norm(forms, axis=(1, 2))
     for i, b in enumerate(moving):
         a = np.cross(*(forms @ b))
@@ -73,5 +73,5 @@ def anywhere(forms: Floats, moving: Floats) -> list[Pair]:
                 f"moving[{i}]: has one place in two of the three poses, so infinitely many dyads fit; give "
                 "another"
             )
-        found.append((a, b))
-    return found
+        result.append((a, b))
+    return result

@@ -31,12 +31,12 @@ class Line:
 
     def motions(self, values: Floats) -> Floats:
         """The relative motions (n, 4, 4) at columns (n, freedoms)."""
-        found = np.tile(np.eye(4), (len(values), 1, 1))
+        result = np.tile(np.eye(4), (len(values), 1, 1))
         slide = np.zeros(len(values)) if self.kind == "R" else values[:, -1]
         if self.kind != "P":
-            found[:, :3, :3] = turns_about(self.axis, values[:, 0])
-        found[:, :3, 3] = self.at - found[:, :3, :3] @ self.at + slide[:, None] * self.axis
-        return found
+            result[:, :3, :3] = turns_about(self.axis, values[:, 0])
+        result[:, :3, 3] = self.at - result[:, :3, :3] @ self.at + slide[:, None] * self.axis
+        return result
 
     def written(self, name: str, origin: Floats) -> dict[str, Any]:
         """The joint as a file has it, whose coordinates count from elsewhere."""

@@ -106,9 +106,9 @@ def function_pairs(
     scale = positive_length("longest", longest)
     own = None if zeros is None else _own_zeros(zeros, cosine)
     spaces, theory, known, how = _closures(a, b, cosine, own, samples, seed)
-    found = [rssr for rssr in (_linkage(space, cosine, own) for space in spaces) if rssr is not None]
-    answers = tuple(_answer(rssr, a, b, i, scale, length_unit) for i, rssr in enumerate(found, 1))
-    return ExactAnswers(f"{a.size} pairs of angles", "closures", theory, known, len(found), answers, how)
+    result = [rssr for rssr in (_linkage(space, cosine, own) for space in spaces) if rssr is not None]
+    answers = tuple(_answer(rssr, a, b, i, scale, length_unit) for i, rssr in enumerate(result, 1))
+    return ExactAnswers(f"{a.size} pairs of angles", "closures", theory, known, len(result), answers, how)
 
 
 def _cosine(twist: float) -> float:
@@ -147,8 +147,8 @@ def _closures(
     if size == 2 and pencil:
         quadratic = _of_pencil(base[0], base[1], cosine or 0.0)
         if np.abs(quadratic).max() > NO_QUADRATIC:
-            found = [x * base[0] + y * base[1] for x, y in _real_roots(quadratic)]
-            return found, 2, 2, "the angle of the axes is a quadratic along the pencil of null vectors"
+            result = [x * base[0] + y * base[1] for x, y in _real_roots(quadratic)]
+            return result, 2, 2, "the angle of the axes is a quadratic along the pencil of null vectors"
         pencil = False  # all of it has the angle wanted
     how = f"members of a family of {size} coefficients, drawn with seed {seed}"
     if cosine is None and zeros is None and _all_parallel(base):
@@ -157,12 +157,12 @@ def _closures(
     draws = directions(samples, size * (1 + pencil), seed)
     if not pencil:
         return list(np.einsum("nk,kij->nij", draws, base)), None, None, how
-    found = []
+    result = []
     for draw in draws:
         first, second = (np.einsum("k,kij->ij", half, base) for half in np.split(draw, 2))
         roots = _real_roots(_of_pencil(first, second, cosine or 0.0))
-        found += [x * first + y * second for x, y in roots]
-    return found, None, None, how
+        result += [x * first + y * second for x, y in roots]
+    return result, None, None, how
 
 
 def _null_space(a: Floats, b: Floats, cosine: float | None, zeros: tuple[float, float] | None) -> Floats:
@@ -171,8 +171,8 @@ def _null_space(a: Floats, b: Floats, cosine: float | None, zeros: tuple[float, 
         rows, back = products(a, b), np.eye(COEFFICIENTS)
     else:
         # without ca sb and sa cb; with the axes given ca cb and sa sb go together
-        kept = [0, 1, 2, 3, 4, 6, 8] if cosine is None else [0, 1, 2, 3, 4, 6]
-        back = np.eye(COEFFICIENTS)[kept]
+        selected = [0, 1, 2, 3, 4, 6, 8] if cosine is None else [0, 1, 2, 3, 4, 6]
+        back = np.eye(COEFFICIENTS)[selected]
         if cosine is not None:
             back[4, 8] = cosine
         rows = products(a + zeros[0], b + zeros[1]) @ back.T
@@ -202,12 +202,12 @@ def _in_planes(base: Floats, lines: Floats) -> list[Floats]:
         x, y = f[1:, 1:].T @ f[1:, 0]
         return float(x * f[0, 2] - y * f[0, 1])
 
-    found: list[Floats] = []
+    result: list[Floats] = []
     for line in lines:
         first, second = (np.einsum("k,kij->ij", half, base) for half in np.split(line, 2))
         roots = cubic_roots(partial(aside, first=first, second=second))
-        found += [first + x * second for x in roots]
-    return found
+        result += [first + x * second for x in roots]
+    return result
 
 
 def _of_pencil(first: Floats, second: Floats, c: float) -> Floats:

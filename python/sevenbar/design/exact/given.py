@@ -44,9 +44,9 @@ class Displacements:
     def centre(self) -> Floats | None:
         """The place (3,) that all displacements leave where it is, in the caller's coordinates, if any."""
         sides, right = np.concatenate(np.eye(3) - self.turns), np.concatenate(self.shifts)
-        found = np.linalg.lstsq(sides, right, rcond=None)[0]
-        still = np.abs(sides @ found - right).max() < SAME_POSE
-        return np.asarray(found * self.reach + self.origin) if still else None
+        result = np.linalg.lstsq(sides, right, rcond=None)[0]
+        still = np.abs(sides @ result - right).max() < SAME_POSE
+        return np.asarray(result * self.reach + self.origin) if still else None
 
 
 def planar_given(poses: npt.ArrayLike, least: int, most: int) -> Displacements:
@@ -104,8 +104,8 @@ def displacements(poses: Floats, least: int, most: int, *, what: str) -> Displac
 
 def place_text(values: Floats, size: float) -> str:
     """A place or direction in a message: "(1.5, 0, -2)", rounding relative to a size as 0."""
-    kept = np.where(np.abs(values) < SAME_POSE * size, 0.0, values)
-    return "(" + ", ".join(f"{value:.6g}" for value in kept) + ")"
+    selected = np.where(np.abs(values) < SAME_POSE * size, 0.0, values)
+    return "(" + ", ".join(f"{value:.6g}" for value in selected) + ")"
 
 
 def numbers_given(name: str, values: npt.ArrayLike) -> Floats:

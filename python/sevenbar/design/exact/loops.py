@@ -57,22 +57,22 @@ def all_loops(
     dyads: Sequence[Dyad], task: Displacements, name: str, length_unit: str
 ) -> tuple[ExactAnswer, ...]:
     """Every pair of dyads as a linkage, driven by either; without pairs with a joint's line in common."""
-    found: list[ExactAnswer] = []
+    result: list[ExactAnswer] = []
     for i, j in permutations(range(len(dyads)), 2):
         if not share_a_line(dyads[i], dyads[j]):
             title = f"{name}, dyads {i + 1}, {j + 1}"
-            found.append(loop(dyads[i], dyads[j], task, title, length_unit))
-    return tuple(found)
+            result.append(loop(dyads[i], dyads[j], task, title, length_unit))
+    return tuple(result)
 
 
 def loops_of_pairs(
     dyads: Sequence[Dyad], task: Displacements, name: str, length_unit: str
 ) -> tuple[ExactAnswer, ...]:
     """Dyads 1 and 2, 3 and 4 .. of a family as a linkage each, driven by either."""
-    found: list[ExactAnswer] = []
+    result: list[ExactAnswer] = []
     for i in range(0, len(dyads) - 1, 2):
-        found += all_loops(dyads[i : i + 2], task, f"{name} {i // 2 + 1}", length_unit)
-    return tuple(found)
+        result += all_loops(dyads[i : i + 2], task, f"{name} {i // 2 + 1}", length_unit)
+    return tuple(result)
 
 
 def drawn(dyads: Sequence[Dyad], task: Displacements) -> tuple[Dyad, ...]:

@@ -73,21 +73,21 @@ def planar_poses(
     if moving is not None and count != 3:
         raise RequestError(f"moving: with {count} poses the pivots are not free; leave them out")
     if count == 5:
-        found = solutions(forms)
-        if found is None:
+        result = solutions(forms)
+        if result is None:
             raise RequestError(
                 "poses: infinitely many dyads or sliders take these five; give four of them, or change one"
             )
-        circular = np.array([_is_circular(b) for b in found.b])
-        kept = np.flatnonzero(found.real & ~circular)
-        dyads = _dyads([(found.a[i].real, found.b[i].real) for i in kept], task)
+        circular = np.array([_is_circular(b) for b in result.b])
+        selected = np.flatnonzero(result.real & ~circular)
+        dyads = _dyads([(result.a[i].real, result.b[i].real) for i in selected], task)
         how = (
             f"{POINTS} common points of four cubics by eigenvalues, without the circular points, "
-            f"{int(found.multiplicity[circular].sum())} of them"
+            f"{int(result.multiplicity[circular].sum())} of them"
         )
         answers = all_loops(dyads, task, "Planar four-bar", length_unit)
-        known = int(found.multiplicity[~circular].sum())
-        return ExactAnswers(title, "dyads", DYADS, known, len(kept), answers, how, drawn(dyads, task))
+        known = int(result.multiplicity[~circular].sum())
+        return ExactAnswers(title, "dyads", DYADS, known, len(selected), answers, how, drawn(dyads, task))
     given = None if moving is None else _given_points(moving, task)
     pairs, how = family(forms, given, samples, seed, PIVOTS)
     dyads = _dyads(pairs, task)
@@ -102,8 +102,8 @@ def planar_dyads(task: Displacements, samples: int, seed: int) -> list[Dyad]:
     """
     forms = _forms(task)
     if len(task.motions) == 5:
-        found = solutions(forms)
-        rows = () if found is None else zip(found.a, found.b, found.real, strict=True)
+        result = solutions(forms)
+        rows = () if result is None else zip(result.a, result.b, result.real, strict=True)
         pairs = [(a.real, b.real) for a, b, real in rows if real and not _is_circular(b)]
     else:
         pairs, _ = family(forms, None, samples, seed, PIVOTS)
@@ -113,11 +113,11 @@ def planar_dyads(task: Displacements, samples: int, seed: int) -> list[Dyad]:
 def _forms(task: Displacements) -> Floats:
     """The forms T (n - 1, 3, 3) of (1)."""
     turns, shifts = task.turns[:, :2, :2], task.shifts[:, :2]
-    found = np.zeros((len(turns), 3, 3))
-    for form, turn, shift in zip(found, turns, shifts, strict=True):
+    result = np.zeros((len(turns), 3, 3))
+    for form, turn, shift in zip(result, turns, shifts, strict=True):
         form[:2, :2], form[:2, 2] = np.eye(2) - turn, -shift
         form[2, :2], form[2, 2] = shift @ turn, shift @ shift / 2
-    return found
+    return result
 
 
 def _is_circular(point: Complexes) -> bool:
@@ -127,8 +127,8 @@ def _is_circular(point: Complexes) -> bool:
 
 def _dyads(pairs: list[tuple[Floats, Floats]], task: Displacements) -> list[Dyad]:
     """The dyads of pairs of homogeneous points; without those that have no crank."""
-    found = (_dyad(a / np.linalg.norm(a), b / np.linalg.norm(b), task) for a, b in pairs if np.any(a))
-    return [dyad for dyad in found if dyad is not None]
+    result = (_dyad(a / np.linalg.norm(a), b / np.linalg.norm(b), task) for a, b in pairs if np.any(a))
+    return [dyad for dyad in result if dyad is not None]
 
 
 def _dyad(a: Floats, b: Floats, task: Displacements) -> Dyad | None:

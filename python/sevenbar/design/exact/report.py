@@ -51,17 +51,17 @@ def exact_report(count: int, command: str) -> Report[ExactDesigns]:
 
 def text(count: int, designs: ExactDesigns) -> RenderableType:
     """The answers for people, with the first `count` linkages."""
-    found, facts = designs.found, Facts()
-    facts.add("task", f"{found.task} of {designs.source}", "bold")
-    facts.add_all(_answer_facts(found))
+    result, facts = designs.found, Facts()
+    facts.add("task", f"{result.task} of {designs.source}", "bold")
+    facts.add_all(_answer_facts(result))
     parts: list[RenderableType] = []
-    if found.dyads:
+    if result.dyads:
         unit = designs.length_unit
-        size = max(float(abs(line.at).max()) for dyad in found.dyads for line in (dyad.ground, dyad.body))
-        plane = all(_flat(line, size) for dyad in found.dyads for line in (dyad.ground, dyad.body))
+        size = max(float(abs(line.at).max()) for dyad in result.dyads for line in (dyad.ground, dyad.body))
+        plane = all(_flat(line, size) for dyad in result.dyads for line in (dyad.ground, dyad.body))
         rows = [
             [str(i), dyad.kind, *(_place(line, size, plane) for line in (dyad.ground, dyad.body))]
-            for i, dyad in enumerate(found.dyads, 1)
+            for i, dyad in enumerate(result.dyads, 1)
         ]
         heads = ["dyad", "joints", f"at the ground\n[{unit}]", f"at the link in pose 1\n[{unit}]"]
         parts.append(number_table(heads, rows, words=[1, 2, 3]))
@@ -97,19 +97,19 @@ def _answer_facts(found: ExactAnswers) -> list[tuple[str, str]]:
 
 def as_dict(designs: ExactDesigns) -> dict[str, Any]:
     """The answers as plain values; inputs and outputs at the wanted poses [rad, or length]."""
-    found = designs.found
+    result = designs.found
     return {
         "format": 1,
-        "task": found.task,
+        "task": result.task,
         "source": designs.source,
-        **named(found, "counted", "theory", "found", "real", "how"),
+        **named(result, "counted", "theory", "found", "real", "how"),
         "dyads": [
             {
                 "joints": dyad.kind,
                 "ground": dyad.ground.written("ground", np.zeros(3)),
                 "link": dyad.body.written("link", np.zeros(3)),
             }
-            for dyad in found.dyads
+            for dyad in result.dyads
         ],
         "designs": [
             {**own, "inputs": one.claim.inputs.tolist(), "outputs": one.claim.outputs.tolist()}

@@ -67,17 +67,17 @@ def spherical_orientations(
     if moving is not None and count != 3:
         raise RequestError(f"moving: with {count} orientations the axes are not free; leave them out")
     if count == 5:
-        found = solutions(forms)
-        if found is None:
+        result = solutions(forms)
+        if result is None:
             raise RequestError(
                 "orientations: infinitely many dyads take these five; give four of them, or change one"
             )
-        kept = np.flatnonzero(found.real)
-        dyads = _dyads([(found.a[i].real, found.b[i].real) for i in kept], task, radius)
+        selected = np.flatnonzero(result.real)
+        dyads = _dyads([(result.a[i].real, result.b[i].real) for i in selected], task, radius)
         answers = all_loops(dyads, task, "Spherical four-bar", length_unit)
         how = f"{POINTS} common points of four cubics by eigenvalues"
-        known = int(found.multiplicity.sum())
-        return ExactAnswers(title, "dyads", DYADS, known, len(kept), answers, how, drawn(dyads, task))
+        known = int(result.multiplicity.sum())
+        return ExactAnswers(title, "dyads", DYADS, known, len(selected), answers, how, drawn(dyads, task))
     given = None if moving is None else _given_axes(moving)
     pairs, how = family(forms, given, samples, seed, ("axis", "axes", "cone"))
     dyads = _dyads(pairs, task, radius)
@@ -101,15 +101,15 @@ def refuse_one_axis(turns: Floats, what: str) -> None:
 
 def _dyads(pairs: list[tuple[Floats, Floats]], task: Displacements, radius: float) -> list[Dyad]:
     """The dyads of pairs of axes; without those whose link has no length."""
-    found = []
+    result = []
     for a, b in pairs:
         if not np.any(a):
             continue
         a, b = facing(a, b)
         if np.linalg.norm(np.cross(a, b)) > NOTHING:
             link = link_motions(a, b, np.einsum("nij,j->ni", task.motions[:, :3, :3], b))
-            found.append(Dyad(Line("R", radius * a, a), Line("R", radius * b, b), pose(link)))
-    return found
+            result.append(Dyad(Line("R", radius * a, a), Line("R", radius * b, b), pose(link)))
+    return result
 
 
 def _given_axes(moving: npt.ArrayLike) -> Floats:

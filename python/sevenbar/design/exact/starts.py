@@ -61,14 +61,14 @@ def exact_starts(task: DesignTask, count: int, seed: int = 0) -> list[Floats]:
         within = np.flatnonzero(off <= OFF)
         sides.append((own, within if within.size else np.argsort(off)[:NEAREST]))
     random = np.random.default_rng([seed, 2])
-    found: list[Floats] = []
+    result: list[Floats] = []
     for _ in range(4 * count):
-        chosen = [(own, int(random.choice(kept))) for own, kept in sides]
-        if chosen[0][1] != chosen[1][1] and len(found) < count:
+        chosen = [(own, int(random.choice(selected))) for own, selected in sides]
+        if chosen[0][1] != chosen[1][1] and len(result) < count:
             put = {name: value for own, i in chosen for name, value in zip(own, ends[i], strict=True)}
             values = np.array([put.get(name, numbers[name].value) for name in task.names])
-            found.append(np.clip(values, task.low, task.high))
-    return found
+            result.append(np.clip(values, task.low, task.high))
+    return result
 
 
 def _axis(linkage: Linkage, numbers: dict[str, Dimension]) -> int | None:

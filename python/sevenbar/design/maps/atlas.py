@@ -122,23 +122,23 @@ class Map(Printed):
     @cached_property
     def areas(self) -> dict[Kind, float]:
         """The share of the map's area that each kind has, the greatest first."""
-        found: dict[Kind, float] = {}
+        result: dict[Kind, float] = {}
         for region in self.regions:
             kind = self.kinds[region.kind]
-            found[kind] = found.get(kind, 0.0) + region.area
-        return dict(sorted(found.items(), key=lambda item: -item[1]))
+            result[kind] = result.get(kind, 0.0) + region.area
+        return dict(sorted(result.items(), key=lambda item: -item[1]))
 
     def numbers_at(self, places: Floats) -> Integers:
         """The number of the kind at places (n, 2) [shares] by the drawn regions; -1 outside.
 
         In specks that are not drawn it is that of the linkage itself.
         """
-        found = np.full(len(places), -1, dtype=np.int64)
+        result = np.full(len(places), -1, dtype=np.int64)
         for region in self.regions:
-            found[region.holds(places)] = region.kind
-        speck = (found < 0) & ((places >= 0) & (places <= 1)).all(axis=1)
-        found[speck] = self.plane.kinds_at(places[speck])
-        return found
+            result[region.holds(places)] = region.kind
+        speck = (result < 0) & ((places >= 0) & (places <= 1)).all(axis=1)
+        result[speck] = self.plane.kinds_at(places[speck])
+        return result
 
     def kind_at(self, x: float, y: float) -> Kind | None:
         """The kind at values of the two dimensions [their units] by the drawn regions; `None` outside."""
@@ -249,7 +249,7 @@ def _design(
 
 def _crossings(lines: tuple[Boundary, ...], here: Floats, place: int) -> list[tuple[float, int, int]]:
     """Where the line through a place along one axis meets boundaries, and the kinds before and after."""
-    found = []
+    result = []
     for line in lines:
         start, end = line.places[:-1], line.places[1:]
         away = start[:, 1 - place] - here[1 - place], end[:, 1 - place] - here[1 - place]
@@ -259,8 +259,8 @@ def _crossings(lines: tuple[Boundary, ...], here: Floats, place: int) -> list[tu
             # going up along x a line that runs down has its left hand beyond, and along y the other way
             beyond_left = bool(away[0][i] > 0) == (place == 0)
             kinds = (line.right, line.left) if beyond_left else (line.left, line.right)
-            found.append((float(at), *kinds))
-    return found
+            result.append((float(at), *kinds))
+    return result
 
 
 def _exact(plane: Plane, here: Floats, place: int, at: float, tolerance: float) -> float:

@@ -121,14 +121,14 @@ def measure_heights(
     table = of.plane.values_at(net.nodes, chosen, take)
     linkage = of.linkage
     output = linkage.columns[linkage.other_column(linkage.columns.index(of.input))]
-    found = []
+    result = []
     for measure, values, here in zip(chosen, table.T, own.tolist(), strict=True):
         steps = wanted if wanted is not None else _round_levels(values)
         read = partial(_read, of, measure, take)
         contours = tuple(_contours(of, net, values, steps, read))
         unit, design = measure.unit(linkage, output), None if math.isnan(here) else here
-        found.append(Heights(measure, take, unit, tuple(steps), contours, net.nodes, values, design))
-    return tuple(found)
+        result.append(Heights(measure, take, unit, tuple(steps), contours, net.nodes, values, design))
+    return tuple(result)
 
 
 def usual_lines(measures: Iterable[Measure]) -> int | None:
@@ -325,8 +325,8 @@ def _contours(
             # what is higher stays on the left
             pieces[int(net.kinds[a])].append((first, second) if high[a] else (second, first))
         edges = sorted({edge for own in pieces.values() for piece in own for edge in piece})
-        found = _crossed(read, level, EXACT * spacing, net.nodes, values, edges)
-        places = dict(zip(edges, found, strict=True))
+        result = _crossed(read, level, EXACT * spacing, net.nodes, values, edges)
+        places = dict(zip(edges, result, strict=True))
         for kind, own in sorted(pieces.items()):
             for line in joined(np.array([[places[first], places[second]] for first, second in own])):
                 yield from _inside(of, level, kind, line)

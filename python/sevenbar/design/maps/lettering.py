@@ -59,11 +59,11 @@ def names(axes: Axes, of: Map, scale: float, taken: np.ndarray, inches: tuple[fl
         for points in (15.0, 12.0, 9.5):
             letter = points * scale / 72
             text = np.array([LETTER[1] * letter * cell_len(name), LETTER[0] * letter])
-            found = None
+            result = None
             for rotation, extent in ((0, text), (90, text[::-1])):
-                found = found or _room(free, extent / size, rotation)
-            if found:
-                (px, py), rotation = found
+                result = result or _room(free, extent / size, rotation)
+            if result:
+                (px, py), rotation = result
                 at = of.values(np.array([[px, py]]))[0]
                 write(axes, at, name, points * scale, (3 * scale, "#ffffffb0"), rotation=rotation, color=LINE)
                 break

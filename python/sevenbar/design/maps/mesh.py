@@ -149,8 +149,8 @@ class _Making:
         """Asks for the kinds of corners not known yet."""
         new = list(dict.fromkeys(corner for corner in corners if corner not in self.kinds))
         if new:
-            found = self.plane.kinds_at(np.array(new) / self.scheme.size)
-            self.kinds.update(zip(new, found.tolist(), strict=True))
+            result = self.plane.kinds_at(np.array(new) / self.scheme.size)
+            self.kinds.update(zip(new, result.tolist(), strict=True))
 
     def _split(self, squares: Iterable[Square]) -> list[Square]:
         halves = [(x, y, width // 2) for x, y, width in squares]
@@ -162,13 +162,13 @@ class _Making:
     def _refined(self, squares: list[Square]) -> list[Square]:
         """Of squares and their parts those with a boundary, or that may have one."""
         scheme, plane = self.scheme, self.plane
-        kept: list[Square] = []
+        selected: list[Square] = []
         while squares:
             array = np.array(squares, dtype=np.float64)
             width = array[:, 2] / scheme.size
             gaps = plane.gaps(array[:, :2] / scheme.size + 0.5 * width[:, None], width)
             if gaps is None:
-                return kept + squares
+                return selected + squares
             near = np.sort(np.where(np.abs(gaps) <= plane.reach(width)[:, None], gaps, np.nan), axis=1)
             # boundaries nearer to each other than the tolerance are not distinct
             same = plane.reach(np.array([scheme.tolerance]))
@@ -178,11 +178,11 @@ class _Making:
             hiding = (parts > 1) & ~wide
             if hiding.sum() <= MOST_HIDING:
                 split |= hiding & (array[:, 2] > 1)
-            kept += [squares[i] for i in np.flatnonzero((parts > 0) & ~split)]
+            selected += [squares[i] for i in np.flatnonzero((parts > 0) & ~split)]
             self.hiding.update(squares[i] for i in np.flatnonzero(hiding & ~split))
             self.quiet.update(squares[i] for i in np.flatnonzero(parts == 0))
             squares = self._split(squares[i] for i in np.flatnonzero(split))
-        return kept
+        return selected
 
     def _joined(self, squares: Iterable[Square], chords: dict[Square, list[Chord]]) -> list[Square]:
         """Finds the chords of squares; returns the squares whose chords do not tell what is in them."""
@@ -229,10 +229,10 @@ class _Making:
         length = np.abs(ends[:, 1] - ends[:, 0]).max()
         for _ in range(max(0, int(np.ceil(np.log2(length / self.plane.exact))))):
             middle = 0.5 * (low + high)
-            found = self.plane.kinds_at(ends[:, 0] + middle[:, None] * (ends[:, 1] - ends[:, 0]))
-            before = found == first
+            result = self.plane.kinds_at(ends[:, 0] + middle[:, None] * (ends[:, 1] - ends[:, 0]))
+            before = result == first
             low, high = np.where(before, middle, low), np.where(before, high, middle)
-            seen = np.where(before, seen, found)
+            seen = np.where(before, seen, result)
         place = ends[:, 0] + 0.5 * (low + high)[:, None] * (ends[:, 1] - ends[:, 0])
         for edge, (x, y), third in zip(cut, place.tolist(), (seen != second).tolist(), strict=True):
             self.cuts[edge] = ((x, y), third)
@@ -300,10 +300,10 @@ def _middle(heart: Corner, size: int) -> tuple[float, float]:
 def _touching(corners: Iterable[Corner], squares: set[Square]) -> set[Square]:
     """Those of the squares with one of these corners on a side."""
     widths = {width for _, _, width in squares}
-    found: set[Square] = set()
+    result: set[Square] = set()
     for x, y in set(corners):
         for width in widths:
             for left in {x // width, (x - 1) // width}:
                 for low in {y // width, (y - 1) // width}:
-                    found.add((left * width, low * width, width))
-    return found & squares
+                    result.add((left * width, low * width, width))
+    return result & squares

@@ -54,8 +54,8 @@ class Region:
 
     def without(self, speck: float) -> Region:
         """The region without holes that are not wider than a speck [share]."""
-        kept = [hole for hole in self.polygon.interiors if np.ptp(_loop(hole), axis=0).max() > speck]
-        return Region(self.kind, shapely.Polygon(self.polygon.exterior, kept))
+        selected = [hole for hole in self.polygon.interiors if np.ptp(_loop(hole), axis=0).max() > speck]
+        return Region(self.kind, shapely.Polygon(self.polygon.exterior, selected))
 
 
 def _loop(ring: shapely.LinearRing) -> Floats:
@@ -90,7 +90,7 @@ def regions(mesh: Mesh) -> tuple[Region, ...]:
     ends = np.array([(mesh.places[chord.start], mesh.places[chord.end]) for chord in mesh.chords])
     chords = shapely.linestrings(ends.reshape(-1, 2, 2))
     lines = shapely.union_all([shapely.box(0, 0, 1, 1).exterior, *chords])
-    found = []
+    result = []
     for face in map(orient, shapely.get_parts(shapely.polygonize(shapely.get_parts(lines)))):
         rings = [shapely.get_coordinates(ring).tolist() for ring in (face.exterior, *face.interiors)]
         sides = [(tuple(a), tuple(b)) for ring in rings for a, b in pairwise(ring)]
@@ -98,5 +98,5 @@ def regions(mesh: Mesh) -> tuple[Region, ...]:
         kinds = Counter(left_of[side] for side in sides if side in left_of)
         # without a boundary all the window is one
         kind = kinds.most_common(1)[0][0] if kinds else mesh.corners[0, 0]
-        found.append(Region(kind, face))
-    return tuple(sorted(found, key=lambda region: -region.area))
+        result.append(Region(kind, face))
+    return tuple(sorted(result, key=lambda region: -region.area))

@@ -87,16 +87,16 @@ class Plane(ABC):
 
     def kinds_at(self, points: Floats) -> Integers:
         """The number of the kind at each point, (n,); points on a boundary take the kind next to it."""
-        found = self.numbers_at(points)
+        result = self.numbers_at(points)
         ways = [(nudge, ASIDE) for nudge in self.nudges] + [(self.nudges[-1], ACROSS)]
         for nudge, way in ways:
             doubtful = np.isin(
-                found, [n for n, kind in enumerate(self.kinds) if kind.motion_type in DOUBTFUL]
+                result, [n for n, kind in enumerate(self.kinds) if kind.motion_type in DOUBTFUL]
             )
             if not doubtful.any():
                 break
-            found[doubtful] = self.numbers_at(points[doubtful] + nudge * np.array(way))
-        return found
+            result[doubtful] = self.numbers_at(points[doubtful] + nudge * np.array(way))
+        return result
 
     def gaps(self, points: Floats, width: Floats) -> Floats | None:  # noqa: ARG002
         """How far the middles of squares are from changes of the kind (n, m), NaN where there is none.
@@ -123,16 +123,16 @@ class Plane(ABC):
     def motions(self, points: Floats) -> list[Motion | None]:
         """The motion at each point, `None` where there is none."""
         self._planned = max(self._planned, self._done + len(points))
-        found: list[Motion | None] = []
+        result: list[Motion | None] = []
         for share in points:
             values = {axis.name: float(axis.value(s)) for axis, s in zip(self.axes, share, strict=True)}
             try:
                 linkage = self.draft.with_values(values).linkage
-                found.append(linkage.motion(self.samples, input=self.input))
+                result.append(linkage.motion(self.samples, input=self.input))
             except (DescriptionError, RequestError, NotCoveredError):
-                found.append(None)
+                result.append(None)
             self.count(1)
-        return found
+        return result
 
 
 def measure_of(motion: Motion | None, measure: Measure, take: Take) -> float:
@@ -142,8 +142,8 @@ def measure_of(motion: Motion | None, measure: Measure, take: Take) -> float:
     rows = rows_of(motion, [measure])
     if measure.per == "circuit" and isinstance(take, int):
         rows = [row for row in rows if row["circuit"] == take]
-    found = [row[measure.name] for row in rows]
-    numbers = [float(v) for v in found if isinstance(v, (int, float)) and math.isfinite(v)]
+    result = [row[measure.name] for row in rows]
+    numbers = [float(v) for v in result if isinstance(v, (int, float)) and math.isfinite(v)]
     if not numbers:
         return math.nan
     return min(numbers) if take == "lowest" else max(numbers)

@@ -71,7 +71,7 @@ def as_dict(findings: MapFindings) -> dict[str, Any]:
             }
             for region in of.regions
         ],
-        "measures": [_heights_dict(of, found) for found in heights],
+        "measures": [_heights_dict(of, result) for result in heights],
     }
 
 
@@ -114,11 +114,11 @@ def text(findings: MapFindings) -> RenderableType:
     place = f"{x.name} = {x.text(design.x)}, {y.name} = {y.text(design.y)}"
     facts.add("design", place if design.inside else say("{design}; outside the map", design=place))
     facts.add("", of.name(design.kind), "bold")
-    for found in heights:
-        name = found.measure.name
-        value = say("none") if found.here is None else f"{found.here:.6g} {found.unit}".rstrip()
+    for result in heights:
+        name = result.measure.name
+        value = say("none") if result.here is None else f"{result.here:.6g} {result.unit}".rstrip()
         facts.add("", f"{name} {value}")
-        if not np.isfinite(found.values).any():
+        if not np.isfinite(result.values).any():
             facts.add("", say("{measure}: no linkage on the map has it", measure=name), "yellow")
     shares = [[of.name(kind), f"{100 * share:.3f} %"] for kind, share in of.areas.items()]
     tables = [number_table(["on the map", "share"], shares)]
@@ -190,9 +190,9 @@ def _boundaries(findings: MapFindings) -> Lines:
 
 
 def _contours(findings: MapFindings) -> Lines:
-    for found in findings.heights:
-        for i, line in enumerate(found.contours):
-            yield line.places, (i, found.measure.name, line.level)
+    for result in findings.heights:
+        for i, line in enumerate(result.contours):
+            yield line.places, (i, result.measure.name, line.level)
 
 
 def _write_lines(

@@ -80,10 +80,10 @@ class RssrPlane(Plane):
         names = np.array(CODES)[codes]
         circuits = np.where(names == "double-rocker", np.isfinite(limits).sum(axis=1) // 2, 2)
         circuits[np.isin(names, WITHOUT)] = 0
-        found = np.empty(len(points), dtype=np.int64)
+        result = np.empty(len(points), dtype=np.int64)
         for code, count in {*zip(codes.tolist(), circuits.tolist(), strict=True)}:
-            found[(codes == code) & (circuits == count)] = self.number(Kind(CODES[code], count))
-        return found
+            result[(codes == code) & (circuits == count)] = self.number(Kind(CODES[code], count))
+        return result
 
     def gaps(self, points: Floats, width: Floats) -> Floats | None:
         """Critical distances of the balls less the coupler [length], (n, 16).
@@ -117,12 +117,16 @@ class RssrPlane(Plane):
             return super().values_at(points, measures, take)
         self.count(len(points))
         pick = np.fmin if take == "lowest" else np.fmax
-        kept = np.ones(len(motions.circuit), dtype=bool) if isinstance(take, str) else motions.circuit == take
-        found = np.full((len(points), len(measures)), np.nan)
+        selected = (
+            np.ones(len(motions.circuit), dtype=bool) if isinstance(take, str) else motions.circuit == take
+        )
+        result = np.full((len(points), len(measures)), np.nan)
         for column, measure in enumerate(measures):
-            values = motions.columns[measure.name][kept]
-            pick.at(found[:, column], motions.linkage[kept], np.where(np.isfinite(values), values, np.nan))
-        return found
+            values = motions.columns[measure.name][selected]
+            pick.at(
+                result[:, column], motions.linkage[selected], np.where(np.isfinite(values), values, np.nan)
+            )
+        return result
 
 
 def _half_angle() -> Floats:

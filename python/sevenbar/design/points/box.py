@@ -49,10 +49,10 @@ def least_greatest(constant: Floats, gradient: Floats, low: Floats, high: Floats
     middle, slopes = constant + gradient @ centre, gradient * half
     scale = float(np.linalg.norm(middle, axis=1).max() + np.abs(slopes).max()) or 1.0
     box = Bounds(np.vstack([np.eye(3), -np.eye(3)]), np.ones(6), 6)
-    found = least_greatest_size(middle / scale, slopes / scale, box, who="the least point")
-    bound = lower_bound(constant, gradient, low, high, found.duals)
-    scaled = replace(found, primal=found.primal * scale, dual=found.dual * scale)
-    return LeastInBox(np.clip(centre + half * found.x, low, high), bound, scaled)
+    result = least_greatest_size(middle / scale, slopes / scale, box, who="the least point")
+    bound = lower_bound(constant, gradient, low, high, result.duals)
+    scaled = replace(result, primal=result.primal * scale, dual=result.dual * scale)
+    return LeastInBox(np.clip(centre + half * result.x, low, high), bound, scaled)
 
 
 def lower_bound(constant: Floats, gradient: Floats, low: Floats, high: Floats, dual: Floats) -> float:

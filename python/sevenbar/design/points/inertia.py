@@ -124,7 +124,7 @@ def inertia(
     if cycle.closed:
         rows, own = driven(motion, cycle.circuit, 0, cycle.rates.input)
     # the masses alone, whatever else the file has
-    found = rows.forces(bodies=bodies, gravity=tuple(pull), loads=(), springs=())
+    result = rows.forces(bodies=bodies, gravity=tuple(pull), loads=(), springs=())
     weights = np.array([mass.mass for mass in checked])
     return Inertia(
         masses=checked,
@@ -134,9 +134,9 @@ def inertia(
         time=cycle.rates.time,
         acceleration=acceleration,
         force=-weights[:, None, None] * acceleration,
-        torque=found.torque[own],
-        power=found.power[own],
-        kinetic=found.kinetic[own],
+        torque=result.torque[own],
+        power=result.power[own],
+        kinetic=result.kinetic[own],
     )
 
 

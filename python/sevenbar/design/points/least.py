@@ -225,10 +225,10 @@ def _least_greatest(
         tried = [(float(heights.max()), at, inputs, weights)]
         if cycle.closed:
             # by Newton's method, from peaks that are nearly the greatest and rows with a weight
-            begun = np.concatenate(
+            started = np.concatenate(
                 [peaks[heights >= (1 - ALMOST) * heights.max()], inputs[weights > DECIDING]]
             )
-            better = polished(cycle, of, at, begun, low, high)
+            better = polished(cycle, of, at, started, low, high)
             if better is not None:
                 bound = max(bound, better.bound)
                 height = float(cycle.peaks(of, better.at)[1].max())

@@ -137,12 +137,12 @@ def _places(curve: npt.ArrayLike) -> Floats:
 
 
 def _inputs(inputs: npt.ArrayLike, count: int) -> Floats:
-    found = finite_array("inputs", inputs)
-    if found.size != count:
+    result = finite_array("inputs", inputs)
+    if result.size != count:
         raise RequestError(
-            f"inputs: {found.size} values where the curve has {count} places; give one for each"
+            f"inputs: {result.size} values where the curve has {count} places; give one for each"
         )
-    return found
+    return result
 
 
 def _at(cycle: Cycle, inputs: Floats) -> LinkRates:
@@ -248,8 +248,8 @@ def _followed(
         return np.asarray((across @ rates.gradient[0] * half).reshape(-1, 3))
 
     start = np.clip((at - centre) / np.where(half > 0, half, 1.0), -1 + 1e-9, 1 - 1e-9)
-    found = least_squares(residual, start, jacobian, bounds=(-1, 1), xtol=1e-15, ftol=1e-15, gtol=1e-15)
-    point, rates, inputs = foot(found.x)
+    result = least_squares(residual, start, jacobian, bounds=(-1, 1), xtol=1e-15, ftol=1e-15, gtol=1e-15)
+    point, rates, inputs = foot(result.x)
     path = rates.of("position", point)
     return math.sqrt(float(((path - wanted) ** 2).sum(axis=1).mean())), point, inputs, path
 
@@ -257,9 +257,9 @@ def _followed(
 def _foot(cycle: Cycle, wanted: Floats, at: Floats) -> Floats:
     """The inputs (m,) at which the path of a point is nearest to each place, between the rows too."""
     rows, _ = _nearest_rows(cycle.rates.of("position", at), wanted)
-    begun = inputs = cycle.rates.input[rows]
+    started = inputs = cycle.rates.input[rows]
     if not cycle.closed:
-        return begun
+        return started
     for _ in range(STEPS):
         rates = cycle.at(inputs)
         away = rates.of("position", at) - wanted
@@ -271,5 +271,5 @@ def _foot(cycle: Cycle, wanted: Floats, at: Floats) -> Floats:
         whole = bend + (away * curve).sum(axis=1)
         bend = np.where(whole > 0, whole, bend)
         step = np.divide(-slope, bend, out=np.zeros_like(slope), where=bend > 0)
-        inputs = np.clip(inputs + step, begun - abs(cycle.step), begun + abs(cycle.step))
+        inputs = np.clip(inputs + step, started - abs(cycle.step), started + abs(cycle.step))
     return inputs

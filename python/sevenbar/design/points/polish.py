@@ -60,10 +60,10 @@ def polished(cycle: Cycle, of: str, at: Floats, inputs: Floats, low: Floats, hig
     at = np.where(free, at, np.where(at - low < high - at, low, high))
     peaks = _Peaks.at(cycle, of, at, inputs)
     weights = _weights(peaks, free, half)
-    kept = weights > NO_WEIGHT
-    if not kept.any() or peaks.vanish(half):
+    selected = weights > NO_WEIGHT
+    if not selected.any() or peaks.vanish(half):
         return None
-    inputs, weights = inputs[kept], weights[kept]
+    inputs, weights = inputs[selected], weights[selected]
     for _ in range(STEPS):
         peaks = _Peaks.at(cycle, of, at, inputs)
         inputs = inputs + peaks.ahead
@@ -170,5 +170,5 @@ def _step(peaks: _Peaks, weights: Floats, free: Booleans, half: Floats) -> tuple
     matrix[size:-1, -1] = -1.0
     matrix[-1, size:-1] = 1.0
     right = np.concatenate([np.zeros(size), -peaks.heights / scale, [1.0]])
-    found = np.linalg.lstsq(matrix, right, rcond=None)[0]
-    return half[free] * found[:size], found[size:-1]
+    result = np.linalg.lstsq(matrix, right, rcond=None)[0]
+    return half[free] * result[:size], result[size:-1]

@@ -82,22 +82,22 @@ class LoopSurvey(Drawn):
     def _of_one(self, model: TaskModel, index: int, values: Floats) -> SurveyTally:
         """The tally of one linkage."""
         motion = model.loop.motion(values)
-        verdict, kept = _judged(model, index, values)
+        verdict, selected = _judged(model, index, values)
         best: tuple[Kept, ...] = ()
         nearest: dict[int, Kept] = {}
         measured: dict[str, float | None] = {}
-        if motion is not None and kept is not None:
-            circuit = motion.circuits[kept.branch]
+        if motion is not None and selected is not None:
+            circuit = motion.circuits[selected.branch]
             turns = motion.linkage.turns(model.loop.linkage.drive.output)
             measured = {
-                "error": kept.error,
+                "error": selected.error,
                 "swing": circuit.swing if turns else None,
                 "time_ratio": circuit.time_ratio,
-                "transmission": kept.transmission,
+                "transmission": selected.transmission,
             }
-            best = (replace(kept, place=self._cell(values)),)
+            best = (replace(selected, place=self._cell(values)),)
             if number := VERDICTS.index(verdict):
-                nearest = {number: replace(kept, place=number)}
+                nearest = {number: replace(selected, place=number)}
         return SurveyTally(
             {one: int(one == verdict) for one in VERDICTS},
             {"cannot-assemble" if motion is None else motion.motion_type: 1},
@@ -145,7 +145,7 @@ class LoopSurvey(Drawn):
         """Up to `count` designs of the search that begins with the best linkages of a tally."""
         if not count:
             return DesignsFound(self.task, (), (), 0, "")
-        given = [self.values(kept.index, kept.index + 1)[0] for kept in tally.best]
+        given = [self.values(selected.index, selected.index + 1)[0] for selected in tally.best]
         try:
             return designed(self.task, count=count, starts=0, given=given, progress=progress)
         except KeyboardInterrupt:
@@ -180,9 +180,9 @@ def _judged(model: TaskModel, index: int, values: Floats) -> tuple[str, Kept | N
         start = seed.anchor[model.loop.input]
         lowest = motion.circuits[seed.circuit].transmission
         angle = math.nan if lowest is None else lowest.lowest
-        kept = Kept(index, 0, figure, error, angle, (math.nan, math.nan), float(start), seed.circuit, 1.0)
-        if best is None or (verdict != "found", kept.order) < (best[0] != "found", best[1].order):
-            best = verdict, kept
+        selected = Kept(index, 0, figure, error, angle, (math.nan, math.nan), float(start), seed.circuit, 1.0)
+        if best is None or (verdict != "found", selected.order) < (best[0] != "found", best[1].order):
+            best = verdict, selected
         if not missed:
             break
     return best or ("dead centre", None)

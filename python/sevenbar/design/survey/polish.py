@@ -98,10 +98,10 @@ class Polish:
         """The turn of the input to the high end: the slower stroke, or the quicker, by which is nearer."""
         assert isinstance(self.task.want, SwingWish)
         slow = self.task.want.slow
-        found = poses(self.numbers, turn, self.branch)
-        if found is None:
+        result = poses(self.numbers, turn, self.branch)
+        if result is None:
             return slow
-        high = turn[found.output.argmax()]
+        high = turn[result.output.argmax()]
         return slow if abs(high - slow) <= abs(math.tau - high - slow) else math.tau - slow
 
     def packed(self) -> Floats | None:
@@ -145,8 +145,8 @@ class Polish:
 
     def values(self, z: Floats) -> MinimaxValues | None:
         """What is to be made low and what must not be negative; `None` out of reach."""
-        found = _sloped(self._values, z)
-        return None if found is None else MinimaxValues(*found)
+        result = _sloped(self._values, z)
+        return None if result is None else MinimaxValues(*result)
 
     def _values(self, z: Values) -> tuple[Values, Values] | None:
         """Heights (.., h) and rooms (.., r) of unknowns (.., z)."""
@@ -180,11 +180,11 @@ class Polish:
 
     def _cosines(self, now: Poses, z: Values) -> Values:
         """The cosines (.., 2k) of both balls' angles from their seats."""
-        found = []
+        result = []
         for direction, seat in ((now.crank, z[..., -SEATS:-3]), (now.rocker, z[..., -3:])):
             size = np.sqrt((seat**2).sum(axis=-1, keepdims=True))
-            found.append((direction * (seat / size)[..., None, :]).sum(axis=-1))
-        return np.concatenate(found, axis=-1)
+            result.append((direction * (seat / size)[..., None, :]).sum(axis=-1))
+        return np.concatenate(result, axis=-1)
 
     def exact(self, z: Floats) -> Floats:
         """The unknowns near by that meet the travel or the swing to rounding, by Newton's shortest steps.
@@ -217,10 +217,10 @@ class Polish:
 
 def _sloped(function: Callable[[Values], tuple[Values, ...] | None], z: Floats) -> tuple[Floats, ...] | None:
     """Each of the values (r,) of a function of unknowns, and its slopes (r, z), by a tiny complex step."""
-    found = function(z + 1j * TINY * np.eye(len(z)))
-    if found is None:
+    result = function(z + 1j * TINY * np.eye(len(z)))
+    if result is None:
         return None
-    return tuple(own for values in found for own in (values[0].real, values.imag.T / TINY))
+    return tuple(own for values in result for own in (values[0].real, values.imag.T / TINY))
 
 
 def draft_of(numbers: Floats, branch: int, sense: float, name: str) -> Draft:
@@ -336,24 +336,24 @@ def designs(
 ) -> tuple[list[Candidate], list[Refusal], int]:
     """The best of a survey as designs, what was refused of them, and how many became better by polishing."""
     best = tally.best[: POLISHED_EACH * count]
-    found: list[Candidate] = []
+    result: list[Candidate] = []
     refused: list[Refusal] = []
     better = 0
-    rows = drawn_numbers(task, [kept.index for kept in best])
+    rows = drawn_numbers(task, [selected.index for selected in best])
     # a second Ctrl+C, or one while polishing: what is there is given
     with suppress(KeyboardInterrupt):
-        for done, (kept, numbers) in enumerate(zip(best, rows, strict=True)):
-            progress(done, len(best), f"polishing, {len(found)} checked")
-            drawn = np.append(numbers, kept.start)
-            new = judged(task, Polish(task, drawn, kept.branch, kept.sense).polished(), kept)
+        for done, (selected, numbers) in enumerate(zip(best, rows, strict=True)):
+            progress(done, len(best), f"polishing, {len(result)} checked")
+            drawn = np.append(numbers, selected.start)
+            new = judged(task, Polish(task, drawn, selected.branch, selected.sense).polished(), selected)
             better += not isinstance(new, Refusal)
             if isinstance(new, Refusal):
-                new = judged(task, drawn, kept)
+                new = judged(task, drawn, selected)
             if isinstance(new, Refusal):
                 refused.append(new)
             else:
-                found.append(new)
-    order = sorted(found, key=lambda candidate: rank_of(task, candidate))
+                result.append(new)
+    order = sorted(result, key=lambda candidate: rank_of(task, candidate))
     return renamed(distinct(order, scale_free=True, count=count), task.want.title), refused, better
 
 

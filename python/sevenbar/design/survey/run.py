@@ -59,7 +59,10 @@ class SurveyResult(Printed):
     def nearest(self) -> dict[str, str]:
         """By verdict, what came nearest to pass it: its figures and its numbers."""
         verdicts = self.task.verdicts
-        return {verdicts[k]: self.task.words_of(verdicts[k], kept) for k, kept in self.tally.nearest.items()}
+        return {
+            verdicts[k]: self.task.words_of(verdicts[k], selected)
+            for k, selected in self.tally.nearest.items()
+        }
 
     @property
     def answer(self) -> str:
@@ -134,10 +137,10 @@ def survey(
     if tally.count < task.count:
         unfinished = UNFINISHED.format(done=tally.count, total=task.count)
     if isinstance(task, LoopSurvey):
-        found = task.designs(tally, designs_wanted, progress)
-        made = tuple(one.candidate for one in found.designs)
-        unfinished = unfinished or found.unfinished
-        return SurveyResult(task, tally, made, found.refusals, len(made), unfinished, found)
+        result = task.designs(tally, designs_wanted, progress)
+        made = tuple(one.candidate for one in result.designs)
+        unfinished = unfinished or result.unfinished
+        return SurveyResult(task, tally, made, result.refusals, len(made), unfinished, result)
     candidates, refusals, polished = designs(task, tally, designs_wanted, progress)
     return SurveyResult(task, tally, tuple(candidates), tuple(refusals), polished, unfinished)
 

@@ -108,9 +108,9 @@ def poses(numbers: Values, inputs: Floats, branch: int) -> Poses | None:
 
 
 def _vectors(x: Values, y: Values | int, z: Values | int) -> Values:
-    found = np.zeros((*x.shape, 3), x.dtype)
-    found[..., 0], found[..., 1], found[..., 2] = x, y, z
-    return found
+    result = np.zeros((*x.shape, 3), x.dtype)
+    result[..., 0], result[..., 1], result[..., 2] = x, y, z
+    return result
 
 
 def _dot(a: Values, b: Values) -> Values:

@@ -87,7 +87,7 @@ class SurveyTally:
             dict(zip(("0", "2", "4"), raw.limits, strict=True)),
             {name: (step, tuple(counts)) for name, (step, counts) in sorted(raw.spreads.items())},
             _kept(raw.best),
-            {kept.place: kept for kept in _kept(raw.nearest)},
+            {selected.place: selected for selected in _kept(raw.nearest)},
         )
 
     def __add__(self, other: SurveyTally) -> SurveyTally:
@@ -115,8 +115,8 @@ class SurveyTally:
             "spreads": {
                 name: {"step": step, "counts": list(counts)} for name, (step, counts) in self.spreads.items()
             },
-            "best": [_row(kept) for kept in self.best],
-            "nearest": [_row(kept) for kept in self.nearest.values()],
+            "best": [_row(selected) for selected in self.best],
+            "nearest": [_row(selected) for selected in self.nearest.values()],
         }
 
     def line(self) -> str:
@@ -132,7 +132,7 @@ class SurveyTally:
             plain["limits"],
             {name: (s["step"], tuple(s["counts"])) for name, s in plain["spreads"].items()},
             tuple(_of_row(row) for row in plain["best"]),
-            {kept.place: kept for kept in map(_of_row, plain["nearest"])},
+            {selected.place: selected for selected in map(_of_row, plain["nearest"])},
         )
 
 

@@ -56,12 +56,12 @@ class DesignAlong:
             return UsedWay(inputs, poses)
         longest = float(np.abs(last - first).max()) / float(self.loop.units[self.loop.input])
         steps = max(math.ceil(DENSE / len(first)), math.ceil(longest / STEP))
-        found = [begin]
+        result = [begin]
         for k in range(1, steps):
-            found.append(self.loop.closed(self.values, first + (last - first) * k / steps, found[-1]))
+            result.append(self.loop.closed(self.values, first + (last - first) * k / steps, result[-1]))
         shares = np.arange(steps) / steps
         x = (first[:, None] + (last - first)[:, None] * shares).ravel()
-        q = np.stack(found, axis=1).reshape(len(x), -1)
+        q = np.stack(result, axis=1).reshape(len(x), -1)
         if not round:
             x, q = np.append(x, inputs[-1]), np.concatenate([q, poses[-1:]])
         return UsedWay(x, q)
@@ -85,13 +85,13 @@ class DesignAlong:
 
         Slacks in the `slack_unit` of the must.
         """
-        found = []
+        result = []
         for number, way in enumerate(self.ways):
             here = self.loop.here(self.values, way.q)
             for place, slack in pose_slacks(self.loop, self.task.musts):
                 _, scale = self._unit(place)
-                found.append((place, number, way.inputs, scale * slack(here)[0].min(axis=1)))
-        return found
+                result.append((place, number, way.inputs, scale * slack(here)[0].min(axis=1)))
+        return result
 
     def _unit(self, place: int) -> tuple[str, float]:
         must = self.task.musts[place]

@@ -153,15 +153,15 @@ def _ways(one: Wanted, linkage: Linkage, inputs: Floats, u: Floats, placing: Pla
     """What each pass of the analysis makes of a want, best first; those that do not reach it are left out."""
     count = len(inputs)
     law = Law.of(np.arange(count, dtype=np.float64), inputs, 1.0, 0.0)
-    found = []
+    result = []
     for circuit in linkage.motion(law=law).circuits:
         for begin in range(0, len(circuit.q), count):
             rows = slice(begin, begin + count)
             if not np.isfinite(circuit.q[rows]).all() or len(circuit.q[rows]) < count:
                 continue
             errors = one.errors(circuit, rows, u, placing)
-            found.append(_Way(circuit.index, begin // count, circuit.q[rows], circuit.output[rows], errors))
-    return sorted(found, key=lambda way: float((way.errors**2).sum()))
+            result.append(_Way(circuit.index, begin // count, circuit.q[rows], circuit.output[rows], errors))
+    return sorted(result, key=lambda way: float((way.errors**2).sum()))
 
 
 def _candidate(
@@ -170,7 +170,7 @@ def _candidate(
     limits, linkage = model.task.limits, model.loop.linkage
     if not model.wanted:
         return _of_figures(model, draft, solution, motion)
-    found: list[Candidate] = []
+    result: list[Candidate] = []
     for number, (one, own) in enumerate(zip(model.wanted, ways, strict=True)):
         if not own:
             return Refusal(
@@ -188,21 +188,21 @@ def _candidate(
         candidate = checked(draft, claim, limits, poses=own[0].poses)
         if isinstance(candidate, Refusal):
             return candidate
-        found.append(candidate)
+        result.append(candidate)
         if one.stations.round and not motion.circuits[candidate.circuit].goes_round:
             return Refusal(
                 "dead centre",
                 "the path is closed, and a dead centre lies between its last point and its first",
             )
     other = next(
-        (one for one in found if (one.circuit, one.branch) != (found[0].circuit, found[0].branch)), None
+        (one for one in result if (one.circuit, one.branch) != (result[0].circuit, result[0].branch)), None
     )
     if other is not None:
         return Refusal(
             "circuit",
-            f"wants lie on circuits {found[0].circuit} and {other.circuit}, or on two passes of one",
+            f"wants lie on circuits {result[0].circuit} and {other.circuit}, or on two passes of one",
         )
-    return found[0]
+    return result[0]
 
 
 def _torn(model: TaskModel, number: int, solution: Solved, own: list[_Way]) -> Refusal | None:
@@ -233,10 +233,10 @@ def _short(model: TaskModel, number: int, solution: Solved) -> Refusal | None:
 
 def _of_figures(model: TaskModel, draft: Draft, solution: Solved, motion: Motion) -> Candidate | Refusal:
     """The candidate of a task about figures alone."""
-    found = model.figures.circuit(solution.seed.values, solution.seed.anchor)
-    if found is None:
+    result = model.figures.circuit(solution.seed.values, solution.seed.anchor)
+    if result is None:
         return Refusal("assembly", "its circuit is lost")
-    circuit, values = found[1].index, model.figures.read(*found)
+    circuit, values = result[1].index, model.figures.read(*result)
     if not np.isfinite(list(values.values())).all() or circuit >= len(motion.circuits):
         return Refusal("figure", "a measure has no value there")
     wanted = [want for want in model.figure_wants if not isinstance(want.value, str)]
@@ -250,16 +250,16 @@ def _of_figures(model: TaskModel, draft: Draft, solution: Solved, motion: Motion
 
 def _figures(model: TaskModel, motion: Motion, circuit: Circuit) -> Mapping[str, float] | Refusal:
     """The measures as the analysis has them, or which misses its limit."""
-    found = model.figures.read(motion, circuit)
+    result = model.figures.read(motion, circuit)
     for must in model.task.musts:
         if not isinstance(must, MeasureMust):
             continue
-        value = found[must.name]
+        value = result[must.name]
         slack = ROUNDING * max(abs(value), 1.0)
         for way, end, word in ((1, must.least, "at least"), (-1, must.most, "at most")):
             if end is not None and way * (value - end) < -slack:
                 return Refusal("figure", f"{must.name} is {value:.6g}, {word} {end:g} is required")
-    return found
+    return result
 
 
 def missed_between(model: TaskModel, solution: Solved) -> dict[int, float]:
@@ -318,11 +318,11 @@ def _slack(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: 
             errors = ways[number][0].errors[slice(None) if must.at is None else list(must.at)]
             worst = float(np.abs(errors).max())
             if worst > (must.most + TORN) * one.unit:
-                found, asked = (
+                result, asked = (
                     f"{math.degrees(x):.4g} deg" if one.turns else f"{x:.4g} {linkage.length_unit}"
                     for x in (worst, must.most * one.unit)
                 )
-                return Refusal("error", f"the greatest error is {found}, at most {asked} is asked")
+                return Refusal("error", f"the greatest error is {result}, at most {asked} is asked")
             least = min(least, must.most - worst / one.unit)
     return least
 

@@ -27,8 +27,8 @@ ON_STOP = 1e-9
 
 def refuse_contradictions(task: DesignTask) -> None:
     """Raises `RequestError` with every contradiction of a task, a line each."""
-    if found := list(contradictions(task)) or list(start_flaws(task)):
-        raise RequestError("\n".join(map(str, found)))
+    if result := list(contradictions(task)) or list(start_flaws(task)):
+        raise RequestError("\n".join(map(str, result)))
 
 
 def contradictions(task: DesignTask) -> Iterator[Problem]:

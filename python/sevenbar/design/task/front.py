@@ -119,11 +119,11 @@ def pareto(
         )
         own = replace(task, wants=wants, musts=(*task.musts, *musts), goal="minimax")
         started = [point.design.values for point in given]
-        found = designed(own, count=1, starts=tries, seed=seed, given=started)
-        for design in found.designs:
+        result = designed(own, count=1, starts=tries, seed=seed, given=started)
+        for design in result.designs:
             kept.append(ParetoPoint((_value(task, one, design), _value(task, other, design)), design))
         course.step(f"{len(kept)} points")
-        return len(found.designs)
+        return len(result.designs)
 
     with course.until_stopped(kept, 2):
         for improved, second in ((one, other), (other, one)):

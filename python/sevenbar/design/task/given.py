@@ -34,10 +34,10 @@ def reading_span(key: str, ends: tuple[Given, Given], linkage: Linkage, column: 
 
 def amount(key: str, value: Given, unit: str) -> float:
     """A value in a unit; a number stays as it is."""
-    found = amount_in(value, unit) if isinstance(value, str) else value
-    if found is None:
+    result = amount_in(value, unit) if isinstance(value, str) else value
+    if result is None:
         raise RequestError(f"{key}: {shown(value)} does not fit; give {examples_of(unit)}")
-    return found
+    return result
 
 
 def one_of(form: TableForm, *names: str) -> str:

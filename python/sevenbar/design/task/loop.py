@@ -118,9 +118,9 @@ class TaskLoop:
 
     def whole(self, values: Floats) -> Floats:
         """All numbers of the description (all,)."""
-        found = self.numbers.nominal.copy()
-        found[[self.free[k] for k in self._moving]] = values[self._moving]
-        return found if self.coupler is None else self.coupler.whole(found)
+        result = self.numbers.nominal.copy()
+        result[[self.free[k] for k in self._moving]] = values[self._moving]
+        return result if self.coupler is None else self.coupler.whole(result)
 
     def at(self, values: Floats) -> NumberedLoop:
         """The loop of these values, kept for the next question."""
@@ -144,41 +144,41 @@ class TaskLoop:
         if not slopes:
             points = self.at(values).places(q)
             return Here(q, np.empty((*q.shape, 0)), points, np.empty((*points.shape, 0)))
-        found = self.at(values).slopes(q, 0)
-        by_q = np.moveaxis(found.by_number[:, 0], 1, 2)
-        by_points = np.moveaxis(found.points_by_number[:, :, 0], 2, 3)
+        result = self.at(values).slopes(q, 0)
+        by_q = np.moveaxis(result.by_number[:, 0], 1, 2)
+        by_points = np.moveaxis(result.points_by_number[:, :, 0], 2, 3)
         return Here(
             q,
-            np.concatenate([self._led(values, by_q), found.by_input[:, 0, :, None]], axis=2),
-            found.points[:, :, 0],
-            np.concatenate([self._led(values, by_points), found.points_by_input[:, :, 0, :, None]], axis=3),
+            np.concatenate([self._led(values, by_q), result.by_input[:, 0, :, None]], axis=2),
+            result.points[:, :, 0],
+            np.concatenate([self._led(values, by_points), result.points_by_input[:, :, 0, :, None]], axis=3),
         )
 
     def _led(self, values: Floats, by: Floats) -> Floats:
         """Slopes (.., k), none by masses, those by the coupler passed on to what it follows from."""
-        found = np.zeros((*by.shape[:-1], len(self.free)))
-        found[..., self._moving] = by[..., : len(self._moving)]
+        result = np.zeros((*by.shape[:-1], len(self.free)))
+        result[..., self._moving] = by[..., : len(self._moving)]
         if self.coupler is None:
-            return found
+            return result
         whole = self.whole(values)
         for number, part in zip(self.coupler.leaders, self.coupler.slopes(whole), strict=True):
             if number in self.free:
-                found[..., self.free.index(number)] += part * by[..., -1]
-        return found
+                result[..., self.free.index(number)] += part * by[..., -1]
+        return result
 
     def all_slopes(self, values: Floats, by: Floats) -> Floats:
         """Slopes (.., all) by all numbers of the description, as slopes (.., k) by the free ones."""
         by = by if self.coupler is None else self.coupler.chained(by, self.whole(values))
-        found = np.zeros((*by.shape[:-1], len(self.free)))
-        found[..., self._moving] = by[..., [self.free[k] for k in self._moving]]
-        return found
+        result = np.zeros((*by.shape[:-1], len(self.free)))
+        result[..., self._moving] = by[..., [self.free[k] for k in self._moving]]
+        return result
 
     def mass_slopes(self, by: Floats) -> Floats:
         """Slopes by the masses of all links that have a body [1/kg], as slopes (k,) by the free numbers.
 
         NaN by a mass that is not all of its link, or whose inertia the file gives: it stays as it is.
         """
-        found = np.zeros(len(self.free))
+        result = np.zeros(len(self.free))
         bodies = self.linkage.description.get("body", ())
         links = sorted({body["link"] for body in bodies})
         for k, i in enumerate(self.free):
@@ -186,8 +186,8 @@ class TaskLoop:
             if one.kind == "mass":
                 body = bodies[one.place[1]]
                 whole = one.name == f"mass_{body['link']}" and "inertia" not in body
-                found[k] = one.scale * by[links.index(body["link"])] if whole else np.nan
-        return found
+                result[k] = one.scale * by[links.index(body["link"])] if whole else np.nan
+        return result
 
     @property
     def free_masses(self) -> bool:
@@ -236,21 +236,21 @@ class RssrLoop(TaskLoop):
 
     def on_branch(self, values: Floats, x: Floats, branch: int) -> Floats:
         """The poses (n, columns) at inputs x (n,) on a branch; NaN where there is none."""
-        found = np.zeros((len(x), len(self.linkage.columns)))
-        found[:, self.input] = x
-        found[:, self.output] = outputs(self.whole(values)[None, self._columns], x, branch)[0]
-        return found
+        result = np.zeros((len(x), len(self.linkage.columns)))
+        result[:, self.input] = x
+        result[:, self.output] = outputs(self.whole(values)[None, self._columns], x, branch)[0]
+        return result
 
     def closed(self, values: Floats, x: Floats, q: Floats) -> Floats:
         """The poses (n, columns) at inputs x (n,), on the branch nearest to q; NaN where there is none."""
         if self._sees_points:
             return super().closed(values, x, q)
-        found = q.copy()
+        result = q.copy()
         ways = [self.on_branch(values, x, branch)[:, self.output] - q[:, self.output] for branch in (0, 1)]
         first, second = short_way(ways[0]), short_way(ways[1])
-        found[:, self.input] = x
-        found[:, self.output] += np.where(np.abs(second) < np.abs(first), second, first)
-        return found
+        result[:, self.input] = x
+        result[:, self.output] += np.where(np.abs(second) < np.abs(first), second, first)
+        return result
 
     def here(self, values: Floats, q: Floats, *, slopes: bool = True) -> Here:
         """What is at closed poses (n, columns); slopes are infinite at dead centres of the input."""

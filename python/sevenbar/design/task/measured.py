@@ -73,10 +73,10 @@ class Figures:
         if quick is not None:
             return quick
         self.motions += 1 + slopes
-        found = self._near(values, anchor)
-        if found is None:
+        result = self._near(values, anchor)
+        if result is None:
             return None
-        linkage, circuit, motion = found
+        linkage, circuit, motion = result
         read = list(self.read(motion, circuit).values())
         if not np.isfinite(read).all():
             return None
@@ -117,16 +117,16 @@ class Figures:
             except (DescriptionError, RequestError, NotCoveredError):
                 # where it stands still others may be near
                 pass
-        found = self.circuit(values, anchor)
-        return None if found is None else (found[0].linkage, found[1], found[0])
+        result = self.circuit(values, anchor)
+        return None if result is None else (result[0].linkage, result[1], result[0])
 
     def read(self, motion: Motion | None, circuit: Circuit) -> dict[str, float]:
         """The measures of a circuit; NaN where one has no value."""
-        found = {}
+        result = {}
         for measure in self._measures:
             value = measure.value(motion if motion and measure.per == "linkage" else circuit)
-            found[measure.name] = float(value) if isinstance(value, (int, float)) else np.nan
-        return found
+            result[measure.name] = float(value) if isinstance(value, (int, float)) else np.nan
+        return result
 
     def circuit(self, values: Floats, anchor: Floats) -> tuple[Motion, Circuit] | None:
         """The motion at numbers (k,), and its circuit near a row (columns,); `None` where there is none."""

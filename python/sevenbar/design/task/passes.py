@@ -42,8 +42,8 @@ class InputPass:
     def point(self, link: int | str, at: tuple[float, float, float] | None = None) -> Floats:
         """Where a place of a link, or a named point, is along the rows (m, 3)."""
         one = self.circuit
-        found = one.point(link) if isinstance(link, str) or at is None else one.written_point(link, at)
-        return found.position[self.rows]
+        result = one.point(link) if isinstance(link, str) or at is None else one.written_point(link, at)
+        return result.position[self.rows]
 
     def begins(self, timing: Floats, *, free: bool) -> tuple[Floats, Integers]:
         """What may be added to inputs (n,) so that they lie within the pass (p,), and their rows (p, n).

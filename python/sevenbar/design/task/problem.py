@@ -262,9 +262,9 @@ class TaskProblem:
 
     def seed(self, z: Floats) -> TaskSeed:
         """The start that z is."""
-        found = self.at(z)
+        result = self.at(z)
         self.take(z)
-        placing = STILL if found is None else found.placing
+        placing = STILL if result is None else result.placing
         poses = self._poses[: self._count]
         return TaskSeed(self.values(z), self.own(z), poses, self._anchor, math.nan, placing, self._period)
 
@@ -338,9 +338,9 @@ class TaskProblem:
 
     def _wide(self, by: Floats) -> Floats:
         """Slopes (r, k) by the free numbers as those by all unknowns."""
-        found = np.zeros((len(by), len(self.start)))
-        found[:, : self._k] = by * self.scales[: self._k]
-        return found
+        result = np.zeros((len(by), len(self.start)))
+        result[:, : self._k] = by * self.scales[: self._k]
+        return result
 
     def _places(self) -> list[tuple[int, PlacesWanted]]:
         return [(i, one) for i, one in enumerate(self.model.wanted) if isinstance(one, PlacesWanted)]
@@ -455,9 +455,9 @@ class TaskProblem:
         """Slopes (r, k + all unknowns), those by the free numbers and through the inputs, by all unknowns."""
         if not by.size:
             return by
-        found = by[:, self._k :].copy()
-        found[:, : self._k] += by[:, : self._k] * self.scales[: self._k]
-        return found
+        result = by[:, self._k :].copy()
+        result[:, : self._k] += by[:, : self._k] * self.scales[: self._k]
+        return result
 
     def _transmission(self, z: Floats) -> list[tuple[str, Floats, Floats]]:
         """The transmission angle of an RSSR over what is used, and that its input turns."""
@@ -471,28 +471,28 @@ class TaskProblem:
             every[:, columns] = by_row
             return self._wide(loop.all_slopes(self.values(z), every))
 
-        found: list[tuple[str, Floats, Floats]] = []
+        result: list[tuple[str, Floats, Floats]] = []
         if self.model.transmits and len(self._stations.fixed):
             slack, by_row, by_input = transmission_slack(row, self._stations.inputs(z), limits)
             by = wide(by_row) + by_input[:, None] * self._stations.by
-            found.append(("transmission", slack, by))
+            result.append(("transmission", slack, by))
         if self.model.turns:
             slack, by_row = turning_slack(row)
-            found.append(("motion type", slack, wide(by_row)))
-        return found
+            result.append(("motion type", slack, wide(by_row)))
+        return result
 
     def _figures(self, values: Floats, *, slopes: bool) -> tuple[Slacks, Slacks] | None:
         """Residuals of figures, and their slacks, each with its slopes."""
         model = self.model
-        found: tuple[Any, Any] | None = ((), ())
+        result: tuple[Any, Any] | None = ((), ())
         if model.searched.names:
             before = model.searched.motions
-            found = model.searched.at(values, self._anchor, slopes=slopes)
+            result = model.searched.at(values, self._anchor, slopes=slopes)
             model.effort.take(model.searched.motions - before)
-        if found is None:
+        if result is None:
             return None
         read = {
-            name: [(float(own[0]), own[1])] for name, *own in zip(model.searched.names, *found, strict=True)
+            name: [(float(own[0]), own[1])] for name, *own in zip(model.searched.names, *result, strict=True)
         }
         ends: list[tuple[float, Floats]] = []
         if model.angle_wants or model.angle_musts:

@@ -162,7 +162,9 @@ def _program(now: MinimaxValues, reach: float, weight: float) -> tuple[Floats, f
     # the heaviest counts 1: solvers have absolute tolerances
     ends = [0.0, 1.0] if math.isinf(weight) else [1.0 / max(weight, 1.0), weight / max(weight, 1.0)]
     cost = np.append(np.zeros(count), ends)
-    found = linprog(cost, A_ub=matrix, b_ub=sides, bounds=[*bounds, (0.0, None), (0.0, None)], method="highs")
-    if found.x is None:
+    result = linprog(
+        cost, A_ub=matrix, b_ub=sides, bounds=[*bounds, (0.0, None), (0.0, None)], method="highs"
+    )
+    if result.x is None:
         return nothing
-    return found.x[:count], float(found.x[-2] * unit), float(found.x[-1] * unit)
+    return result.x[:count], float(result.x[-2] * unit), float(result.x[-1] * unit)

@@ -82,7 +82,7 @@ def programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
 
     slacks: Any = {"type": "ineq", "fun": slack, "jac": lambda x: at(x).slack_by[own]}
     with np.errstate(all="ignore"), suppress(_StopsError):
-        found = minimize(
+        result = minimize(
             cost,
             x,
             jac=slopes,
@@ -91,7 +91,7 @@ def programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
             method="SLSQP",
             options={"maxiter": FEWER if minimax else PROGRAMS, "ftol": 1e-14},
         )
-        last_z = np.asarray(unknowns(problem, found.x))
+        last_z = np.asarray(unknowns(problem, result.x))
         if minimax:
             course.z = last_z
         elif (there := problem.at(last_z)) is not None:

@@ -144,13 +144,13 @@ def designed(
     need_scipy()
     model = TaskModel(task)
     course = SearchCourse(starts + 1 + len(given) + (TRIED + TAKEN) * count, progress)
-    kept: list[TaskDesign] = []
+    selected: list[TaskDesign] = []
     refusals: list[Refusal] = []
     started: list[TaskSeed] = []
-    with course.until_stopped(kept):
+    with course.until_stopped(selected):
         started = seeds(model, starts, seed, course.step, [np.asarray(v, dtype=float) for v in given])
-        _search(model, started, count, course, kept, refusals)
-    best = distinct(kept, scale_free=False, count=count)
+        _search(model, started, count, course, selected, refusals)
+    best = distinct(selected, scale_free=False, count=count)
     return DesignsFound(
         task, named(task, best), tuple(refusals), len(started), course.unfinished, model.effort.ended
     )
@@ -203,33 +203,33 @@ def _unlike_seeds(model: TaskModel, started: Sequence[TaskSeed]) -> Sequence[Tas
     """
     if model.wanted or not set(model.figures.names) <= set(MEASURES):
         return started
-    kept: list[TaskSeed] = []
+    selected: list[TaskSeed] = []
     for one in started:
-        like = (np.array_equal(one.values, other.values) for other in kept)
+        like = (np.array_equal(one.values, other.values) for other in selected)
         same = (
             alike and math.isclose(one.error, other.error, rel_tol=SAME)
-            for alike, other in zip(like, kept, strict=True)
+            for alike, other in zip(like, selected, strict=True)
         )
         if not any(same):
-            kept.append(one)
-    return kept
+            selected.append(one)
+    return selected
 
 
 def _unlike(model: TaskModel, tried: Sequence[Solved]) -> list[Solved]:
     """Without those that lead to the same: the same numbers, costs and slacks."""
-    kept: list[Solved] = []
+    selected: list[Solved] = []
     for look in tried:
         ways = [look.cost, look.slack, *look.seed.values / model.loop.scales]
-        known = ([one.cost, one.slack, *one.seed.values / model.loop.scales] for one in kept)
+        known = ([one.cost, one.slack, *one.seed.values / model.loop.scales] for one in selected)
         if not any(np.allclose(ways, other, rtol=ALIKE, atol=ALIKE) for other in known):
-            kept.append(look)
-    return kept
+            selected.append(look)
+    return selected
 
 
 def _worst(kept: Sequence[TaskDesign], count: int) -> float:
     """The cost of the last of so many distinct designs; infinite while there are fewer."""
-    found = distinct(kept, scale_free=False, count=count)
-    return found[-1].cost if len(found) == count else math.inf
+    result = distinct(kept, scale_free=False, count=count)
+    return result[-1].cost if len(result) == count else math.inf
 
 
 def _take(

@@ -122,18 +122,18 @@ def solved(
     model.effort.begin(effort.WHOLE if whole else effort.LOOK)
     # where measures must hold the programs know better from the first step on
     alone = whole and model.task.goal == "minimax" and bool(model.figure_musts) and model.searched.measured
-    found = _begun(model, seed) if alone else _least_squares(model, seed, evaluations, FIRST[0])
-    if whole and not alone and (found is None or (found.stuck and not _ended(found.problem, found.z))):
+    result = _begun(model, seed) if alone else _least_squares(model, seed, evaluations, FIRST[0])
+    if whole and not alone and (result is None or (result.stuck and not _ended(result.problem, result.z))):
         # a first step too far may have led into a corner where the linkage hardly closes
         other = _least_squares(model, seed, evaluations, FIRST[1])
-        if found is None or (other is not None and other.size < found.size):
-            found = other
-    if whole and not alone and found is not None and NOTHING < found.size <= EXACT:
-        found = _least_squares(model, found.problem.seed(found.z), LONG, FIRST[0])
-    if found is None:
+        if result is None or (other is not None and other.size < result.size):
+            result = other
+    if whole and not alone and result is not None and NOTHING < result.size <= EXACT:
+        result = _least_squares(model, result.problem.seed(result.z), LONG, FIRST[0])
+    if result is None:
         return None
-    problem, z = found.problem, found.z
-    if not whole or (found.size > most and not alone) or _hopeless(problem, z):
+    problem, z = result.problem, result.z
+    if not whole or (result.size > most and not alone) or _hopeless(problem, z):
         return _as_solved(problem, z, math.nan)
     if model.task.goal != "least squares":
         problem = TaskProblem(model, problem.seed(z), minimax=True)
@@ -316,8 +316,8 @@ def _descended(problem: TaskProblem, z: Floats) -> Floats:
                 free &= ~stopped
             then_z = problem.within(z + step)
             then = conditions(problem, then_z)
-            kept = then is not None and not (then.slack < np.minimum(at.slack, 0.0) - ROUNDING).any()
-            if then is not None and kept and then.cost < at.cost:
+            selected = then is not None and not (then.slack < np.minimum(at.slack, 0.0) - ROUNDING).any()
+            if then is not None and selected and then.cost < at.cost:
                 z, at, reach = then_z, then, min(4 * reach, MOST_REACH)
                 problem.take(z)
                 break
@@ -387,8 +387,8 @@ def _curved(problem: TaskProblem, x: Floats, at: Conditions, active: Integers, y
         return None if there is None else there.gradient - there.slack_by[active].T @ y
 
     exact = at.curved is not None and at.cost <= EXACT**2 and not len(active)
-    found = at.curved if exact else _differences(pull, x)
-    return found if found is not None and np.isfinite(found).all() else None
+    result = at.curved if exact else _differences(pull, x)
+    return result if result is not None and np.isfinite(result).all() else None
 
 
 def _differences(pull: Callable[[Floats], Floats | None], x: Floats) -> Floats | None:
@@ -401,5 +401,5 @@ def _differences(pull: Callable[[Floats], Floats | None], x: Floats) -> Floats |
         if up is None or down is None:
             return None
         columns.append((up - down) / (2 * DIFFERENCE))
-    found = np.array(columns)
-    return np.asarray((found + found.T) / 2)
+    result = np.array(columns)
+    return np.asarray((result + result.T) / 2)

@@ -29,11 +29,11 @@ def seeds(
 
     A linkage gives some for each of its circuits. `step` is called after each linkage.
     """
-    found: list[TaskSeed] = []
+    result: list[TaskSeed] = []
     for values in _numbers(model, count, seed, given):
-        found += seeds_at(model, values)
+        result += seeds_at(model, values)
         step()
-    return sorted(found, key=lambda one: one.error)
+    return sorted(result, key=lambda one: one.error)
 
 
 def _numbers(model: TaskModel, count: int, seed: int, given: Sequence[Floats]) -> Iterator[Floats]:
@@ -55,14 +55,14 @@ def _numbers(model: TaskModel, count: int, seed: int, given: Sequence[Floats]) -
 def seeds_at(model: TaskModel, values: Floats) -> list[TaskSeed]:
     """How the task may begin with a linkage of these numbers (k,)."""
     motion = model.loop.motion(values)
-    found: list[TaskSeed] = []
+    result: list[TaskSeed] = []
     for circuit in () if motion is None else motion.circuits:
         if not model.wanted:
-            found += _of_figures(model, values, circuit)
+            result += _of_figures(model, values, circuit)
             continue
         for one in passes(circuit):
-            found += _on_pass(model, values, one)
-    return found
+            result += _on_pass(model, values, one)
+    return result
 
 
 def _of_figures(model: TaskModel, values: Floats, circuit: Circuit) -> list[TaskSeed]:
@@ -93,7 +93,7 @@ def _on_pass(model: TaskModel, values: Floats, one: InputPass) -> list[TaskSeed]
     scaled = model.task.placement == "free with scale"
     order = sorted(range(len(model.wanted)), key=lambda i: not model.wanted[i].placeable)
     firsts = model.wanted[order[0]].starts(one, None if model.placed else STILL, scaled=scaled)
-    found: list[TaskSeed] = []
+    result: list[TaskSeed] = []
     for first in firsts:
         placing = first.placing or STILL
         chosen = {order[0]: first}
@@ -103,8 +103,8 @@ def _on_pass(model: TaskModel, values: Floats, one: InputPass) -> list[TaskSeed]
                 break
             chosen[i] = ways[0]
         else:
-            found += _seed(model, values, one, [chosen[i] for i in range(len(chosen))], placing)
-    return found
+            result += _seed(model, values, one, [chosen[i] for i in range(len(chosen))], placing)
+    return result
 
 
 def _seed(
@@ -145,10 +145,10 @@ def _scaled(model: TaskModel, seed: TaskSeed) -> TaskSeed:
 
 def apart(model: TaskModel, found: Sequence[TaskSeed], count: int) -> list[TaskSeed]:
     """The first `count` of the seeds that are not alike."""
-    kept: list[TaskSeed] = []
+    selected: list[TaskSeed] = []
     width = model.task.high - model.task.low
     for one in found:
-        if len(kept) >= count:
+        if len(selected) >= count:
             break
         near = (
             bool(np.abs((one.values - other.values) / width).max(initial=0.0) < SAME)
@@ -156,8 +156,8 @@ def apart(model: TaskModel, found: Sequence[TaskSeed], count: int) -> list[TaskS
             and all(
                 np.abs(a - b).max(initial=0.0) < SAME_POSE for a, b in zip(one.own, other.own, strict=True)
             )
-            for other in kept
+            for other in selected
         )
         if not any(near):
-            kept.append(one)
-    return kept
+            selected.append(one)
+    return selected

@@ -59,11 +59,11 @@ class LeastAngle:
         if q is None:
             return None
         here = loop.here(values, q, slopes=slopes)
-        found = self._made.turning(here.points[:, self._places], here.points_by[:, self._places, :, :-1])
-        if found is None or not all(np.isfinite(part).all() for part in found):
+        result = self._made.turning(here.points[:, self._places], here.points_by[:, self._places, :, :-1])
+        if result is None or not all(np.isfinite(part).all() for part in result):
             return None
         none = np.zeros(len(values))
-        return [(math.degrees(x), np.degrees(by) if slopes else none) for x, by in zip(*found, strict=True)]
+        return [(math.degrees(x), np.degrees(by) if slopes else none) for x, by in zip(*result, strict=True)]
 
 
 def transmission_flaw(linkage: Linkage, limits: Limits) -> str:

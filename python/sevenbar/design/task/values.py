@@ -40,10 +40,10 @@ def _span(value: object) -> tuple[Given, Given]:
 
 def _numbers(value: object) -> tuple[float, float]:
     ends = _span(value)
-    found = [constant_of(end) if isinstance(end, str) else end for end in ends]
-    if None in found:
+    result = [constant_of(end) if isinstance(end, str) else end for end in ends]
+    if None in result:
         raise refuse(f"{shown(value)} is not a range; give two values, as in '0:1', '0:pi/2' or '0:90deg'")
-    first, last = (float(one) for one in found if one is not None)
+    first, last = (float(one) for one in result if one is not None)
     return first, last
 
 
@@ -113,10 +113,14 @@ def _goal(value: object) -> Given:
 
 
 def _words(value: object) -> tuple[str, ...]:
-    found = [value] if isinstance(value, str) else value
-    if not isinstance(found, list) or not found or not all(isinstance(word, str) and word for word in found):
+    result = [value] if isinstance(value, str) else value
+    if (
+        not isinstance(result, list)
+        or not result
+        or not all(isinstance(word, str) and word for word in result)
+    ):
         raise refuse(f"{shown(value)} are no names; give some in quotes, as in ['A', 'P']")
-    return tuple(found)
+    return tuple(result)
 
 
 _ANY: dict[str, Any] = {"type": ["number", "string"]}

@@ -15,14 +15,14 @@ class ChangedDesigns:
     """Changed designs of a linear estimate, on its rows."""
 
     def __init__(self, linear: Linear) -> None:
-        found = linear.found
-        self._found, self.loop, self.speed = found, found.loop, found.speed
-        self._numbers = found.loop.numbers
-        self._output = found.outputs[found.place(linear.output, linear.quantity)]
-        self._q = found.poses[np.isin(found.rows, linear.rows)]
+        result = linear.found
+        self._found, self.loop, self.speed = result, result.loop, result.speed
+        self._numbers = result.loop.numbers
+        self._output = result.outputs[result.place(linear.output, linear.quantity)]
+        self._q = result.poses[np.isin(result.rows, linear.rows)]
         self._x = self._q[:, self.loop.input]
         by_number = self.loop.slopes(self._q, 0).by_number[:, 0]
-        self._by_number = np.where(found.opens[:, None], 0.0, by_number)
+        self._by_number = np.where(result.opens[:, None], 0.0, by_number)
         self.nominal = self._values(self._numbers.nominal, self._q)
 
     def followed(self, changes: Floats) -> tuple[Floats, Floats]:

@@ -58,16 +58,16 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
     with styled():
         figure = page_figure(6.4 if len(passes) == 1 else 8.4, 4.6, pads=(0.04, 0.06))
         grid = figure.subplots(1, len(passes), sharey=True, squeeze=False)[0]
-        found = linear.found
-        what, unit = ("angle", "deg") if found.input_turns else ("position", found.linkage.length_unit)
-        label = quantity_label(found.input_name, what, unit)
+        result = linear.found
+        what, unit = ("angle", "deg") if result.input_turns else ("position", result.linkage.length_unit)
+        label = quantity_label(result.input_name, what, unit)
         for axes, (name, rows) in zip(grid, passes, strict=True):
             _band(axes, linear, exact, rows)
             axes.set_xlabel(label)
             axes.grid(lw=0.6)
             axes.set_axisbelow(True)
             axes.margins(x=0)
-            if found.input_turns:
+            if result.input_turns:
                 axes.xaxis.set_major_locator(DegreeLocator(9))
             if name:
                 axes.set_title(name, fontsize=letters())
@@ -89,14 +89,14 @@ def _passes(linear: Linear) -> list[tuple[str, Integers]]:
 
 
 def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) -> None:
-    found = linear.found
+    result = linear.found
     x = linear.input[rows]
     order = np.argsort(x, kind="stable")
     rows, x = rows[order], x[order]
     # a circuit that goes round ends where it began
-    round_ = found.circuit.goes_round and len(linear.rows) == len(linear.status)
-    if round_ and found.circuit.turns:
-        rows, x = np.append(rows, rows[0]), np.append(x, x[0] + 2 * np.pi * abs(found.circuit.turns))
+    round_ = result.circuit.goes_round and len(linear.rows) == len(linear.status)
+    if round_ and result.circuit.turns:
+        rows, x = np.append(rows, rows[0]), np.append(x, x[0] + 2 * np.pi * abs(result.circuit.turns))
     # rows that are left out leave a gap
     gaps = (
         np.flatnonzero(np.diff(x) > 1.5 * np.median(np.diff(x))) + 1
@@ -107,7 +107,7 @@ def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) 
     def shown(values: Floats) -> Floats:
         return np.insert(linear.shown(values)[rows], gaps, np.nan)
 
-    turns = found.input_turns
+    turns = result.input_turns
     places = np.insert(np.degrees(x) if turns else x, gaps, np.nan)
     worst, sigma = shown(linear.worst), shown(3 * linear.deviation)
     axes.fill_between(places, -worst, worst, color=BAND, lw=0, label=say("linear, worst case"))

@@ -122,17 +122,17 @@ class Linear:
         """Each dimension that has a tolerance, the greatest share of the variance first."""
         parts = (self.slopes * self.tolerances.deviations(self.distribution)) ** 2
         total = float(parts.sum())
-        found = []
+        result = []
         for k, dimension in enumerate(self.found.dimensions):
             if self.tolerances.widths[k] > 0:
                 effect = np.abs(self.slopes[:, k]) * self.tolerances.widths[k]
                 row = int(np.argmax(effect))
                 share = float(parts[:, k].sum()) / total if total > 0 else 0.0
                 width, source = float(self.tolerances.widths[k]), self.tolerances.sources[k]
-                found.append(
+                result.append(
                     Effect(dimension, width, source, float(effect[row]), float(self.input[row]), share)
                 )
-        return tuple(sorted(found, key=lambda effect: (-effect.share, -effect.greatest)))
+        return tuple(sorted(result, key=lambda effect: (-effect.share, -effect.greatest)))
 
     def measure(self, name: str) -> tuple[float, float]:
         """Worst case and standard deviation of a measure, in its unit; NaN where it has no derivative."""
@@ -175,15 +175,15 @@ def linear_estimate(
         >>> bool((found.deviation <= found.worst).all())
         True
     """
-    found = of if isinstance(of, Sensitivities) else sensitivities(of)
+    result = of if isinstance(of, Sensitivities) else sensitivities(of)
     if not isinstance(given, Tolerances):
-        given = found.tolerances(given)
+        given = result.tolerances(given)
     given.deviations(distribution)
-    status = found.clear(given.widths)
-    place = found.place(output, quantity)
-    slopes = np.where(given.widths > 0, found.slopes[:, place], 0.0)
-    one = found.outputs[place]
-    if np.isnan(found.values[found.rows, place]).all() or np.isnan(slopes[status == "ok"]).any():
+    status = result.clear(given.widths)
+    place = result.place(output, quantity)
+    slopes = np.where(given.widths > 0, result.slopes[:, place], 0.0)
+    one = result.outputs[place]
+    if np.isnan(result.values[result.rows, place]).all() or np.isnan(slopes[status == "ok"]).any():
         raise RequestError(
             f"output: {one.name} takes part in an idle motion, which the input does not tell; give another"
         )
@@ -194,4 +194,4 @@ def linear_estimate(
             "give smaller ones"
         )
     name = one.owner if one.joint else one.name
-    return Linear(found, given, distribution, name, one.quantity, status, rows, slopes[rows])
+    return Linear(result, given, distribution, name, one.quantity, status, rows, slopes[rows])

@@ -36,20 +36,20 @@ class Output:
 def outputs_of(numbers: Numbers, input: int) -> tuple[Output, ...]:
     """All outputs of a loop: of a ball's turns and of points not every derivative."""
     linkage = numbers.linkage
-    found = []
+    result = []
     for k, name in enumerate(linkage.columns):
         unit = linkage.unit_of(k)
         orders = 0 if k == input else 1 if numbers.is_ball[k] else 3
         for quantity, per in zip(QUANTITIES[:orders], PER_TIME, strict=False):
             own = name if quantity == "position" else f"{name}.{quantity}"
-            found.append(Output(own, unit + per, quantity, name, True, k))
+            result.append(Output(own, unit + per, quantity, name, True, k))
     for i, point in enumerate(linkage.points):
         for quantity, per in zip(QUANTITIES[:2], PER_TIME, strict=False):
             for axis, letter in enumerate("xyz"):
                 own = letter if quantity == "position" else f"{quantity}_{letter}"
                 unit = linkage.length_unit + per
-                found.append(Output(f"{point.name}.{own}", unit, quantity, point.name, False, i, axis))
-    return tuple(found)
+                result.append(Output(f"{point.name}.{own}", unit, quantity, point.name, False, i, axis))
+    return tuple(result)
 
 
 def values_of(outputs: tuple[Output, ...], q: Floats, here: Slopes, speed: float) -> Floats:

@@ -44,13 +44,13 @@ class Findings:
 def text(findings: Findings) -> RenderableType:
     """The findings for people."""
     linear, worst, exact = findings.linear, findings.worst, findings.exact
-    found = linear.found
+    result = linear.found
     facts = Facts()
-    circuit, turns = found.circuit, say(found.circuit.motion_type)
+    circuit, turns = result.circuit, say(result.circuit.motion_type)
     output = {"output": linear.words, "number": circuit.index, "motion_type": turns}
     facts.add("output", say("{output}, circuit {number} ({motion_type})", **output))
-    unit = found.linkage.unit_of(found.input_name)
-    facts.add("drive", drive_text(found.input_name, found.speed, unit))
+    unit = result.linkage.unit_of(result.input_name)
+    facts.add("drive", drive_text(result.input_name, result.speed, unit))
     if linear.held.left_to_the_program:
         facts.add("held", linear.held.text)
     errors = say("independent, {distribution}", distribution=say(linear.distribution))
@@ -70,19 +70,19 @@ def text(findings: Findings) -> RenderableType:
         facts.add("", exact.verdict, style="bold")
     for note in linear.left_out():
         facts.add("note", retold(note))
-    measures = [_measures_table(linear)] if found.measures else []
-    return page(found.linkage.heading, facts, _effects_table(linear), *measures)
+    measures = [_measures_table(linear)] if result.measures else []
+    return page(result.linkage.heading, facts, _effects_table(linear), *measures)
 
 
 def as_dict(findings: Findings) -> dict[str, Any]:
     """The findings as plain values: outputs in rad and length, dimensions in the units of the file."""
     linear, worst, exact = findings.linear, findings.worst, findings.exact
-    found = linear.found
+    result = linear.found
     plain_values: dict[str, Any] = {
         "format": 1,
-        "linkage": found.linkage.name,
-        "drive": {"input": found.input_name, "output": found.output_name, "speed": found.speed},
-        "circuit": found.circuit.index,
+        "linkage": result.linkage.name,
+        "drive": {"input": result.input_name, "output": result.output_name, "speed": result.speed},
+        "circuit": result.circuit.index,
         "reported": {"output": linear.output, "quantity": linear.quantity, "unit": linear.unit},
         "distribution": linear.distribution,
         **linear.held.as_dict,
@@ -97,7 +97,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
             }
             for effect in linear.effects
         ],
-        "opening": list(found.opening),
+        "opening": list(result.opening),
         "worst_case": {
             "linear": float(linear.worst[worst.at]),
             "at_input": float(linear.input[worst.at]),
@@ -111,7 +111,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
         "measures": [
             named(one, "name", "unit", "value")
             | dict(zip(("worst_case", "deviation"), linear.measure(one.name), strict=True))
-            for one in found.measures
+            for one in result.measures
         ],
         "rows": counted(linear.status),
         "notes": list(linear.left_out()),

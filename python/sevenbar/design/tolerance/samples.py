@@ -167,15 +167,15 @@ def monte_carlo(
     whole_turn = linear.found.circuit.goes_round and len(linear.rows) == len(linear.status)
     block = max(1, BLOCK // len(linear.rows))
     course = SearchCourse(len(exact), progress)
-    for part, found, determinants in ChangedDesigns(linear).in_blocks(changes.T, block):
-        exact[part] = found
+    for part, result, determinants in ChangedDesigns(linear).in_blocks(changes.T, block):
+        exact[part] = result
         if whole_turn:
             gap[part] = _gaps(determinants)
         course.step(done=len(determinants))
     lost = gap | np.isnan(exact).any(axis=1)
-    kept = exact[~lost]
+    selected = exact[~lost]
     reasons, looked_at = _reasons(linear, changes.T[lost])
-    if len(kept) < 2:
+    if len(selected) < 2:
         raise RequestError(
             f"tolerance: {int(lost.sum())} of {count} samples do not go round; give smaller tolerances"
         )
@@ -186,11 +186,11 @@ def monte_carlo(
         lost=int(lost.sum()),
         looked_at=looked_at,
         reasons=reasons,
-        quantiles=np.quantile(kept, LEVELS, axis=0),
-        mean=kept.mean(axis=0),
-        deviation=kept.std(axis=0, ddof=1),
-        greatest=float(np.abs(kept).max()),
-        **_agreement(linear, kept, (linear.slopes @ changes).T[~lost]),
+        quantiles=np.quantile(selected, LEVELS, axis=0),
+        mean=selected.mean(axis=0),
+        deviation=selected.std(axis=0, ddof=1),
+        greatest=float(np.abs(selected).max()),
+        **_agreement(linear, selected, (linear.slopes @ changes).T[~lost]),
     )
 
 
@@ -233,12 +233,12 @@ def _gaps(determinants: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
 
 def _reasons(linear: Linear, changes: Floats) -> tuple[dict[str, int], int]:
     """What the ordinary analysis says of the first lost designs, counted, and how many it looked at."""
-    found = linear.found
+    result = linear.found
     counts: Counter[str] = Counter()
     for change in changes[:LOOKED_AT]:
         try:
-            motion = found.changed(change).motion(
-                found.samples, input=found.input_name, output=found.output_name
+            motion = result.changed(change).motion(
+                result.samples, input=result.input_name, output=result.output_name
             )
         except SevenbarError:
             counts["cannot be analysed"] += 1
@@ -246,7 +246,7 @@ def _reasons(linear: Linear, changes: Floats) -> tuple[dict[str, int], int]:
         types = {circuit.motion_type for circuit in motion.circuits}
         if not types:
             counts["cannot be assembled"] += 1
-        elif found.circuit.motion_type in types:
+        elif result.circuit.motion_type in types:
             counts["left their pass of the circuit"] += 1
         else:
             counts[f"became {motion.motion_type}"] += 1

@@ -174,12 +174,12 @@ class Sensitivities(Printed):
         """Each dimension, the greatest effect of a small change of it and the input there; greatest first."""
         effects = np.abs(self.of(output, quantity)) * self.small
         effects[self.clear(self.small) != "ok"] = np.nan
-        found = []
+        result = []
         for dimension, effect in zip(self.dimensions, effects.T, strict=True):
             if np.isfinite(effect).any():
                 row = int(np.nanargmax(effect))
-                found.append((dimension, float(effect[row]), float(self.input[row])))
-        return sorted(found, key=lambda one: -one[1])
+                result.append((dimension, float(effect[row]), float(self.input[row])))
+        return sorted(result, key=lambda one: -one[1])
 
 
 def sensitivities(
@@ -241,7 +241,7 @@ def sensitivities(
     status[~np.isin(np.arange(count), rows) & (status == "ok")] = "dead-centre"
     # where a pose stands but its rates do not exist, so do derivatives not
     slopes[status == "dead-centre"] = np.nan
-    found = Sensitivities(
+    result = Sensitivities(
         loop=loop,
         rows=rows,
         poses=poses,
@@ -259,9 +259,9 @@ def sensitivities(
         draft=draft,
         following=following,
     )
-    if np.isnan(found.of()).all() and not here.opening.all():
+    if np.isnan(result.of()).all() and not here.opening.all():
         raise RequestError(f"output: {motion.input} does not determine {motion.output}; give another output")
-    return found
+    return result
 
 
 @text_of.register(Sensitivities)

@@ -158,14 +158,14 @@ def _exactly(name: str, dimensions: Sequence[Dimension]) -> int | None:
 
 def parsed_tolerances(given: Sequence[str]) -> dict[str, float | str]:
     """Tolerances of a command line, `L1=0.5`; raises `RequestError` for one without name or value."""
-    found: dict[str, float | str] = {}
+    result: dict[str, float | str] = {}
     hint = f"give one as in {_EXAMPLES}"
     for word in given:
         for name, value in split_named("--tolerance", [word], "a name and a half width", hint).items():
             # the last of one name counts, after patterns that were given before it
-            found.pop(name, None)
-            found[name] = value
-    return found
+            result.pop(name, None)
+            result[name] = value
+    return result
 
 
 def general_tolerance(size: float, letter: str) -> float | None:

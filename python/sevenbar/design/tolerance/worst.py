@@ -125,8 +125,8 @@ def worst_case(
     changes, corners = corners_of(linear)
     designs, course = ChangedDesigns(linear), SearchCourse(len(changes), progress)
     deviations = np.empty((len(changes), len(linear.rows)))
-    for part, found, _ in designs.in_blocks(changes, BLOCK):
-        deviations[part] = found
+    for part, result, _ in designs.in_blocks(changes, BLOCK):
+        deviations[part] = result
         course.step(done=len(changes[part]))
     return WorstCase(linear, corners, changes, deviations)
 

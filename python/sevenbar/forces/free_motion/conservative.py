@@ -152,11 +152,11 @@ def swing_between(
     seeker = _Seeker(course, (place, mass * speed**2 / 2))
     ends, turns = [], []
     for towards, last in ((-1, 0.0), (1, course.length)):
-        found = (place, "turn") if rests and towards != way else seeker.end(place, towards, last)
-        if found is not None and found[1] == "top":
+        result = (place, "turn") if rests and towards != way else seeker.end(place, towards, last)
+        if result is not None and result[1] == "top":
             return None
-        ends.append(last if found is None else found[0])
-        turns.append(found is not None)
+        ends.append(last if result is None else result[0])
+        turns.append(result is not None)
     at_end = place == ends[0 if way > 0 else 1]
     both = turns[0], turns[1]
     return _swing(seeker, place, way, (ends[0], ends[1]), at_end=at_end, turns=both), both

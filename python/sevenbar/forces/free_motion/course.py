@@ -79,8 +79,8 @@ class EnergyCourse:
         laps = np.arange(np.floor(low / length), np.floor(high / length) + 1) if self.closed else np.zeros(1)
 
         def within(places: Floats) -> Floats:
-            found = np.unique(np.round((places + laps[:, None] * length).ravel(), 15))
-            return np.asarray(found[(found > low + one) & (found < high - one)])
+            result = np.unique(np.round((places + laps[:, None] * length).ravel(), 15))
+            return np.asarray(result[(result > low + one) & (result < high - one)])
 
         edges = np.concatenate([[low], within(self.quantities.edges), [high]])
         edges = edges[np.append(np.diff(edges) > one, True)]
@@ -268,8 +268,8 @@ class EnergyCourse:
 
     def marks(self, laps: Floats) -> Floats:
         """Places on laps (j,), edges among them, between which U rises or falls all the way, in order."""
-        found = [self._marked(lap) if self.winds and lap else self._first_marks for lap in laps.tolist()]
-        return np.unique(np.concatenate(found) + np.repeat(laps, [len(own) for own in found]) * self.length)
+        result = [self._marked(lap) if self.winds and lap else self._first_marks for lap in laps.tolist()]
+        return np.unique(np.concatenate(result) + np.repeat(laps, [len(own) for own in result]) * self.length)
 
 
 _GAUSS = legendre.leggauss(GAUSS)

@@ -76,12 +76,12 @@ def resting_places(course: EnergyCourse, first: float = 0.0) -> list[Resting]:
     length = course.length
     begin = first - SAME * length
     lap = math.floor(begin / length)
-    found = [
+    result = [
         (s + k * length, kind, frequency, rate, end + k * length)
         for k in (lap, lap + 1)
         for s, kind, frequency, rate, end in _on_lap(course, k)
     ]
-    return [one for one in found if begin <= one[0] < begin + length]
+    return [one for one in result if begin <= one[0] < begin + length]
 
 
 def _on_lap(course: EnergyCourse, lap: int) -> list[Resting]:
@@ -92,7 +92,7 @@ def _on_lap(course: EnergyCourse, lap: int) -> list[Resting]:
     if not own.series.any():
         return []
     turning = own.stationary(0)
-    found: list[float] = []
+    result: list[float] = []
     # what U' is just before a place where it changes its sign at once
     jumps: dict[float, float] = {}
     last = len(edges) - 2
@@ -100,7 +100,7 @@ def _on_lap(course: EnergyCourse, lap: int) -> list[Resting]:
         a, b = edges[i], edges[i + 1]
         marks = np.concatenate([[a], turning[(turning > a) & (turning < b)], [b]])
         heights = own.on(np.full(len(marks), i), marks)[:, 0]
-        found += _zeros(own, i, marks, heights)
+        result += _zeros(own, i, marks, heights)
         before = i - 1 if i else last
         if i or course.closed:
             # the first piece goes on from the lap before, on which a spring is wound up less
@@ -114,7 +114,7 @@ def _on_lap(course: EnergyCourse, lap: int) -> list[Resting]:
         return []
     one = SAME * course.length
     out: list[Resting] = []
-    for s in sorted({*found, *jumps}):
+    for s in sorted({*result, *jumps}):
         if any(a - one < s + k * course.length < b + one for a, b in ranges for k in (0, 1)):
             continue
         near = abs(s - out[-1][0]) if out else math.inf
@@ -144,19 +144,19 @@ def _ranges_of_rest(own: Along, *, closed: bool) -> list[tuple[float, float]] | 
     if still.all():
         return None
     ends = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]]))).reshape(-1, 2)
-    found = [(float(own.edges[a]), float(own.edges[b])) for a, b in ends]
-    if closed and len(found) > 1 and still[0] and still[-1]:
-        found = [*found[1:-1], (found[-1][0], found[0][1] + length)]
-    return found
+    result = [(float(own.edges[a]), float(own.edges[b])) for a, b in ends]
+    if closed and len(result) > 1 and still[0] and still[-1]:
+        result = [*result[1:-1], (result[-1][0], result[0][1] + length)]
+    return result
 
 
 def _zeros(own: Along, piece: int, marks: Floats, heights: Floats) -> list[float]:
     """Zeros of a piece's polynomial between its marks, those that only touch zero among them."""
     touch = 1e-13 * float(own.reach[0])
-    found = [float(s) for s, h in zip(marks, heights, strict=True) if abs(h) <= touch]
+    result = [float(s) for s, h in zip(marks, heights, strict=True) if abs(h) <= touch]
     # alone, so that no neighbour has a say at its ends
     alone = Along(own.edges[piece : piece + 2], own.series[piece : piece + 1])
     for (low, high), (first, last) in zip(pairwise(marks), pairwise(heights), strict=True):
         if first * last < 0 and min(abs(first), abs(last)) > touch:
-            found.append(zero_between(alone, 0.0, low, high))
-    return found
+            result.append(zero_between(alone, 0.0, low, high))
+    return result

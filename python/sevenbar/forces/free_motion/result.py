@@ -137,8 +137,10 @@ class FreeMotion(ReadOnly, Drawable):
                 "give a longer duration"
             )
         states = self._states(asked)
-        kept = {name: getattr(states, name) for name in ("q", "dq", "ddq", "dddq", "kinetic", "potential")}
-        return replace(self, time=asked, **kept)
+        selected = {
+            name: getattr(states, name) for name in ("q", "dq", "ddq", "dddq", "kinetic", "potential")
+        }
+        return replace(self, time=asked, **selected)
 
     def law(self) -> Any:
         """The input over time as a `Law`, for `linkage.motion(law=..)`: rows in which the input is known.

@@ -143,9 +143,9 @@ def without_losses(course: EnergyCourse) -> Fly:
     """Flights that keep their energy."""
 
     def fly(place: float, speed: float, _begin: float, duration: float) -> _Flown:
-        found = conservative(course, place, speed, duration)
-        time = found.legs[-1].end if found.kind == "ends" else math.inf
-        return _Flown(found, time, found.kind, found.period, found.turning)
+        result = conservative(course, place, speed, duration)
+        time = result.legs[-1].end if result.kind == "ends" else math.inf
+        return _Flown(result, time, result.kind, result.period, result.turning)
 
     return fly
 
@@ -154,9 +154,9 @@ def stepped(course: EnergyCourse, motor: Motor | None, tolerance: float) -> Fly:
     """Flights with dampers or a motor."""
 
     def fly(place: float, speed: float, begin: float, duration: float) -> _Flown:
-        found = driven(course, place, speed, duration, motor, tolerance, begin=begin)
-        time = float(found.states.edges[-1]) if found.ended else math.inf
-        return _Flown(found, time, "ends" if found.ended else "driven")
+        result = driven(course, place, speed, duration, motor, tolerance, begin=begin)
+        time = float(result.states.edges[-1]) if result.ended else math.inf
+        return _Flown(result, time, "ends" if result.ended else "driven")
 
     return fly
 
@@ -261,10 +261,10 @@ def elastic(course: EnergyCourse, walls: Walls, start: tuple[float, float]) -> S
         speed = -way * abs(speed)
         if not speed and _held_until(course, place, way, 0.0, None):
             return None
-    found = swing_between(course, place, speed)
-    if found is None:
+    result = swing_between(course, place, speed)
+    if result is None:
         return None
-    flight, turns = found
+    flight, turns = result
     met = []
     for way, end, turned in zip((-1, 1), flight.turning, turns, strict=True):
         stop = walls.at(end, course)[0]

@@ -37,15 +37,15 @@ def change_points_from(raw: _core.RawMotion, column: int) -> tuple[ChangePoint, 
 
 def search_from(raw: _core.RawSearch, columns: Sequence[str]) -> Search:
     """What a search found, with the names of the columns."""
-    found, count = raw.found, raw.count
+    result, count = raw.found, raw.count
     return Search(
         completeness=raw.completeness,
         columns=tuple(columns[c] for c in raw.columns),
         values=raw.values,
         unfollowed=raw.unfollowed,
         bound=raw.bound,
-        rank=None if found is None else found.rank,
-        freedoms=None if found is None else found.finite,
+        rank=None if result is None else result.rank,
+        freedoms=None if result is None else result.finite,
         open_by=raw.open_by,
         count=None
         if count is None

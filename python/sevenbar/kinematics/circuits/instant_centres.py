@@ -47,14 +47,14 @@ class InstantCentres(Printed):
         known = ", ".join(f"{a}-{b}" for a, b in self.centres)
         try:
             first, second = sorted(links)
-            found = self.centres.get((first, second))
+            result = self.centres.get((first, second))
         except (TypeError, ValueError):
             raise RequestError(f"links: {shown(links)} are no two links; give two of {known}") from None
-        if found is None:
+        if result is None:
             raise RequestError(
                 f"links: {shown(first)} and {shown(second)} have no centre; give two of {known}"
             )
-        return found
+        return result
 
     def __len__(self) -> int:
         return len(self.centres)
@@ -81,11 +81,11 @@ def instant_centres(
     """
     if in_plane(np.zeros(3)) is None:
         raise RequestError("instant_centres: the loop is not planar; its links have screw_axes()")
-    found = {}
+    result = {}
     for links in combinations(range(1, count + 1), 2):
         axes = screw_axes(*links)
         place = in_plane(axes.point)
         assert place is not None
         slides = np.where((axes.status == "translation")[:, None], axes.direction, np.nan)
-        found[links] = InstantCentre(links, axes.point, place, slides, axes.status)
-    return InstantCentres(found)
+        result[links] = InstantCentre(links, axes.point, place, slides, axes.status)
+    return InstantCentres(result)

@@ -31,8 +31,8 @@ class LongCircuit(Circuit):
     def of(empty: Circuit, tally: Tally, made: Callable[[], Circuit]) -> LongCircuit:
         """A circuit like one without rows, with a tally of those that `made` computes."""
         circuit = object.__new__(LongCircuit)
-        kept = {f.name: getattr(empty, f.name) for f in fields(Circuit) if f.name not in BY_ROW}
-        circuit.__dict__.update(kept, tally=tally, _made=made)
+        selected = {f.name: getattr(empty, f.name) for f in fields(Circuit) if f.name not in BY_ROW}
+        circuit.__dict__.update(selected, tally=tally, _made=made)
         return circuit
 
     def __getattr__(self, name: str) -> Any:

@@ -78,11 +78,11 @@ class OnePose(Printed):
 
     def point(self, link: int | str, at: Sequence[float] | None = None) -> Trace:
         """A point by its name, or of a link; see `Circuit.point`: a trace of one row."""
-        found = self._rows.point(link, at)
+        result = self._rows.point(link, at)
         rows = slice(self._row, self._row + 1)
         return Trace(
-            found.position[rows], found.velocity[rows], found.acceleration[rows], found.jerk[rows],
-            found.status[rows],
+            result.position[rows], result.velocity[rows], result.acceleration[rows], result.jerk[rows],
+            result.status[rows],
         )  # fmt: skip
 
     @cached_property
@@ -93,11 +93,11 @@ class OnePose(Printed):
     @cached_property
     def links(self) -> Mapping[int, LinkMotion]:
         """How each moving link turns, by its number, one row each: rotation and angular rates."""
-        rows, found = slice(self._row, self._row + 1), {}
+        rows, result = slice(self._row, self._row + 1), {}
         for link in self._linkage.graph.moving:
             whole = self._rows.link_motion(link)
-            found[link] = LinkMotion(whole.rotation[rows], whole.velocity[rows], whole.acceleration[rows])
-        return found
+            result[link] = LinkMotion(whole.rotation[rows], whole.velocity[rows], whole.acceleration[rows])
+        return result
 
     @property
     def transmission_angle(self) -> float | None:

@@ -104,11 +104,11 @@ def poses(linkage: Loop, q: Floats) -> Floats:
     That of the ground, the last link, is the report frame itself.
     """
     now = np.broadcast_to(linkage.base, (len(q), 4, 4))
-    found = []
+    result = []
     for joint, own, link in zip(linkage.joints[:-1], linkage.places[:-1], linkage.links, strict=True):
-        found.append(now @ joint.motion(q[:, own]))
-        now = product(found[-1], link)
-    return np.stack([*found, _standing(q)], axis=1)
+        result.append(now @ joint.motion(q[:, own]))
+        now = product(result[-1], link)
+    return np.stack([*result, _standing(q)], axis=1)
 
 
 def _standing(q: Floats) -> Floats:
@@ -118,12 +118,12 @@ def _standing(q: Floats) -> Floats:
 def _poses_back(linkage: Loop, q: Floats) -> Floats:
     """The same by the joints after each link, from the ground back."""
     now = linkage.ground @ inverse(linkage.joints[-1].motion(q[:, linkage.places[-1]]))
-    found = []
+    result = []
     last = len(linkage.links) - 1
     for i in range(last, -1, -1):
-        found.append(now @ inverse(linkage.links[i]))
-        now = found[-1] @ inverse(linkage.joints[i].motion(q[:, linkage.places[i]]))
-    return np.stack([*found[::-1], _standing(q)], axis=1)
+        result.append(now @ inverse(linkage.links[i]))
+        now = result[-1] @ inverse(linkage.joints[i].motion(q[:, linkage.places[i]]))
+    return np.stack([*result[::-1], _standing(q)], axis=1)
 
 
 def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:

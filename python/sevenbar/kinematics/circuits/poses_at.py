@@ -70,14 +70,14 @@ class PosesAt:
                 break
             # a circuit that closes after several turns has a pose on each
             turns = most
-        found = []
+        result = []
         for circuit in motion:
             for row in range(len(circuit.q)):
                 lap, place = divmod(row % len(inputs), len(step))
                 is_pose = lap < max(circuit.turns, 1) and place == 1
                 if is_pose and circuit.status[row] != "no-solution":
-                    found.append(_pose(linkage, motion, circuit, row, rate, acceleration))
-        return cls(linkage, motion, rate, acceleration, turns, tuple(found))
+                    result.append(_pose(linkage, motion, circuit, row, rate, acceleration))
+        return cls(linkage, motion, rate, acceleration, turns, tuple(result))
 
     def nearest(self, q: Floats, *, within: float = SAME_POSE) -> OnePose | None:
         """The pose nearest to joint values (columns,), `within` [rad, or relative to the size]; or `None`."""
@@ -142,11 +142,11 @@ def pose_near(
 ) -> OnePose:
     """The pose of a linkage that joint values (columns,) mean; raises `RequestError` where there is none."""
     value = float(q[linkage.input_column(input)])
-    found = PosesAt.of(linkage, value, input=input, speed=speed, acceleration=acceleration)
-    pose = found.nearest(q, within=NEAR_POSE)
+    result = PosesAt.of(linkage, value, input=input, speed=speed, acceleration=acceleration)
+    pose = result.nearest(q, within=NEAR_POSE)
     if pose is None:
         raise RequestError(
-            f"pose: no circuit has it, of {len(found.poses)} poses at this {found.motion.input}; give a row "
+            f"pose: no circuit has it, of {len(result.poses)} poses at this {result.motion.input}; give a row "
             "of assembly_modes() or of a circuit"
         )
     return pose
@@ -165,13 +165,13 @@ def pose_of(
     """The pose of a circuit at a value of the input, by its row `known`; see `Circuit.at`."""
     names = circuit.columns
     own = None if math.isnan(circuit.speed) else circuit.speed
-    found = PosesAt.of(
+    result = PosesAt.of(
         linkage, value,
         input=names[circuit.input_column], output=names[circuit.output_column],
         speed=own if speed is None else speed, acceleration=acceleration,
         known=float(circuit.q[known, circuit.input_column]),
     )  # fmt: skip
-    poses = found.along(circuit.q[known])
+    poses = result.along(circuit.q[known])
     if not poses:
         raise RequestError(f"at: circuit {circuit.index} has no pose there{_where(circuit)}")
     passes = [pose.branch for pose in poses]
@@ -182,7 +182,7 @@ def pose_of(
         which = "is missing" if branch is None else f"{shown(branch)} is no pass with this pose"
         raise RequestError(
             f"branch: {which}; circuit {circuit.index} is there on {len(poses)} of its passes between dead "
-            f"centres of {found.motion.input}; give {' or '.join(map(str, passes))}"
+            f"centres of {result.motion.input}; give {' or '.join(map(str, passes))}"
         )
     return poses[passes.index(branch)]
 

@@ -127,7 +127,7 @@ class TimedWalk:
         turns = self.linkage.turns(self.circuit.input_column)
         slack = SAME_INPUT * (1.0 if turns else self.circuit.size)
         last = len(self.path.rows) - 1
-        found: set[float] = set()
+        result: set[float] = set()
         for part in self.passes:
             low, high = sorted((float(part.input[0]), float(part.input[-1])))
             values = [value]
@@ -139,8 +139,8 @@ class TimedWalk:
                     row = part.row_of(min(max(met, low), high))
                     near = float(round(row))
                     row = near if abs(row - near) < SAME_ROW else row
-                    found.add(0.0 if row == last and self.circuit.closed else row)
-        return sorted(found)
+                    result.add(0.0 if row == last and self.circuit.closed else row)
+        return sorted(result)
 
     @cached_property
     def passes(self) -> tuple[Stretch, ...]:

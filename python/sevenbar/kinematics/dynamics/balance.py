@@ -78,9 +78,9 @@ def mount_of(linkage: Solvable, circuit: Circuit, link: int) -> Mount:
     if behind or first in standing:
         name = linkage.joints[second if behind else first].name
         directions = circuit.screw_axes(link).moving_direction
-        found = directions[np.isfinite(directions).all(axis=1)]
-        if len(found) and np.ptp(found * np.sign(found @ found[0])[:, None], axis=0).max() < 1e-9:
-            axis = triple("axis", found[0])
+        result = directions[np.isfinite(directions).all(axis=1)]
+        if len(result) and np.ptp(result * np.sign(result @ result[0])[:, None], axis=0).max() < 1e-9:
+            axis = triple("axis", result[0])
     pivot = triple("pivot", after if behind else before)
     return Mount(int(link), unit_shaking(linkage, circuit, link), pivot, axis, name)
 

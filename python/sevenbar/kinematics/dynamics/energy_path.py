@@ -59,11 +59,11 @@ class EnergyBuilder:
 
     def _solver(self, column: int) -> ForceSolver:
         if column not in self.solvers:
-            found = replace(self.solver, input=column)
+            result = replace(self.solver, input=column)
             # what does not depend on the input is worked out once
-            found.__dict__["numbers"] = self.numbers
-            found.__dict__["bodies"] = self.solver.bodies
-            self.solvers[column] = found
+            result.__dict__["numbers"] = self.numbers
+            result.__dict__["bodies"] = self.solver.bodies
+            self.solvers[column] = result
         return self.solvers[column]
 
     def breaks(self) -> Floats:
@@ -72,8 +72,8 @@ class EnergyBuilder:
         values: list[float] = []
         for load in self.solver.loading.loads:
             values += load.corners(turns=turns)
-        found = [self.path.places(value, turns=turns) for value in values]
-        return np.unique(np.concatenate([np.empty(0), *found]))
+        result = [self.path.places(value, turns=turns) for value in values]
+        return np.unique(np.concatenate([np.empty(0), *result]))
 
     def built(self) -> EnergyCourse:
         """The course of the circuit."""
@@ -116,9 +116,9 @@ class EnergyBuilder:
             if not len(todo):
                 break
         done.sort(key=lambda piece: piece[0])
-        found = Along(np.array([piece[0] for piece in done] + [length]), np.stack([p[2] for p in done]))
-        quantities = found.part(*range(5))
-        self.tangents = found.part(*range(5, width))
+        result = Along(np.array([piece[0] for piece in done] + [length]), np.stack([p[2] for p in done]))
+        quantities = result.part(*range(5))
+        self.tangents = result.part(*range(5, width))
         course = EnergyCourse(quantities, path.closed, breaks, 0.0, max(tail, path.tail))
         return replace(course, start=self._start(course, potentials))
 

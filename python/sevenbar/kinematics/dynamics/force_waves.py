@@ -77,10 +77,10 @@ def force_waves(solver: ForceSolver, circuit: Circuit) -> ForceWaves | None:
     count = len(circuit.input)
     rows = float(count)
     for stride in (2, 1) if count % 2 == 0 and count >= 2 * HALF else (1,):
-        found = _Waves(solver, circuit, circuit.speed, stride).found()
-        if not isinstance(found, float):
-            return found
-        rows = found
+        result = _Waves(solver, circuit, circuit.speed, stride).found()
+        if not isinstance(result, float):
+            return result
+        rows = result
     first, step = float(circuit.input[0]), float(circuit.input[1] - circuit.input[0])
     for _ in range(TIMES if circuit.turns == 1 else 0):
         if (1 + MORE) * rows > MOST:
@@ -88,10 +88,10 @@ def force_waves(solver: ForceSolver, circuit: Circuit) -> ForceWaves | None:
         finer = math.ceil((1 + MORE) * rows)
         inputs: Floats = first + step * count / finer * np.arange(finer, dtype=np.float64)
         anew = driven(solver.linkage, circuit, inputs, speed=circuit.speed)
-        found = _Waves(solver, anew, circuit.speed).found()
-        if not isinstance(found, float):
-            return found
-        rows = found
+        result = _Waves(solver, anew, circuit.speed).found()
+        if not isinstance(result, float):
+            return result
+        rows = result
     return None
 
 
@@ -175,14 +175,14 @@ class _Waves:
         ways = 1 + len(solver.loading.loads)
         poses = solver.numbers.poses(self.circuit.q[:: self.stride])
         factors = np.repeat(np.eye(ways)[:, 1:], count, axis=0)
-        found = solver.solved(
+        result = solver.solved(
             np.tile(inputs, ways), np.tile(poses, (ways, 1)), self._speeds(ways * count), factors=factors
         )
-        torque, energies = found[0].reshape(ways, count), found[2].reshape(ways, count, 3) * solver.size**2
+        torque, energies = result[0].reshape(ways, count), result[2].reshape(ways, count, 3) * solver.size**2
         supplied = energies[:, :, 2]
         torque[1:] -= torque[0]
         supplied[1:] -= supplied[0]
-        shaking = found[5][:count] * np.repeat([solver.size**2, solver.size], 3)
+        shaking = result[5][:count] * np.repeat([solver.size**2, solver.size], 3)
         return torque, energies[0, :, :2], supplied, shaking
 
     def _whole(self, parts: Floats, inputs: Floats) -> Floats:

@@ -227,8 +227,8 @@ def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest
     at_rest = truth("at_rest", at_rest)
     # rows without rates stay without
     speeds = np.where(np.isfinite(rows.rates), 0.0, np.nan) if at_rest else rows.rates
-    found = solver.solved(rows.input, rows.poses, speeds)
-    torque, spin, energies, wrenches, seats, shaking, free, *_ = found
+    result = solver.solved(rows.input, rows.poses, speeds)
+    torque, spin, energies, wrenches, seats, shaking, free, *_ = result
     size, metre = solver.size, LENGTHS[linkage.length_unit]
     if nothing_pulls(solver, speeds, energies[:, 0] * size**2, shaking[:, 3:] * size):
         # not the rounding of a linkage that takes nothing; rows without values keep none
@@ -329,12 +329,12 @@ def winds_up(circuit: Circuit, loading: Loading) -> bool:
 
 def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Floats) -> dict[str, Reaction]:
     """Each joint's reaction; components that the free wrenches (n, redundant, 6) leave open are NaN."""
-    size, found = solver.size, {}
+    size, result = solver.size, {}
     for i, joint in enumerate(solver.linkage.joints):
         axes, place = seats[:, i, :9].reshape(-1, 3, 3), seats[:, i, 9:]
         wrench = wrenches[:, i] * size
         known, determinate = _known(_in_seat(axes, place, free))
-        found[joint.name] = Reaction(
+        result[joint.name] = Reaction(
             joint=joint.name,
             kind=joint.kind,
             force=np.where(determinate[3:], wrench[:, 3:], np.nan),
@@ -346,7 +346,7 @@ def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Float
             known_values=np.einsum("nkj,nj->nk", known, wrench) if free.shape[1] else wrench,
             size=size,
         )
-    return found
+    return result
 
 
 def _in_seat(axes: Floats, place: Floats, wrenches: Floats) -> Floats:
@@ -381,7 +381,7 @@ def _spins(solver: ForceSolver, spin: Floats, reactions: Mapping[str, Reaction])
     """
     linkage = solver.linkage
     spun, *_ = linkage.held
-    found = {}
+    result = {}
     for ball in sorted(spun):
         column = linkage.places[ball].stop - 1
         reaction = reactions[linkage.joints[ball].name]
@@ -390,5 +390,5 @@ def _spins(solver: ForceSolver, spin: Floats, reactions: Mapping[str, Reaction])
         own = np.abs(spin[:, solver.numbers.held.index(column)])
         name = "coupler" if linkage.kind == "RSSR" else f"link {linkage.graph.moving_link(ball)}"
         known = bool(reaction.determinate[:3].all())
-        found[name] = np.linalg.norm(reaction.moment, axis=1) if known else own
-    return found
+        result[name] = np.linalg.norm(reaction.moment, axis=1) if known else own
+    return result

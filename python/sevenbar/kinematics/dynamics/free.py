@@ -74,12 +74,12 @@ def equilibria_of(
     energy = course.energy.driven_by(finite_number("torque", torque))
     if stretches is None or any(one.is_whole for one in stretches):
         begin = course.home if energy.winds else 0.0
-        found = []
+        result = []
         for place, kind, frequency, rate, end in resting_places(energy, begin):
             off = 0.0 if energy.winds else course.on_rows_lap(place) - place
-            found.append(_equilibrium(course, energy, (place + off, kind, frequency, rate, end + off)))
-        return tuple(found)
-    found = []
+            result.append(_equilibrium(course, energy, (place + off, kind, frequency, rate, end + off)))
+        return tuple(result)
+    result = []
     for one in stretches:
         own, begin = course.cut(energy, course.laid(one))
         inner = [_equilibrium(course, own, each, begin=begin) for each in resting_places(own)]
@@ -89,8 +89,8 @@ def equilibria_of(
             else []
             for place, stop, way in ((0.0, one.first_stop, -1), (own.length, one.last_stop, 1))
         )
-        found += [*first, *inner, *last]
-    return tuple(found)
+        result += [*first, *inner, *last]
+    return tuple(result)
 
 
 def _equilibrium(
@@ -124,8 +124,8 @@ def _on_stop(
     force = float(force_at(energy, place, np.array([time]), motor)[0])
     holding, unit = course.pushed(force, begin + place, stop)
     none = math.nan
-    found = _equilibrium(course, energy, (place, "on its stop", none, none, none), begin=begin)
-    return replace(found, stop=stop, holding=holding, holding_unit=unit)
+    result = _equilibrium(course, energy, (place, "on its stop", none, none, none), begin=begin)
+    return replace(result, stop=stop, holding=holding, holding_unit=unit)
 
 
 def free_motion_of(

@@ -77,23 +77,23 @@ class CourseRows:
         known = np.isfinite(inside)
         inside = np.where(known, inside, 0.0)
         q = self.columns.at(inside) + laps[:, None] * self.gain
-        found = _by_time([q, *self._slopes(inside)], rates)
+        result = _by_time([q, *self._slopes(inside)], rates)
         piece = np.clip(np.searchsorted(path.poses.edges, inside, "right") - 1, 0, len(self._undefined) - 1)
-        for values in found:
+        for values in result:
             values[self._undefined[piece]] = np.nan
             values[~known] = np.nan
-        return found
+        return result
 
     def _slopes(self, inside: Floats) -> list[Floats]:
         first = self.columns.slope
-        found = [first.at(inside), first.slope.at(inside), first.slope.slope.at(inside)]
+        result = [first.at(inside), first.slope.at(inside), first.slope.slope.at(inside)]
         exact = self.builder.tangents
         if exact is not None:
             # those of the core, which lose a derivative less
             smooth = self.builder.smooth
-            for values, own in zip(found, (exact, exact.slope, exact.slope.slope), strict=True):
+            for values, own in zip(result, (exact, exact.slope, exact.slope.slope), strict=True):
                 values[:, smooth] = own.at(inside)
-        return found
+        return result
 
     def trace(
         self, place: Floats, rates: tuple[Floats, Floats, Floats], status: Words, link: int, at: Floats
@@ -111,10 +111,10 @@ class CourseRows:
         inside = np.where(known, inside, 0.0)
         first = along.slope
         derived = [along.at(inside), first.at(inside), first.slope.at(inside), first.slope.slope.at(inside)]
-        found = _by_time(derived, rates)
-        for values in found:
+        result = _by_time(derived, rates)
+        for values in result:
             values[~known] = np.nan
-        return Trace(*found, status)
+        return Trace(*result, status)
 
 
 def _by_time(

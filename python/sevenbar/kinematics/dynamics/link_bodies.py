@@ -42,12 +42,12 @@ def resolved(loading: Loading, linkage: Solvable, *, circuit: int = 0) -> dict[i
     metre = LENGTHS[linkage.length_unit]
     # drawn at the first body that is
     solids = cache(partial(_drawn, linkage, circuit))
-    found = {}
+    result = {}
     for link, bodies in loading.bodies.items():
         refuse_no_link("bodies", link, linkage)
         if bodies:
-            found[link] = as_one([_worked_out(body, link, linkage, solids) for body in bodies], metre)
-    return found
+            result[link] = as_one([_worked_out(body, link, linkage, solids) for body in bodies], metre)
+    return result
 
 
 def as_moved(linkage: Solvable, bodies: Mapping[int, Body]) -> dict[int, Body]:
@@ -155,11 +155,11 @@ def joint_places(linkage: Loop, link: int) -> tuple[Floats, Floats]:
 def _drawn(linkage: Loop, circuit: int) -> dict[int, Body]:
     """The solids of each moving link as exports draw them, of steel."""
     export: Any = importlib.import_module(DRAWN_IN["bodies"])
-    metre, found = LENGTHS[linkage.length_unit], {}
+    metre, result = LENGTHS[linkage.length_unit], {}
     for link, (mass, centre, inertia) in enumerate(export.drawn_bodies(linkage, circuit), 1):
         back = inverse(linkage.point_frames[link - 1])
         turn = back[:3, :3]
         place = turn @ centre + back[:3, 3]
         tensor = metre**2 * turn @ inertia @ turn.T
-        found[link] = Body(mass, triple("centre", place), (tensor + tensor.T) / 2)
-    return found
+        result[link] = Body(mass, triple("centre", place), (tensor + tensor.T) / 2)
+    return result

@@ -38,8 +38,8 @@ def loaded(linkage: L, **acting: Any) -> L:
             tables["load"] = [_load(load, linkage) for load in given.loads]
         if acting["springs"] is not None:
             tables["spring"] = [_spring(spring, linkage) for spring in given.springs]
-    kept = {key: value for key, value in (dict(linkage.description) | tables).items() if value != []}
-    return replace(linkage, loading=given, description=kept)
+    selected = {key: value for key, value in (dict(linkage.description) | tables).items() if value != []}
+    return replace(linkage, loading=given, description=selected)
 
 
 def loading_with(
@@ -66,15 +66,15 @@ def loading_with(
     )
     for i, load in enumerate(given.loads):
         refuse_no_link(f"loads[{i}]", load.link, linkage)
-    found = []
+    result = []
     for i, spring in enumerate(given.springs):
         for link in spring.links or ():
             refuse_no_link(f"springs[{i}]", link, linkage, or_ground=True)
         if spring.joint is not None:
             column = linkage.column(spring.joint, f"springs[{i}].joint")
             spring = replace(spring, joint=linkage.columns[column])
-        found.append(spring)
-    return replace(given, springs=tuple(found))
+        result.append(spring)
+    return replace(given, springs=tuple(result))
 
 
 def _body(link: int, body: Body, mass_unit: str, linkage: Loop) -> dict[str, Any]:

@@ -41,8 +41,8 @@ def parts_of(
     path = covered_path(solver.linkage, circuit, solver.numbers)
     used = used_stretch(solver.linkage, circuit, path, solver.numbers, stretches)
     alone = len(stretches) == 1
-    found = [_Part(solver, circuit, path, one, alone, at_rest).forces(whole) for one in stretches]
-    return tuple(found), 0 if used is None else used[0]
+    result = [_Part(solver, circuit, path, one, alone, at_rest).forces(whole) for one in stretches]
+    return tuple(result), 0 if used is None else used[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,10 +158,10 @@ class _Part:
         near = closed_on(self.path, self.solver.numbers, pieces, places)
         if self.path.closed:
             near = near + (gain != 0)[:, None] * self.path.gain
-        found = self.solver.loop.closed(inputs, near)
-        lost = ~np.isfinite(found).all(axis=1)
-        found[lost] = near[lost]
-        return np.asarray(found)
+        result = self.solver.loop.closed(inputs, near)
+        lost = ~np.isfinite(result).all(axis=1)
+        result[lost] = near[lost]
+        return np.asarray(result)
 
     def _at(self, inputs: Floats, branch: int) -> Forces:
         """The forces at inputs (n,) on it."""

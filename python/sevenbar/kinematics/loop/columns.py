@@ -54,14 +54,14 @@ def joint_columns(
     Slides are multiplied by `scale`, which makes the unit `length` of them; angles are in `angle`, "deg" or
     "rad".
     """
-    found: dict[str, Floats] = {}
+    result: dict[str, Floats] = {}
     for order, values in enumerate(rates):
         for column, own in zip(linkage.each_column, values.T, strict=True):
             slides = not column.turns
             head = joint_column(column.name, slides=slides, order=order, length=length, angle=angle)
             scaled = own * scale if slides else own
-            found[head] = np.degrees(scaled) if head.endswith("_deg") else scaled
-    return found
+            result[head] = np.degrees(scaled) if head.endswith("_deg") else scaled
+    return result
 
 
 def point_column(name: str, axis: str, *, order: int, length: str, who: str = "") -> str:

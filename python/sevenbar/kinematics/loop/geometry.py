@@ -98,15 +98,15 @@ class Joint:
 
     def steps(self, q: Floats) -> list[tuple[Step, Floats]]:
         """Each step, and its values (n,) [rad, or length] from those of the joint's columns (n, columns)."""
-        found: list[tuple[Step, Floats]] = []
+        result: list[tuple[Step, Floats]] = []
         column = 0
         for step in self.row.steps:
             if step.driven:
-                found.append((step, self.advance * found[-1][1]))
+                result.append((step, self.advance * result[-1][1]))
             else:
-                found.append((step, q[:, column]))
+                result.append((step, q[:, column]))
                 column += 1
-        return found
+        return result
 
     def before(self, step: Step) -> Floats:
         """The fixed transform (4, 4) before a step."""
@@ -313,12 +313,12 @@ class Loop(Drawable):
     @cached_property
     def each_column(self) -> tuple[Column, ...]:
         """All columns, each with its name, kind, unit and joint."""
-        found: list[Column] = []
+        result: list[Column] = []
         for number, joint in enumerate(self.joints):
             for name, kind in zip(joint.columns, joint.row.freedoms, strict=True):
                 unit = "rad" if kind == "turn" else self.length_unit
-                found.append(Column(len(found), name, kind, unit, number, not joint.row.is_ball))
-        return tuple(found)
+                result.append(Column(len(result), name, kind, unit, number, not joint.row.is_ball))
+        return tuple(result)
 
     def column_of(self, column: int | str) -> Column:
         """A column by its number or name; `RequestError` for what is neither."""
@@ -336,9 +336,9 @@ class Loop(Drawable):
     @cached_property
     def drawn_pose(self) -> Floats:
         """What the columns (columns,) read in the pose that is drawn [rad, or length]; 0 of other forms."""
-        found = np.array([self.joints[column.joint].value for column in self.each_column])
-        found.setflags(write=False)
-        return found
+        result = np.array([self.joints[column.joint].value for column in self.each_column])
+        result.setflags(write=False)
+        return result
 
     @cached_property
     def column_kinds(self) -> tuple[Freedom, ...]:

@@ -79,18 +79,18 @@ class Graph:
     @cached_property
     def tree(self) -> tuple[int, ...]:
         """Joints that lead from the ground to each moving link once, in order outwards."""
-        reached, found, waiting = {self.ground}, list[int](), [self.ground]
+        reached, result, waiting = {self.ground}, list[int](), [self.ground]
         while waiting:
             for joint in sorted(self.joints_of(waiting[-1])):
                 ahead = set(self.between[joint]) - reached
                 if ahead:
                     reached |= ahead
-                    found.append(joint)
+                    result.append(joint)
                     waiting += ahead
                     break
             else:
                 waiting.pop()
-        return tuple(found)
+        return tuple(result)
 
     @property
     def closing(self) -> tuple[int, ...]:

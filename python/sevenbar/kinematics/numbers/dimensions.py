@@ -106,7 +106,7 @@ def description_of(linkage: Loop) -> Mapping[str, Any]:
 def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimension, ...]:
     """Every number of a linkage's description that can be changed, in the order of the file."""
     length, angle = linkage.length_unit, str(description.get("angle_unit", "deg"))
-    found: list[Dimension] = []
+    result: list[Dimension] = []
     for key in ("M", "N", "L1", "L2", "L3", "D") if linkage.form == "rssr" else ():
         given = description["rssr"].get(key)
         value = linkage.dimensions[key] if given is None else float(given)
@@ -114,7 +114,7 @@ def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimens
         follows = given is None and key == "L2"
         place = ("rssr", key)
         positive = key[0] == "L"
-        found.append(Dimension(key, place, key, "dimensions", length, value, positive, follows))
+        result.append(Dimension(key, place, key, "dimensions", length, value, positive, follows))
     units = {"twist": angle, "angle": angle, "pitch": f"{length}/turn"}
     joints = linkage.joints
     for i, row in enumerate(description.get("link", ())):
@@ -122,25 +122,25 @@ def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimens
         for key in joints[i].row.row_keys:
             unit = units.get(key, length)
             value = float(row.get(key, 0.0))
-            found.append(Dimension(f"{key}_{i + 1}", ("link", i, key), key, group, unit, value))
+            result.append(Dimension(f"{key}_{i + 1}", ("link", i, key), key, group, unit, value))
     for i, table in enumerate(description.get("joint", ())):
-        found += _of_drawn(i, table, joints[i], length)
-    found += (d for d in lengths_of(description, linkage) if LONGER in description["joint"][d.place[1]])
+        result += _of_drawn(i, table, joints[i], length)
+    result += (d for d in lengths_of(description, linkage) if LONGER in description["joint"][d.place[1]])
     letters = "uvw" if linkage.in_rows else "xyz"
     for i, table in enumerate(description.get("point", ())):
         name = table["name"]
-        found += _vector(("point", i, "at"), table["at"], letters, (name, f"point {name}"), length)
+        result += _vector(("point", i, "at"), table["at"], letters, (name, f"point {name}"), length)
     speed = f"{linkage.unit_of(linkage.drive.joint)}/s"
-    found.append(Dimension("speed", ("drive", "speed"), "speed", "drive", speed, linkage.drive.speed))
+    result.append(Dimension("speed", ("drive", "speed"), "speed", "drive", speed, linkage.drive.speed))
     # a point may have the name of a joint
-    taken = Counter(dimension.name for dimension in found)
-    return tuple(replace(d, name=d.key) if taken[d.name] > 1 else d for d in found)
+    taken = Counter(dimension.name for dimension in result)
+    return tuple(replace(d, name=d.key) if taken[d.name] > 1 else d for d in result)
 
 
 def lengths_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimension, ...]:
     """The length of each moving link of a drawing, whether or not the file says that it is longer."""
     tables = description.get("joint", ())
-    found = []
+    result = []
     for i, name in enumerate(link_names(linkage)[: len(tables)]):
         drawn = drawn_length(tables, i)
         # without the rounding of a sum
@@ -149,8 +149,8 @@ def lengths_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimension
         one = Dimension(
             name.replace(" ", "_"), place, name, group, linkage.length_unit, value, positive=True, drawn=drawn
         )
-        found.append(one)
-    return tuple(found)
+        result.append(one)
+    return tuple(result)
 
 
 def check_apart(option: str, dimensions: Sequence[Dimension]) -> None:
@@ -175,32 +175,32 @@ def masses_of(description: Mapping[str, Any]) -> tuple[Dimension, ...]:
     bodies = description.get("body", ())
     unit = str(description.get("forces", {}).get("mass_unit", "kg"))
     alone = Counter(body["link"] for body in bodies)
-    found = []
+    result = []
     for i, body in enumerate(bodies):
         if "mass" in body:
             name, group = f"mass_{body['link']}", f"body of link {body['link']}"
             one = Dimension(
                 name, ("body", i, "mass"), "mass", group, unit, float(body["mass"]), positive=True
             )
-            found.append(one if alone[body["link"]] == 1 else replace(one, name=one.key))
-    return tuple(found)
+            result.append(one if alone[body["link"]] == 1 else replace(one, name=one.key))
+    return tuple(result)
 
 
 def _of_drawn(index: int, table: Mapping[str, Any], joint: Joint, length: str) -> list[Dimension]:
     """The numbers of a joint as drawn."""
     place = ("joint", index)
     whose = (joint.name, f"{joint.name} ({joint.kind})")
-    found = _vector((*place, "at"), table["at"], "xyz", whose, length)
+    result = _vector((*place, "at"), table["at"], "xyz", whose, length)
     if "axis" in table:
-        found += _vector((*place, "axis"), table["axis"], ("axis x", "axis y", "axis z"), whose, "")
+        result += _vector((*place, "axis"), table["axis"], ("axis x", "axis y", "axis z"), whose, "")
     for which, axis in enumerate(table.get("axes", ())):
         letters = [f"axis {which + 1} {letter}" for letter in "xyz"]
-        found += _vector((*place, "axes", which), axis, letters, whose, "")
+        result += _vector((*place, "axes", which), axis, letters, whose, "")
     if "pitch" in table:
         name, group = whose
         unit, pitch = f"{length}/turn", float(table["pitch"])
-        found.append(Dimension(f"{name}.pitch", (*place, "pitch"), "pitch", group, unit, pitch))
-    return found
+        result.append(Dimension(f"{name}.pitch", (*place, "pitch"), "pitch", group, unit, pitch))
+    return result
 
 
 def _vector(

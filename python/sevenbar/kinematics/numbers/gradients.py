@@ -57,13 +57,13 @@ def measure_slopes(
     With `names` those that these need, and others perhaps.
     """
     loop = numbers.loop(circuit.input_column)
-    found = list(_extremes(loop, circuit, speed, names))
+    result = list(_extremes(loop, circuit, speed, names))
     if names is None:
-        found += _limits(numbers, circuit)
+        result += _limits(numbers, circuit)
     opening = loop.opening(circuit)
-    for one in found:
+    for one in result:
         one.slopes[opening] = np.nan
-    return tuple(found)
+    return tuple(result)
 
 
 def _apart(values: Floats, turns: bool) -> Floats:
@@ -129,8 +129,8 @@ def _rates_at(
     column = circuit.output_column
     q = poses_at(loop, circuit, at)
     here = loop.slopes(q, 3)
-    found = np.column_stack([q[:, column], here.rates[:, :, column]]) * speed ** np.arange(4)
-    apart = np.abs(_apart(found[:, order] - value, bool(order == 0 and loop.numbers.turns[column])))
+    result = np.column_stack([q[:, column], here.rates[:, :, column]]) * speed ** np.arange(4)
+    apart = np.abs(_apart(result[:, order] - value, bool(order == 0 and loop.numbers.turns[column])))
     rows = (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)[order][:, column]
     best = nearest(apart, float(np.nanmax(np.abs(rows), initial=0.0)))
     if best is None:
@@ -138,7 +138,7 @@ def _rates_at(
     slopes = here.by_number[best, :, :, column] * speed ** np.arange(4.0)[:, None]
     if order:
         return _Here(slopes, np.full(slopes.shape[1], np.nan))
-    return _Here(slopes, -slopes[1] / found[best, 2] * speed)
+    return _Here(slopes, -slopes[1] / result[best, 2] * speed)
 
 
 def _limits(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
@@ -162,8 +162,8 @@ def poses_at(loop: NumberedLoop, circuit: Circuit, value: float) -> Floats:
     size = np.where(np.isfinite(circuit.q).all(axis=1), np.abs(apart), np.nan)
     nearest = np.sort(np.argsort(size, kind="stable")[: min(NEAREST, np.isfinite(size).sum())])
     q = loop.numbers.poses(circuit.q[nearest])
-    found = loop.closed(q[:, loop.input] + apart[nearest], q)
-    return np.asarray(found[np.isfinite(found).all(axis=1)])
+    result = loop.closed(q[:, loop.input] + apart[nearest], q)
+    return np.asarray(result[np.isfinite(result).all(axis=1)])
 
 
 def nearest(apart: Floats, size: float = 1.0) -> int | None:

@@ -69,10 +69,10 @@ class _Damped:
 
     def step(self, sides: Floats) -> Floats:
         """The step (k,) by which the residuals change as nearly as may be by sides (r,)."""
-        found = np.zeros(len(self._free))
+        result = np.zeros(len(self._free))
         along = np.linalg.solve(self._triangle, self._basis[: len(sides)].T @ sides)
-        found[self._free] = along / self._scale
-        return found
+        result[self._free] = along / self._scale
+        return result
 
     def bent(self, ahead: Floats | None, left: Floats, step: Floats) -> Floats:
         """A step with its second order, which follows a valley that bends; without it where it is large.

@@ -65,10 +65,10 @@ def axis_at(kinds: Sequence[str], link: int) -> tuple[int, int] | None:
 def drawn_length(joints: Sequence[Mapping[str, Any]], link: int) -> float:
     """How long a link, counted from 0, is drawn."""
     line = _line(joints, link)
-    found = axis_at([joint["kind"] for joint in joints], link)
-    if found is None:
+    result = axis_at([joint["kind"] for joint in joints], link)
+    if result is None:
         return math.hypot(*line)
-    return math.hypot(*cross(unit(_axis(joints, *found)), line))
+    return math.hypot(*cross(unit(_axis(joints, *result)), line))
 
 
 def reached(joints: Sequence[Mapping[str, Any]], link: int) -> tuple[float, float, float]:
@@ -99,8 +99,8 @@ def across(joints: Sequence[Mapping[str, Any]]) -> dict[int, Floats]:
 def _axis(joints: Sequence[Mapping[str, Any]], joint: int, which: int) -> Sequence[float]:
     """An axis of a joint as drawn."""
     table = joints[joint]
-    found: Sequence[float] = table["axes"][which] if "axes" in table else table["axis"]
-    return found
+    result: Sequence[float] = table["axes"][which] if "axes" in table else table["axis"]
+    return result
 
 
 def _line(joints: Sequence[Mapping[str, Any]], link: int) -> Floats:

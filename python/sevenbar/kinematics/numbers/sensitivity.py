@@ -232,8 +232,8 @@ class NumberedLoop:
         start = q / scales
         start[:, self.numbers.held] = 0.0
         own = None if designs is None else designs - self.numbers.drawn
-        found, sides = self.core.follow(start, inputs, own, scaled)
-        return found * scales, sides
+        result, sides = self.core.follow(start, inputs, own, scaled)
+        return result * scales, sides
 
     def opening(self, circuit: Circuit) -> Booleans:
         """Which numbers (k,) cannot change alone without opening the loop, on the rows of a circuit."""
@@ -252,7 +252,7 @@ class NumberedLoop:
         """
         begin = q[:, self.input]
         way = np.broadcast_to(np.asarray(x, dtype=np.float64), begin.shape) - begin
-        found = np.full(q.shape, np.nan)
+        result = np.full(q.shape, np.nan)
         left = np.flatnonzero(np.isfinite(q).all(axis=1) & np.isfinite(way))
         for parts in PARTS:
             if not left.size:
@@ -264,9 +264,9 @@ class NumberedLoop:
                 at = loop.followed(begin[left] + share * way[left], at, designs)[0][0]
                 if p_here is not None and parts > 1:
                     loop = NumberedLoop(self.numbers, self.input, p_here, ())
-            found[left] = at
+            result[left] = at
             left = left[~np.isfinite(at).all(axis=1)]
-        return found
+        return result
 
     def places(self, q: Floats) -> Floats:
         """The points (n, points, 3) at poses q (n, columns)."""

@@ -129,12 +129,12 @@ class Word:
     def fixed(self) -> tuple[Product, ...]:
         """The F of (1), one more than there are steps."""
         outer = [*self.links, self.ground.back]
-        found = [self.base]
+        result = [self.base]
         for freedoms, inside, behind in zip(self.freedoms, self.inner, outer, strict=True):
             parts = inside or (Product(),) * (len(freedoms) + 1)
-            found[-1] = found[-1] + parts[0]
-            found += [*parts[1:-1], parts[-1] + behind]
-        return tuple(found)
+            result[-1] = result[-1] + parts[0]
+            result += [*parts[1:-1], parts[-1] + behind]
+        return tuple(result)
 
     def carrier(self, link: int) -> tuple[int, Product]:
         """The steps before a link, counted from 1, and the frame there in which its points are written."""
@@ -325,11 +325,11 @@ def _longer(kinds: Sequence[str], slots: Slots, link: int) -> Product:
     if place not in slots:
         return Product()
     line = [slots.three(("joint", i, "at")) for i in (link, link + 1)]
-    found = axis_at(kinds, link)
-    if found is None:
+    result = axis_at(kinds, link)
+    if result is None:
         frame = Product.held(line, 2, None, slots.across[link])
     else:
-        joint, which = found
+        joint, which = result
         frame = Product.held(line, 2, _axes(kinds, slots, joint)[which], np.zeros(3))
     # its z runs against the line
     return frame + slots.slide(2, place).back + frame.back
@@ -368,9 +368,9 @@ def _turns_of_spun(
 
 def points_of(form: Form, word: Word, description: Mapping[str, Any], kind: str) -> list[Carried]:
     """The points of a linkage: the balls A and B of an RSSR, then those of its description."""
-    found: list[Carried] = []
+    result: list[Carried] = []
     if form == "rssr":
-        found += [
+        result += [
             Carried(1, word.slots.slide(0, ("rssr", "L1"))),
             Carried(len(word.steps) - 1, Product()),
         ]
@@ -378,7 +378,7 @@ def points_of(form: Form, word: Word, description: Mapping[str, Any], kind: str)
         # the crank may be longer than drawn
         steps, frame = word.carrier(1)
         ball = word.slots.three(("joint", 1, "at"))
-        found.append(Carried(steps, frame + _longer(kind, word.slots, 0), ball))
-        found.append(word.point(3, ("joint", 2, "at")))
+        result.append(Carried(steps, frame + _longer(kind, word.slots, 0), ball))
+        result.append(word.point(3, ("joint", 2, "at")))
     tables = enumerate(description.get("point", ()))
-    return found + [word.point(int(table["link"]), ("point", i, "at")) for i, table in tables]
+    return result + [word.point(int(table["link"]), ("point", i, "at")) for i, table in tables]

@@ -107,11 +107,11 @@ class CircuitPath:
             return self.poses.crossings(self.input, value, self.input_marks, touch)
         first = math.ceil((heights.min() - value) / math.tau - APART)
         last = math.floor((heights.max() - value) / math.tau + APART)
-        found = [
+        result = [
             self.poses.crossings(self.input, value + math.tau * k, self.input_marks, touch)
             for k in range(first, last + 1)
         ]
-        places = np.unique(np.concatenate(found)) if found else np.empty(0)
+        places = np.unique(np.concatenate(result)) if result else np.empty(0)
         # an edge that is a dead centre up to rounding is one place
         places = places[np.diff(places, prepend=-np.inf) > HAS * self.length]
         if self.closed and places.size > 1 and places[-1] - places[0] > self.length * (1 - APART):
@@ -173,7 +173,7 @@ class PathBuilder:
                 volumes[mine] = np.abs(sides) / np.abs(inner[mine, k])
         chords = self.chords[1:-1]
         volumes = np.where(np.isfinite(volumes), volumes, 0.0)
-        found = []
+        result = []
         least = NEAR_CHANGE_POINT * volumes.max()
         for j in range(1, len(volumes) - 1):
             if volumes[j] > least or volumes[j] > volumes[j - 1] or volumes[j] >= volumes[j + 1]:
@@ -181,8 +181,8 @@ class PathBuilder:
             a, b, c = volumes[j - 1 : j + 2]
             # zero along a line from either side
             low, high = chords[j - 1], chords[j + 1]
-            found.append(float((low * c + high * a) / (a + c)) if b > 0.1 * min(a, c) else float(chords[j]))
-        places = np.array(found)
+            result.append(float((low * c + high * a) / (a + c)) if b > 0.1 * min(a, c) else float(chords[j]))
+        places = np.array(result)
         if not self.circuit.closed:
             return places
         return np.unique(np.round(places % self.lap, 9)) if places.size else places
@@ -212,9 +212,9 @@ class PathBuilder:
         done: list[tuple[float, int, float, Floats]] = []
         for division in range(DIVISIONS + 1):
             charts = [self._driver(a, b) for a, b in todo]
-            found = self._pieces(todo, charts)
+            result = self._pieces(todo, charts)
             rough: list[tuple[float, float]] = []
-            for (a, b), column, piece in zip(todo, charts, found, strict=True):
+            for (a, b), column, piece in zip(todo, charts, result, strict=True):
                 last = division == DIVISIONS
                 if piece is None and last:
                     raise NotFollowedError(
@@ -275,9 +275,9 @@ class PathBuilder:
         for column in {column for column, _ in wanted if column >= 0}:
             mine = [i for i, (own, _) in enumerate(wanted) if own == column]
             start = np.concatenate([wanted[i][1] for i in mine])
-            found = self.numbers.driven(column).closed(start[:, column], start)
+            result = self.numbers.driven(column).closed(start[:, column], start)
             counts = np.cumsum([len(wanted[i][1]) for i in mine])[:-1]
-            for i, part in zip(mine, np.split(found, counts), strict=True):
+            for i, part in zip(mine, np.split(result, counts), strict=True):
                 out[i] = part
         return out
 
@@ -308,7 +308,7 @@ class PathBuilder:
             start = np.column_stack([np.interp(at, x[order], near[order, c]) for c in range(near.shape[1])])
             starts.append((charts[i], start))
             kept.append(i)
-        found: list[tuple[float, Floats] | None] = [None] * len(todo)
+        result: list[tuple[float, Floats] | None] = [None] * len(todo)
         poses = self._closed(starts)
         whole = [k for k, own in enumerate(poses) if np.isfinite(own).all()]
         if whole:
@@ -316,8 +316,8 @@ class PathBuilder:
             both = np.array([[ends[x] for x in todo[i]] for i in mine])
             pieces = self._by_length(np.stack([poses[k] for k in whole]), [charts[i] for i in mine], both)
             for i, piece in zip(mine, zip(*pieces, strict=True), strict=True):
-                found[i] = float(piece[0]), piece[1]
-        return found
+                result[i] = float(piece[0]), piece[1]
+        return result
 
     def _by_length(self, poses: Floats, drivers: list[int], ends: Floats) -> tuple[Floats, Floats]:
         """Pieces by their drivers' values (m, terms, columns) as ones by arc length: lengths and series.

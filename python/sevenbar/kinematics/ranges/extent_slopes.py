@@ -55,14 +55,14 @@ def extent_slopes(
     for name in names:
         kind, _, joint = name.partition(":")
         if kind == "range":
-            found = _of_range(course, numbers, name, linkage.column(joint, "measure"))
+            result = _of_range(course, numbers, name, linkage.column(joint, "measure"))
         elif kind == "ball_angle":
-            found = _of_bend(course, numbers, name, joint)
+            result = _of_bend(course, numbers, name, joint)
         else:
-            found = _of_clearance(course, numbers, name) if name == "clearance" else None
-        if found is not None:
-            found.slopes[numbers.loop(circuit.input_column).opening(circuit)] = np.nan
-            yield found
+            result = _of_clearance(course, numbers, name) if name == "clearance" else None
+        if result is not None:
+            result.slopes[numbers.loop(circuit.input_column).opening(circuit)] = np.nan
+            yield result
 
 
 def stopped_measures(numbers: Numbers) -> list[str]:
@@ -131,8 +131,8 @@ def _multipliers(directions: Floats, axis: Floats) -> Floats | None:
     if (sines < KINK).any():
         return None
     ways = (directions - cosines[:, None] * axis) / sines[:, None]
-    found, rest = nnls(np.vstack([ways.T, np.ones(len(ways))]), np.array([0.0, 0.0, 0.0, 1.0]))
-    return found if rest < BALANCED else None
+    result, rest = nnls(np.vstack([ways.T, np.ones(len(ways))]), np.array([0.0, 0.0, 0.0, 1.0]))
+    return result if rest < BALANCED else None
 
 
 def _arms(numbers: Numbers, place: int, given: Mapping[str, tuple[float, ...] | None]) -> list[Carried]:

@@ -109,14 +109,14 @@ class JointCourse:
         places = np.concatenate([[0.0], one.stationary(0), [self.path.length]])
         values = one.at(places)[:, 0]
         alike = ALIKE * max(1.0, float(np.abs(values).max()))
-        found = []
+        result = []
         for best in (values.min(), values.max()):
             # of places alike up to rounding the one at the lowest input
             same = places[np.abs(values - best) <= alike]
             inputs = [self.input_at(float(s)) for s in same]
             first = int(np.argmin(inputs))
-            found.append((float(same[first]), Peak(float(best), inputs[first])))
-        return found[0], found[1]
+            result.append((float(same[first]), Peak(float(best), inputs[first])))
+        return result[0], result[1]
 
     def bends(self, curve: Along, axis: Floats) -> tuple[tuple[float, Peak], tuple[float, Peak]]:
         """The least and the greatest angle [rad] of a curve of directions from an axis, with their places."""

@@ -132,14 +132,14 @@ def reaches(way: TimedWalk) -> tuple[Reach, ...]:
         )
         return next(met, (float(inside), names))
 
-    found = []
+    result = []
     for first, past in _runs(free, closed=way.circuit.closed):
         # a run over the end of a closed circuit is counted on from there
         over = last if past - 1 > last else 0
         low, first_stop = end(first, first - 1)
         high, last_stop = end(past - 1 - over, past - over)
-        found.append(Reach(way, low, high + over, first_stop, last_stop))
-    return tuple(found)
+        result.append(Reach(way, low, high + over, first_stop, last_stop))
+    return tuple(result)
 
 
 def used_reach(way: TimedWalk) -> Reach | None:
@@ -147,12 +147,12 @@ def used_reach(way: TimedWalk) -> Reach | None:
 
     `None` where no stop ends the walk. The same rule as `used_stretch` of its path.
     """
-    found = reaches(way)
+    result = reaches(way)
     for home in (drawn_row(way), 0.0):
-        for one in found:
+        for one in result:
             if home is not None and one.holds(home):
                 return one
-    return found[0] if found else None
+    return result[0] if result else None
 
 
 def drawn_row(way: TimedWalk) -> float | None:

@@ -37,10 +37,10 @@ def stopped(
         own.cones if cones is None else _cones(linkage, cones),
         own.radii if radii is None else _radii(linkage, radii),
     )
-    kept = {key: value for key, value in linkage.description.items() if key not in ("stop", "rod")}
+    selected = {key: value for key, value in linkage.description.items() if key not in ("stop", "rod")}
     if linkage.description:
-        kept |= {key: rows for key, rows in tables_of(linkage, given).items() if rows}
-    return replace(linkage, stops=given, description=kept)
+        selected |= {key: rows for key, rows in tables_of(linkage, given).items() if rows}
+    return replace(linkage, stops=given, description=selected)
 
 
 def tables_of(linkage: Loop, stops: Stops) -> dict[str, list[dict[str, Any]]]:
@@ -60,7 +60,7 @@ def tables_of(linkage: Loop, stops: Stops) -> dict[str, list[dict[str, Any]]]:
 
 
 def _ranges(linkage: Loop, given: Ranges) -> dict[str, tuple[float, float]]:
-    found = {}
+    result = {}
     for name, ends in given.items():
         key = f"ranges[{shown(name)}]"
         column = linkage.column(name, key)
@@ -69,28 +69,28 @@ def _ranges(linkage: Loop, given: Ranges) -> dict[str, tuple[float, float]]:
         if not several or getattr(ends, "ndim", 1) != 1 or len(ends) != 2:
             raise RequestError(f"{key}: {shown(ends)} is not a range; give two values, low and high")
         low, high = (finite_number(key, given_number(key, end, unit)) for end in ends)  # type: ignore[arg-type]
-        found[linkage.columns[column]] = check_range(key, low, high, turns=unit == "rad")
-    return found
+        result[linkage.columns[column]] = check_range(key, low, high, turns=unit == "rad")
+    return result
 
 
 def _cones(linkage: Loop, given: Cones) -> dict[str, Cone]:
-    found = {}
+    result = {}
     for name, cone in given.items():
         place = joint_at(linkage, name)
         if not isinstance(cone, Cone):
             key = f"cones[{shown(name)}]"
             cone = Cone(finite_number(key, given_number(key, cone, "rad")))  # type: ignore[arg-type]
-        found[linkage.joints[place].name] = cone
-    return found
+        result[linkage.joints[place].name] = cone
+    return result
 
 
 def _radii(linkage: Loop, given: Radii) -> dict[int, float]:
-    found = {}
+    result = {}
     for link, radius in given.items():
         refuse_no_link("radii", link, linkage, or_ground=True)
         key = f"radii[{link}]"
         value = finite_number(key, given_number(key, radius, linkage.length_unit))  # type: ignore[arg-type]
         if value <= 0:
             raise RequestError(f"{key}: {shown(radius)} is not a radius; give a number > 0")
-        found[int(link)] = value
-    return found
+        result[int(link)] = value
+    return result

@@ -144,12 +144,12 @@ def _limits(raw: _core.LoopBatch, linkage: Integers, linkages: Sequence[Loop], *
     owner = np.repeat(linkage, raw.limit_counts)
     inputs = raw.limits
     bounds = np.searchsorted(owner, np.arange(count + 1))
-    found = [
+    result = [
         merged(inputs[first:last], turns=turns, size=1.0 if turns else loop.size)
         for loop, (first, last) in zip(linkages, pairwise(bounds), strict=True)
     ]
-    limits = np.full((count, max(map(len, found), default=0)), np.nan)
-    for row, values in zip(limits, found, strict=True):
+    limits = np.full((count, max(map(len, result), default=0)), np.nan)
+    for row, values in zip(limits, result, strict=True):
         row[: len(values)] = values
     return limits
 

@@ -41,26 +41,26 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     """
     parts = expanded(loop)
     columns = [loop.columns[c] for c in parts.columns]
-    found = in_plane(loop)
-    if found is None:
+    result = in_plane(loop)
+    if result is None:
         if parts.letters != "RRRR" or sphere_of(loop) is None:
             return None
         moves: tuple[int, ...] = (0, 1, 2, 3)
-    elif found.held is not None and loop.in_rows:
+    elif result.held is not None and loop.in_rows:
         # where it is held is not known before the loop is closed
         return None
     else:
-        moves = found.moves
+        moves = result.moves
     letters = "".join(parts.letters[i] for i in moves).replace("S", "R")
     names = [columns[i] for i in moves]
     if len(moves) != 4 or letters.count("P") > 1 or set(letters) - {"R", "P"}:
         return None
     between = _between(parts.around, moves)
     roles = link_roles(names, input, output)
-    if found is None:
+    if result is None:
         arcs = [math.atan2(math.hypot(*cross(m[:3, 2], _Z)), float(m[2, 2])) for m in between]
         return None if min(arcs) <= SAME else four_bar_of_links("spherical", least(arcs), names, roles)
-    normals = _normals(parts, moves, found.plane.normal)
+    normals = _normals(parts, moves, result.plane.normal)
     lengths = [math.hypot(*cross(n, m[:3, 3])) for n, m in zip(normals, between, strict=True)]
     # two joints on one axis are one
     shortest = SAME * loop.size
@@ -90,11 +90,11 @@ def _normals(parts: Expanded, moves: Sequence[int], normal: Floats) -> list[Floa
 
 def _between(ahead: Sequence[Floats], moves: Sequence[int]) -> list[Floats]:
     """The transforms (4, 4) from each joint that moves to the next one, all joints at zero."""
-    found = []
+    result = []
     for k, start in enumerate(moves):
         end = moves[(k + 1) % len(moves)]
         now, i = ahead[start], (start + 1) % len(ahead)
         while i != end:
             now, i = now @ ahead[i], (i + 1) % len(ahead)
-        found.append(now)
-    return found
+        result.append(now)
+    return result

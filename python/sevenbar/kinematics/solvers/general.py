@@ -115,10 +115,10 @@ class GeneralLoop:
 
     def idle_links(self) -> frozenset[int]:
         """The links that have such a freedom, counted from 1."""
-        found: set[int] = set()
+        result: set[int] = set()
         for _, links, _, _ in self._idle():
-            found |= set(links)
-        return frozenset(found)
+            result |= set(links)
+        return frozenset(result)
 
     def unheld(self) -> str | None:
         """The idle freedom for which the core has no rule, in words, of a loop that one input moves."""
@@ -146,13 +146,13 @@ class GeneralLoop:
     def _idle(self) -> list[tuple[str, range, int, int]]:
         """Each such freedom: the core's word, links counted from 1, the joints held and on the other side."""
         owner = self._owners()
-        found = []
+        result = []
         for word, held, other in self._core.idle:
             a, b = owner[held], owner[other]
             # the cross of a joint with two axes on one line counts as the link after it
             first = min(a, b) + 1
-            found.append((word, range(first, max(a, b, first) + 1), a, b))
-        return found
+            result.append((word, range(first, max(a, b, first) + 1), a, b))
+        return result
 
     def modes(self, column: int, value: float) -> Modes:
         """Every assembly mode at one value of a column."""
@@ -408,7 +408,7 @@ def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
     values = np.sort(values)
     if values.size == 0:
         return np.array([])
-    kept: Floats = values[np.concatenate([[True], np.diff(values) > same])]
-    if turns and kept.size > 1 and kept[0] + math.tau - kept[-1] < same:
-        kept = kept[:-1]
-    return kept
+    selected: Floats = values[np.concatenate([[True], np.diff(values) > same])]
+    if turns and selected.size > 1 and selected[0] + math.tau - selected[-1] < same:
+        selected = selected[:-1]
+    return selected

@@ -95,8 +95,8 @@ def plane_of(loop: Loop) -> MotionPlane | None:
         >>> sb.load("planar_4r").plane.normal.tolist(), sb.load("bennett").plane
         ([1.0, 0.0, 0.0], None)
     """
-    found = in_plane(loop)
-    return None if found is None else found.plane
+    result = in_plane(loop)
+    return None if result is None else result.plane
 
 
 class InPlane(NamedTuple):

@@ -71,10 +71,10 @@ def off_joints(motion: Motion) -> Reason | None:
     """
     loop = motion.linkage
     drawn = _Drawn(loop, *drawn_frames(loop))
-    for found in (_off_plane(drawn), _off_point(drawn)):
-        if found is None:
+    for result in (_off_plane(drawn), _off_point(drawn)):
+        if result is None:
             continue
-        reason, mended = found
+        reason, mended = result
         if mended is None:
             return reason
         eased = mended.motion(SAMPLES, input=motion.input, output=motion.output)

@@ -198,13 +198,13 @@ def angles_along(loop: Loop, coupling: Coupling, circuit: Circuit) -> tuple[Floa
     At a dead centre of the input it is 0, but where u or w vanishes it is its limit.
     """
     axes = axes_along(loop, circuit)
-    found = Angles.of(coupling, axes, circuit.size)
-    angle = np.arctan2(np.abs(found.sine), np.abs(found.cosine))
-    vanishing = found.share < VANISHES
+    result = Angles.of(coupling, axes, circuit.size)
+    angle = np.arctan2(np.abs(result.sine), np.abs(result.cosine))
+    vanishing = result.share < VANISHES
     angle[(circuit.status == "dead-centre") & ~vanishing] = 0.0
     for row in np.flatnonzero(vanishing):
         angle[row] = _limit(coupling, axes.at(int(row)), circuit.size)
-    return angle, found
+    return angle, result
 
 
 def _limit(coupling: Coupling, axes: Axes, size: float) -> float:

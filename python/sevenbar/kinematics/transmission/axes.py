@@ -101,15 +101,15 @@ class Axes:
 
     def _screws(self, size: float) -> tuple[Floats, list[int]]:
         """The screws (m, 6) of a pose's joints in order, lengths by the size, and the part of each."""
-        found, owners = [], []
+        result, owners = [], []
         for part, letter in enumerate(self.parts.letters):
             arm = (self.places[part, 0] - self._origin) / size
             for direction in np.eye(3) if letter == "S" else [self.directions[part, 0]]:
                 moment = np.cross(arm, direction) + self.parts.advances[part] / size * direction
                 still = np.zeros(3)
-                found.append(np.concatenate([still, direction] if letter == "P" else [direction, moment]))
+                result.append(np.concatenate([still, direction] if letter == "P" else [direction, moment]))
                 owners.append(part)
-        return np.array(found), owners
+        return np.array(result), owners
 
 
 def _tangent(screws: Floats) -> Floats | None:
@@ -147,8 +147,8 @@ def ratios_at_rest(loop: Loop, circuit: Circuit) -> dict[int, float]:
     ends = [parts.columns.index(column) for column in (circuit.input_column, circuit.output_column)]
     rows = np.flatnonzero((circuit.status == "dead-centre") & np.isfinite(circuit.q).all(axis=1))
     axes = axes_along(loop, circuit, rows)
-    found = {int(row): axes.at(i).ratio(ends[0], ends[1], circuit.size) for i, row in enumerate(rows)}
-    return {row: ratio for row, ratio in found.items() if ratio is not None}
+    result = {int(row): axes.at(i).ratio(ends[0], ends[1], circuit.size) for i, row in enumerate(rows)}
+    return {row: ratio for row, ratio in result.items() if ratio is not None}
 
 
 def best_row(circuit: Circuit) -> int | None:

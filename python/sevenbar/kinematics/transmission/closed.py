@@ -114,10 +114,10 @@ def _round(course: AngleCourse, start: float, turns: int) -> Extremes:
 def _stationary(course: AngleCourse, low: float) -> list[tuple[float, float]]:
     """The angles where it is stationary or a right one, with their inputs, of one turn from `low` on."""
     places = [course.place, course.place + math.pi] if course.turns else [course.place]
-    found = [(_acute(course.angle(x)), x) for x in places]
+    result = [(_acute(course.angle(x)), x) for x in places]
     if course.square is not None:
-        found += [(math.pi / 2, course.place + way * course.square) for way in (-1, 1)]
-    return [(angle, low + (x - low) % math.tau) for angle, x in found] if course.turns else found
+        result += [(math.pi / 2, course.place + way * course.square) for way in (-1, 1)]
+    return [(angle, low + (x - low) % math.tau) for angle, x in result] if course.turns else result
 
 
 def _ends(found: list[tuple[float, float]]) -> Extremes:

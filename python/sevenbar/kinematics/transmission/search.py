@@ -61,8 +61,8 @@ def transmission_extremes(linkage: Solvable, circuit: Circuit) -> Extremes | Non
     row = best_row(circuit)
     if row is None:
         return None
-    found = closed_extremes(coupling, axes_along(linkage, circuit, np.array([row])), circuit, row)
-    return found or _AngleSearch(linkage, circuit, circuit.q[row], coupling).extremes()
+    result = closed_extremes(coupling, axes_along(linkage, circuit, np.array([row])), circuit, row)
+    return result or _AngleSearch(linkage, circuit, circuit.q[row], coupling).extremes()
 
 
 def velocity_extremes(linkage: Solvable, circuit: Circuit) -> Extremes | None:
@@ -105,7 +105,7 @@ class _Search:
 
     def brackets(self, way: Walk, sizes: Floats) -> list[tuple[int, _Stretch, float, float]]:
         """About each row of a walk where a size (n,) is lower or higher than its neighbours, and the ends."""
-        found: list[tuple[int, _Stretch, float, float]] = []
+        result: list[tuple[int, _Stretch, float, float]] = []
         for number, part in enumerate(way.passes):
             x, s = way.input[part], sizes[part]
             if len(x) < 3:
@@ -121,8 +121,8 @@ class _Search:
             peaks = (before * after >= 0) & ~flat
             if not stretch.round:
                 peaks[[0, -1]] = True
-            found += [(number, stretch, u[i], u[i + 2]) for i in np.flatnonzero(peaks)]
-        return found
+            result += [(number, stretch, u[i], u[i + 2]) for i in np.flatnonzero(peaks)]
+        return result
 
     def at(
         self, values: Callable[[Circuit], Floats], passes: list[int], inputs: list[Floats]
@@ -131,14 +131,14 @@ class _Search:
         every = np.concatenate(inputs)
         rows = self.rows(Law.of(np.arange(float(every.size)), every, 1.0, 0.0))
         known = values(rows)
-        found, start = [], 0
+        result, start = [], 0
         on_pass = {number: np.flatnonzero(rows.branch == number) for number in set(passes)}
         for number, own in zip(passes, inputs, strict=True):
             here = on_pass[number]
             place = here[start : start + own.size] if here.size == every.size else np.array([], dtype=int)
             start += own.size
-            found.append(known[place] if place.size else np.full((own.size, *known.shape[1:]), np.nan))
-        return found
+            result.append(known[place] if place.size else np.full((own.size, *known.shape[1:]), np.nan))
+        return result
 
     def rows(self, how: int | Law) -> Circuit:
         """The circuit through the pose at so many samples in a turn, or at the inputs of a law."""
@@ -163,9 +163,9 @@ class _AngleSearch(_Search):
         angle, made = angles_along(self.linkage, self.coupling, rows)
         limits = rows.status == "dead-centre"
         on_rows = limits | ~(made.share < NEAR_LIMIT)
-        found = list(zip(angle[on_rows], rows.input[on_rows], strict=True))
+        result = list(zip(angle[on_rows], rows.input[on_rows], strict=True))
         way = walk(rows)
-        found += self.between(way, np.sin(angle)[way.rows])
+        result += self.between(way, np.sin(angle)[way.rows])
         dead = [centre.input for centre in self.like.dead_centres if centre.kind == "input"]
         # of a circuit of which no row is there, all that is known is that it is a dead centre
         exact = [
@@ -174,14 +174,14 @@ class _AngleSearch(_Search):
         if exact or (dead and not limits.any()):
             # near them rounding leaves a little
             ends = exact or [(0.0, x) for x in dead]
-            found = [one for one in found if one[0] > AT_DEAD_CENTRE] + ends
-        kept = [(float(angle), float(x)) for angle, x in found if math.isfinite(angle)]
-        if not kept:
+            result = [one for one in result if one[0] > AT_DEAD_CENTRE] + ends
+        selected = [(float(angle), float(x)) for angle, x in result if math.isfinite(angle)]
+        if not selected:
             return None
-        lowest, highest = min(kept)[0], max(kept)[0]
+        lowest, highest = min(selected)[0], max(selected)[0]
         # of places alike up to rounding always the same one
-        lowest_at = min(x for angle, x in kept if angle <= lowest + ALIKE)
-        highest_at = max(x for angle, x in kept if angle >= highest - ALIKE)
+        lowest_at = min(x for angle, x in selected if angle <= lowest + ALIKE)
+        highest_at = max(x for angle, x in selected if angle >= highest - ALIKE)
         if rows.goes_round and rows.input_turns:
             # between the first row and the first again
             start, whole = float(rows.input[0]), math.tau * rows.turns
@@ -230,8 +230,8 @@ class _AngleSearch(_Search):
 
     def values(self, rows: Circuit) -> Floats:
         """Sine, cosine and share on rows (n, 3)."""
-        found = Angles.of(self.coupling, axes_along(self.linkage, rows), rows.size)
-        return np.column_stack([found.sine, found.cosine, found.share])
+        result = Angles.of(self.coupling, axes_along(self.linkage, rows), rows.size)
+        return np.column_stack([result.sine, result.cosine, result.share])
 
 
 def _passed(curve: Chebyshev) -> Floats:
@@ -256,7 +256,7 @@ class _VelocitySearch(_Search):
         dead = np.flatnonzero(rows.status == "dead-centre")
         if not dead.size or not np.isfinite(velocity[dead]).all():
             return None
-        found = list(zip(velocity, rows.input, strict=True))
+        result = list(zip(velocity, rows.input, strict=True))
         way = walk(rows)
         left = self.brackets(way, velocity[way.rows])
         if left:
@@ -269,9 +269,9 @@ class _VelocitySearch(_Search):
                     places += [(number, float(stretch.input((a + b) / 2 + (b - a) / 2 * r))) for r in roots]
             if places:
                 known = self.at(self.values, [n for n, _ in places], [np.array([x]) for _, x in places])
-                found += [(own[0, 0], x) for (_, x), own in zip(places, known, strict=True) if own[0, 1]]
-        kept = [(float(value), float(x)) for value, x in found if math.isfinite(value)]
-        (lowest, lowest_at), (highest, highest_at) = min(kept), max(kept)
+                result += [(own[0, 0], x) for (_, x), own in zip(places, known, strict=True) if own[0, 1]]
+        selected = [(float(value), float(x)) for value, x in result if math.isfinite(value)]
+        (lowest, lowest_at), (highest, highest_at) = min(selected), max(selected)
         return Extremes(lowest, lowest_at, highest, highest_at)
 
     def values(self, rows: Circuit) -> Floats:

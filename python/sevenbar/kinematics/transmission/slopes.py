@@ -93,10 +93,10 @@ class AxisPoints:
         zero, as cosines do beyond 1. `None` for loops that have them in no closed form.
         """
         stepped = places + 1j * COMPLEX_STEP * np.moveaxis(by[0], -1, 0)
-        found = turning_cosines(self.coupling, self._axes(np.concatenate([places, stepped])))
-        if found is None:
+        result = turning_cosines(self.coupling, self._axes(np.concatenate([places, stepped])))
+        if result is None:
             return None
-        cosines, slopes = found[0].real, found[1:].T.imag / COMPLEX_STEP
+        cosines, slopes = result[0].real, result[1:].T.imag / COMPLEX_STEP
         sizes = np.abs(cosines)
         inside = np.clip(sizes, 0.0, 1.0)
         sines = np.maximum(np.sqrt(1 - inside**2), DEAD)
@@ -132,7 +132,7 @@ def transmission_slopes(numbers: Numbers, circuit: Circuit) -> tuple[MeasureSlop
         return ()
     made = AxisPoints.of(numbers, circuit.input_column, circuit.output_column)
     loop = None if made is None else numbers.loop(circuit.input_column, extra=made.points)
-    found = []
+    result = []
     for name in ("lowest", "highest"):
         value, at = getattr(extremes, name), getattr(extremes, f"{name}_at")
         slopes = np.full(len(numbers.names), np.nan)
@@ -147,10 +147,10 @@ def transmission_slopes(numbers: Numbers, circuit: Circuit) -> tuple[MeasureSlop
         if value < DEAD:
             # it is 0 at every dead centre of the input
             slopes = np.zeros(len(slopes))
-        found.append(
+        result.append(
             MeasureSlopes(f"transmission_{name}", "deg", math.degrees(value), slopes, math.radians(1.0))
         )
     opening = numbers.loop(circuit.input_column).opening(circuit)
-    for one in found:
+    for one in result:
         one.slopes[opening] = np.nan
-    return tuple(found)
+    return tuple(result)

@@ -79,8 +79,8 @@ class CurvesPanel:
         """What can be chosen; a choice that there is no more goes back to the output's curves."""
         before = {name: quantity.key for name, quantity in self._offered.items()}
         usual = quantities(view.motion)
-        found = (*usual, *force_quantities(view, acting, [quantity.name for quantity in usual]))
-        self._offered = {quantity.name: quantity for quantity in found}
+        result = (*usual, *force_quantities(view, acting, [quantity.name for quantity in usual]))
+        self._offered = {quantity.name: quantity for quantity in result}
         names = tuple(self._offered)
         by_key = {quantity.key: name for name, quantity in self._offered.items()}
         for choice, first in zip(self._choices, names, strict=False):

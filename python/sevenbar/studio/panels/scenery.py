@@ -297,6 +297,6 @@ def arrow_unit(view: View, sizes: Floats, *, percent: float = 95, longest: float
     The longest, a share of the linkage's extent, is that of so many percent of the rows: those near dead
     centres, where sizes grow without bound, do not set the scale.
     """
-    kept = sizes[np.isfinite(sizes)]
-    usual = float(np.percentile(kept, percent)) if kept.size else 0.0
+    selected = sizes[np.isfinite(sizes)]
+    usual = float(np.percentile(selected, percent)) if selected.size else 0.0
     return usual / (longest * view.frame.span)

@@ -66,10 +66,10 @@ class SketchPanel:
 
     def _read(self) -> list[DrawnJoint]:
         """The joints as the boxes have them."""
-        found = []
+        result = []
         for kind, boxes in self._rows:
             axes = [_vector(boxes[key]) for key in ("axis", "second axis") if key in boxes]
-            found.append(
+            result.append(
                 DrawnJoint(
                     kind,
                     _vector(boxes["at"]),
@@ -78,7 +78,7 @@ class SketchPanel:
                     boxes["name"].value,
                 )
             )
-        return found
+        return result
 
     def _build(self, joints: tuple[DrawnJoint, ...]) -> None:
         for folder in self._folders:

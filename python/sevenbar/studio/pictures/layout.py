@@ -42,12 +42,12 @@ class Layout:
     def rigid(self, link: int) -> list[Pair]:
         """Pairs of places that keep their distance and turn with a link."""
         way, graph = self.frame.along(link), self.frame.graph
-        found = [(way[0], place) for place in way[1:]] + list(pairwise(way))
+        result = [(way[0], place) for place in way[1:]] + list(pairwise(way))
         on = [(self.joints[joint], graph.side(joint, link)) for joint in graph.joints_of(link)]
         # what rides on a joint is after it
-        found += [joint.spin for joint, side in on if side or not joint.kind.rides]
-        found += [joint.axes[-side] for joint, side in on if joint.kind.has_cross]
-        return [pair for pair in found if pair != NOWHERE]
+        result += [joint.spin for joint, side in on if side or not joint.kind.rides]
+        result += [joint.axes[-side] for joint, side in on if joint.kind.has_cross]
+        return [pair for pair in result if pair != NOWHERE]
 
 
 def layout(frame: Skeleton) -> Layout:

@@ -61,18 +61,18 @@ class SolidPlan:
     def moving(self) -> SolidPlan:
         """The plan of the moving links and joints alone."""
         moves = self.solids["moves"]
-        kept = {shape: int(moves[rows].sum()) for shape, rows in self.shapes.items()}
-        shapes = slices({shape: count for shape, count in kept.items() if count})
+        selected = {shape: int(moves[rows].sum()) for shape, rows in self.shapes.items()}
+        shapes = slices({shape: count for shape, count in selected.items() if count})
         return replace(self, shapes=shapes, solids=self.solids[moves], axes=self.axes[:0], labels=())
 
 
 def slices(counts: dict[str, int]) -> dict[str, slice]:
     """The rows of each shape, one shape after the other."""
-    found, start = {}, 0
+    result, start = {}, 0
     for shape, count in counts.items():
-        found[shape] = slice(start, start + count)
+        result[shape] = slice(start, start + count)
         start += count
-    return found
+    return result
 
 
 def poses(plan: SolidPlan, places: Floats) -> Poses:

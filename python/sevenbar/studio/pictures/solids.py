@@ -144,7 +144,7 @@ def _unit(where: Layout, pose: Floats, size: float) -> float:
 def _made(solids: _Solids, frame: Skeleton, pose: Floats, size: float) -> SolidPlan:
     where = solids.layout
     return SolidPlan(
-        slices({shape: len(found) for shape, found in solids.rows.items()}),
+        slices({shape: len(result) for shape, result in solids.rows.items()}),
         np.array([row for rows in solids.rows.values() for row in rows], SOLID),
         where.count,
         np.array(solids.fixed).reshape(-1, 3),

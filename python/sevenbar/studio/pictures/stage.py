@@ -237,13 +237,13 @@ class Stage:
             self._ghosts.clear()
             return
         shown = shown[:MOST_GHOSTS]
-        found = poses(self._moving, np.stack([places for places, _ in shown]))
+        result = poses(self._moving, np.stack([places for places, _ in shown]))
         every = {
             shape: (turn.reshape(-1, 4), middle.reshape(-1, 3), scale.reshape(-1, 3))
-            for shape, (turn, middle, scale) in found.items()
+            for shape, (turn, middle, scale) in result.items()
         }
         colours = {}
-        for shape in found:
+        for shape in result:
             own = self._moving.colours_of(shape)
             each = [own if colour is None else np.tile(rgb(colour), (len(own), 1)) for _, colour in shown]
             colours[shape] = self._shade(np.concatenate(each))

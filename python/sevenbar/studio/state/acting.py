@@ -60,15 +60,15 @@ class SwitchedLoading:
             return ()
         linkage, own = self.linkage, self.linkage.loading
         shown = Shown(linkage.unit_of(linkage.columns.index(linkage.drive.joint)))
-        found: list[Switch] = []
+        result: list[Switch] = []
         if any(own.gravity):
-            found.append(Switch(GRAVITY, GRAVITY, f"{triple_text(own.gravity)} m/s^2"))
-        found += _named("load", own.loads, [load_text(load, shown) for load in own.loads])
+            result.append(Switch(GRAVITY, GRAVITY, f"{triple_text(own.gravity)} m/s^2"))
+        result += _named("load", own.loads, [load_text(load, shown) for load in own.loads])
         words = []
         for spring in own.springs:
             slides = spring.joint is not None and not linkage.turns(linkage.column(spring.joint, "joint"))
             words.append(spring_text(spring, linkage.length_unit, slides=slides))
-        return (*found, *_named("spring", own.springs, words))
+        return (*result, *_named("spring", own.springs, words))
 
     def switched(self, key: str, *, on: bool) -> SwitchedLoading:
         """The same with one of the switches on or off."""
@@ -76,13 +76,13 @@ class SwitchedLoading:
 
     def forces(self, view: View) -> Forces | None:
         """The forces on the rows of a view's circuit; `None` where there are none."""
-        found = self._forces(view.circuit)
-        return None if isinstance(found, str) else found
+        result = self._forces(view.circuit)
+        return None if isinstance(result, str) else result
 
     def reason(self, view: View) -> str:
         """Why there are no forces on a view's circuit; empty where there are."""
-        found = self._forces(view.circuit)
-        return found if isinstance(found, str) else ""
+        result = self._forces(view.circuit)
+        return result if isinstance(result, str) else ""
 
     def _forces(self, circuit: Circuit) -> Forces | str:
         if circuit not in self._found:

@@ -64,21 +64,21 @@ def grips(draft: Draft, view: View | None, row: float) -> list[Grip]:
         if "at" in dimension.place:
             vectors.setdefault(dimension.place[:3], []).append(dimension.value)
     linkage = draft.linkage
-    found: list[Grip] = []
+    result: list[Grip] = []
     drawn = linkage.form == "drawn"
     for place, values in vectors.items():
         number = place[1]
         assert isinstance(number, int)
         given, frame = np.array(values), np.eye(4)
         if drawn:
-            same = next((i for i, grip in enumerate(found) if (grip.given == given).all()), None)
+            same = next((i for i, grip in enumerate(result) if (grip.given == given).all()), None)
             if same is not None:
-                found[same] = replace(found[same], places=(*found[same].places, place))
+                result[same] = replace(result[same], places=(*result[same].places, place))
                 continue
         elif view is None:
             continue
         else:
             link = int(draft.raw["point"][number]["link"])
             frame = view.point_frame(link, row)
-        found.append(Grip((place,), given, frame))
-    return found
+        result.append(Grip((place,), given, frame))
+    return result

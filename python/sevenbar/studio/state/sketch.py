@@ -46,14 +46,14 @@ class DrawnJoint:
     @property
     def table(self) -> dict[str, Any]:
         """Its table in a file."""
-        found: dict[str, Any] = {"name": self.name.strip()} if self.name.strip() else {}
-        found |= {"kind": self.kind, "at": [plain_number(float(x)) for x in self.at]}
+        result: dict[str, Any] = {"name": self.name.strip()} if self.name.strip() else {}
+        result |= {"kind": self.kind, "at": [plain_number(float(x)) for x in self.at]}
         values = {
             "axis": [plain_number(float(x)) for x in self.axes[0]],
             "axes": [[plain_number(float(x)) for x in axis] for axis in self.axes],
             "pitch": plain_number(self.pitch),
         }
-        return found | {key: values[key] for key in KINDS[self.kind].drawn_keys}
+        return result | {key: values[key] for key in KINDS[self.kind].drawn_keys}
 
 
 #: Where to begin: loops that move, by their kinds.
@@ -114,16 +114,16 @@ def beginning(kinds: Sequence[str], before: Sequence[DrawnJoint] = ()) -> tuple[
         return known
     last = len(kinds) - 1
     spatial = sum(len(KINDS[kind].freedoms) for kind in kinds) > PLANAR_FREEDOMS
-    found = []
+    result = []
     for i, kind in enumerate(kinds):
         if i < len(before) and before[i].kind == kind:
-            found.append(before[i])
+            result.append(before[i])
             continue
         angle = math.pi * (1 - i / last)
         at = (round(50 + 50 * math.cos(angle), 1), round(60 * math.sin(angle), 1), 0.0)
         turned = (Z, X, Y)[i % 3] if spatial else X if kind == "P" else Z
-        found.append(DrawnJoint(kind, at, (turned, X if turned == Y else Y)))
-    return tuple(found)
+        result.append(DrawnJoint(kind, at, (turned, X if turned == Y else Y)))
+    return tuple(result)
 
 
 def drawn(name: str, unit: str, joints: Sequence[DrawnJoint]) -> str:

@@ -137,12 +137,12 @@ class View(TimedWalk):
         """
         axes = self.circuit.screw_axes(link)
         near = np.linalg.norm(axes.point - np.nanmean(self.frame.places, axis=(0, 1)), axis=1)
-        kept = np.flatnonzero(near < FAR_AXIS * self.frame.span)
-        kept = kept[:: max(1, len(kept) // MOST_AXES)]
+        selected = np.flatnonzero(near < FAR_AXIS * self.frame.span)
+        selected = selected[:: max(1, len(selected) // MOST_AXES)]
         half = HALF_AXIS * self.frame.span
 
         def lines(point: Floats, direction: Floats) -> Floats:
-            return np.stack([point - half * direction, point + half * direction], axis=1)[kept]
+            return np.stack([point - half * direction, point + half * direction], axis=1)[selected]
 
         return lines(axes.point, axes.direction), lines(axes.moving_point, axes.moving_direction)
 

@@ -171,19 +171,19 @@ def _found(
 ) -> Synthesis:
     course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
     rows, zeros = starts(wish, seed)
-    begun = chosen(wish, limits, rows, zeros, course.total - 1)
+    started = chosen(wish, limits, rows, zeros, course.total - 1)
     course.step()
-    kept: list[Candidate] = []
+    selected: list[Candidate] = []
     refused: list[tuple[float, Refusal]] = []
     by_transmission = wish.exact and wish.function is None
     key = (lambda c: -(c.transmission_lowest or 0.0)) if by_transmission else None
-    with course.until_stopped(kept):
+    with course.until_stopped(selected):
         # first the best of all; where starts end in one design, each with its own zero of the input
         for hold in (False, True):
             ends: list[Floats] = []
             costs: list[float] = []
-            for start in begun:
-                if len(costs) >= max(ENOUGH, 2 * count) and len(distinct(kept, scale_free=True)) >= count:
+            for start in started:
+                if len(costs) >= max(ENOUGH, 2 * count) and len(distinct(selected, scale_free=True)) >= count:
                     break
                 others = len(costs) >= count and not hold
                 hopeless = HOPELESS * sorted(costs)[count - 1] if others else math.inf
@@ -191,16 +191,16 @@ def _found(
                 if fitted is not None:
                     error, result = _judged(wish, fitted, limits, tolerance)
                     if isinstance(result, Candidate):
-                        kept.append(result)
+                        selected.append(result)
                         costs.append(fitted.cost)
                     else:
                         refused.append((error, result))
-                course.step(transmits_best(kept) if by_transmission else least_error(kept))
-            if len(distinct(ranked(kept, key), scale_free=True, count=count)) == count:
+                course.step(transmits_best(selected) if by_transmission else least_error(selected))
+            if len(distinct(ranked(selected, key), scale_free=True, count=count)) == count:
                 break
             if not hold:
-                course.longer(len(begun))
-    best = distinct(ranked(kept, key), scale_free=True, count=count)
+                course.longer(len(started))
+    best = distinct(ranked(selected, key), scale_free=True, count=count)
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
     return Synthesis(
         wish.title,
@@ -208,7 +208,7 @@ def _found(
         tuple(renamed(best, wish.title)),
         refusals,
         len(rows),
-        len(begun),
+        len(started),
         seed,
         wish,
         course.unfinished,
@@ -270,12 +270,12 @@ def _fitted(
         values = near.at(near.start)
         if values is not None and not hold:
             before = math.sqrt(inputs.size) * float(np.abs(values.residuals).max())
-    found = solved(model, seed, 0)
-    if found is None:
+    result = solved(model, seed, 0)
+    if result is None:
         return None
     zeros = start.zeros.copy()
-    zeros[zeros.size - own.size :] = found.seed.own[0]
-    return _Fitted(found.seed.values, zeros, start.branch, before, cost)
+    zeros[zeros.size - own.size :] = result.seed.own[0]
+    return _Fitted(result.seed.values, zeros, start.branch, before, cost)
 
 
 def _judged(

@@ -127,14 +127,14 @@ def _few(inputs: Floats, outputs: Floats, zeros: Floats, draws: Floats) -> tuple
     # tangents reach everywhere, and mostly near
     steps = np.tan((draws[:, : 5 - count] - 0.5) * (math.pi * 0.98))
     k = k + np.einsum("mij,mi->mj", base[:, count:], steps)
-    found = [designs_of(k, zeros)]
+    result = [designs_of(k, zeros)]
     if count == FEWEST and len(rows):
         square = rows[:, :, [0, 1, 4]]
         good = np.abs(np.linalg.det(square)) > RANK
         flat = np.zeros((int(good.sum()), 5))
         flat[:, [0, 1, 4]] = np.linalg.solve(square[good], right[good][:, :, None])[:, :, 0]
-        found.append(designs_of(flat, zeros[good], FARTHEST ** (2 * draws[good, 2] - 1)))
-    return np.concatenate([f[0] for f in found]), np.concatenate([f[1] for f in found])
+        result.append(designs_of(flat, zeros[good], FARTHEST ** (2 * draws[good, 2] - 1)))
+    return np.concatenate([f[0] for f in result]), np.concatenate([f[1] for f in result])
 
 
 def _zero_equations(inputs: Floats, outputs: Floats) -> tuple[Floats, Floats]:

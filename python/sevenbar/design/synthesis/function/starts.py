@@ -88,7 +88,7 @@ def chosen(wish: Wish, limits: Limits, rows: Floats, zeros: Floats, most: int) -
     inputs = np.concatenate([wish.input, wish.point_input])
     wanted = np.concatenate([wish.output, wish.point_output])
     scores: list[Floats] = []
-    found: list[Start] = []
+    result: list[Start] = []
     for branch in (0, 1):
         off = short_way(outputs(rows, zeros[:, :1] + inputs, branch) - zeros[:, 1:] - wanted)
         count = wish.input.size
@@ -98,10 +98,10 @@ def chosen(wish: Wish, limits: Limits, rows: Floats, zeros: Floats, most: int) -
             score = score + 1.0 - square
         good = np.isfinite(off).all(axis=1) & (square > 0) & (at_points < ON_BRANCH)
         scores.append(score[good])
-        found += [Start(row, own, branch) for row, own in zip(rows[good], zeros[good], strict=True)]
-    places = np.array([[*np.arctan(one.row), *np.cos(one.zeros)] for one in found])
-    kept: list[int] = []
+        result += [Start(row, own, branch) for row, own in zip(rows[good], zeros[good], strict=True)]
+    places = np.array([[*np.arctan(one.row), *np.cos(one.zeros)] for one in result])
+    selected: list[int] = []
     for i in np.argsort(np.concatenate(scores), kind="stable"):
-        if len(kept) < most and (np.abs(places[kept] - places[i]).max(axis=1) > START_APART).all():
-            kept.append(int(i))
-    return [found[i] for i in kept]
+        if len(selected) < most and (np.abs(places[selected] - places[i]).max(axis=1) > START_APART).all():
+            selected.append(int(i))
+    return [result[i] for i in selected]

@@ -87,13 +87,13 @@ def swing_generation(
     refuse_without_swing(limits.motion_type)
     check_count(count)
     course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
-    begun = _begun(want, limits, course.total - 1, seed)
+    started = _begun(want, limits, course.total - 1, seed)
     course.step()
-    kept: list[Candidate] = []
+    selected: list[Candidate] = []
     refused: list[tuple[float, Refusal]] = []
     ends: list[Floats] = []
-    with course.until_stopped(kept):
-        for numbers, branch in begun:
+    with course.until_stopped(selected):
+        for numbers, branch in started:
             held = numbers[N] if _most_alike(ends) >= ENOUGH else None
             polished = Polish(_task(want, limits, held), numbers, branch, worth=WORTH).polished()
             ends.append(np.abs(polished[:6]) / np.abs(polished[:6]).max())
@@ -101,11 +101,11 @@ def swing_generation(
             if math.isinf(far):
                 far, result = _judged(want, limits, numbers, branch)
             if isinstance(result, Candidate):
-                kept.append(result)
+                selected.append(result)
             else:
                 refused.append((far, result))
-            course.step(transmits_best(kept))
-    order = ranked(kept, lambda c: -(c.transmission_lowest or 0.0))
+            course.step(transmits_best(selected))
+    order = ranked(selected, lambda c: -(c.transmission_lowest or 0.0))
     best = distinct(order, scale_free=True, mirrored=True, count=count)
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
     return Synthesis(
@@ -114,7 +114,7 @@ def swing_generation(
         tuple(renamed(best, want.title)),
         refusals,
         SEARCHED,
-        len(begun),
+        len(started),
         seed,
         unfinished=course.unfinished,
     )
@@ -152,8 +152,10 @@ def _begun(want: SwingWish, limits: Limits, most: int, seed: int) -> list[tuple[
         ratio=limits.ratio,
     )
     best = SurveyTally.of(task.core().tally(0, SEARCHED)).best[:most]
-    rows = drawn_numbers(task, [kept.index for kept in best])
-    return [(np.append(row, kept.start), kept.branch) for row, kept in zip(rows, best, strict=True)]
+    rows = drawn_numbers(task, [selected.index for selected in best])
+    return [
+        (np.append(row, selected.start), selected.branch) for row, selected in zip(rows, best, strict=True)
+    ]
 
 
 def _judged(

@@ -91,10 +91,10 @@ def generated(
     Ctrl+C ends the search with what it has.
     """
     check_counts(count, starts, seed)
-    found = designed(task.design, count=count, starts=starts, seed=seed, progress=progress)
-    found.required(starts)
-    best = sorted(found.designs, key=lambda design: design.candidate.error_greatest)
-    return replace(found, designs=named(task.design, best))
+    result = designed(task.design, count=count, starts=starts, seed=seed, progress=progress)
+    result.required(starts)
+    best = sorted(result.designs, key=lambda design: design.candidate.error_greatest)
+    return replace(result, designs=named(task.design, best))
 
 
 def check_counts(count: object, starts: object, seed: object) -> None:

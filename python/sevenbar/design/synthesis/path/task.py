@@ -193,18 +193,18 @@ def _varied(draft: Draft, point: Point, vary: Sequence[str] | None) -> list[Dime
     else:
         chosen = set()
         for pattern in vary:
-            found = _named(pattern, every)
-            if not found:
+            result = _named(pattern, every)
+            if not result:
                 raise RequestError(
                     f"vary: {shown(pattern)} is not a dimension here; {suggestion(pattern, names)}"
                     f"give some of {', '.join(names)}, or a pattern as 'L*'"
                 )
-            if follow := [d.name for d in found if d.follows and pattern in (d.name, d.key)]:
+            if follow := [d.name for d in result if d.follows and pattern in (d.name, d.key)]:
                 raise RequestError(
                     f"vary: {follow[0]} is to follow from the others; leave one of the two out"
                 )
-            chosen |= {d.name for d in found if not d.follows}
-            if wrong := [d.name for d in found if d.name in others]:
+            chosen |= {d.name for d in result if not d.follows}
+            if wrong := [d.name for d in result if d.name in others]:
                 raise RequestError(
                     f"vary: {wrong[0]} is of another point than '{point.name}', whose path it does not "
                     "change; leave it out"
@@ -254,17 +254,17 @@ def _bounded(
                 )
         bounds[d.name] = low, high
     for pattern, pair in given.items():
-        found = _named(pattern, dimensions)
-        if not found:
+        result = _named(pattern, dimensions)
+        if not result:
             raise RequestError(
                 f"bounds: {shown(pattern)} is not a dimension that varies; {suggestion(pattern, bounds)}"
                 f"these vary: {', '.join(bounds)}"
             )
         # a pattern of lengths and angles takes numbers alone
-        alike = len({d.unit for d in found}) == 1
+        alike = len({d.unit for d in result}) == 1
         try:
             least, most = (
-                found[0].read(value) if alike and isinstance(value, str) else float(value) for value in pair
+                result[0].read(value) if alike and isinstance(value, str) else float(value) for value in pair
             )
         except (TypeError, ValueError):
             least = most = math.nan
@@ -275,7 +275,7 @@ def _bounded(
                 f"bounds: {shown(listed)} of {pattern} are no bounds; give the least and the greatest value, "
                 "as in 100:400"
             )
-        for d in found:
+        for d in result:
             if d.positive and not least > 0:
                 raise RequestError(f"bounds: {least:g} of {d.name}: a link needs a length; give bounds > 0")
             if not least <= d.value <= most:

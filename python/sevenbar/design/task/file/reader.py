@@ -177,16 +177,16 @@ def _free(draft: Draft, form: TaskForm, mistakes: _Mistakes) -> list[FreeNumber]
     chosen: dict[str, tuple[str, FreeNumber]] = {}
     for name, ends in sorted(form.free.items(), key=lambda item: _is_pattern(item[0])):
         with mistakes.of(f"free.{name}"):
-            found = [d for d in every if name in (d.name, d.key) or fnmatchcase(d.name, name)]
-            if not found:
+            result = [d for d in every if name in (d.name, d.key) or fnmatchcase(d.name, name)]
+            if not result:
                 known = [d.name for d in (*draft.lengths, *every)]
                 raise RequestError(
                     f"is not a number of the linkage; {suggestion(name, known)}give some of "
                     f"{', '.join(known)}, or a pattern as 'L*'"
                 )
-            if len({d.unit for d in found}) > 1 and any(isinstance(end, str) for end in ends):
+            if len({d.unit for d in result}) > 1 and any(isinstance(end, str) for end in ends):
                 raise RequestError("names numbers of several units; give them one by one")
-            for d in found:
+            for d in result:
                 low, high = (d.read(end) if isinstance(end, str) else end for end in ends)
                 if d.name not in chosen:
                     chosen[d.name] = name, FreeNumber(d.name, low, high)
@@ -216,8 +216,8 @@ def _wants(
 
 
 def _musts(linkage: Linkage, form: TaskForm, wants: list[Want], mistakes: _Mistakes) -> list[Must]:
-    found: list[Must] = []
+    result: list[Must] = []
     for i, one in enumerate(form.must):
         with mistakes.of(f"must[{i + 1}]", type(one)):
-            found.append(one.must(linkage, wants))
-    return found
+            result.append(one.must(linkage, wants))
+    return result

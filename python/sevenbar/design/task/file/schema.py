@@ -31,13 +31,13 @@ def _flat(value: object) -> object:
     """Tables in tables as one: TOML reads a name with a dot and no quotes, as in P.x, as a table."""
     if not isinstance(value, dict):
         return value
-    found: dict[str, object] = {}
+    result: dict[str, object] = {}
     for name, own in value.items():
         inner = _flat(own)
-        found |= (
+        result |= (
             {f"{name}.{key}": one for key, one in inner.items()} if isinstance(inner, dict) else {name: own}
         )
-    return found
+    return result
 
 
 class LimitsForm(TableForm):

@@ -118,7 +118,7 @@ class InBox(PoseMust):
             places, by = here.points[:, numbers], here.points_by[:, numbers]
             values = np.concatenate([places - low, high - places], axis=1) / loop.size
             slopes = np.concatenate([by, -by], axis=1) / loop.size
-            found = values.reshape(len(values), -1)
-            return found, slopes.reshape(*found.shape, by.shape[-1])
+            result = values.reshape(len(values), -1)
+            return result, slopes.reshape(*result.shape, by.shape[-1])
 
         return slacks

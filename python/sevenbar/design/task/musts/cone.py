@@ -72,11 +72,15 @@ class InCone(PoseMust):
     def start_flaws(self, loop: TaskLoop, circuits: Sequence[Circuit], q: Floats) -> Flaws:
         bend = ball_angle(loop.linkage, self.joint, self.seat, self.stud)
         bends = [bend.at(circuit.q)[np.isfinite(circuit.q[:, bend.own]).all(axis=1)] for circuit in circuits]
-        found = np.concatenate([np.empty(0), *bends])
-        if None not in (self.seat, self.stud) or not found.size or not found.min() > math.pi / 2 > self.angle:
+        result = np.concatenate([np.empty(0), *bends])
+        if (
+            None not in (self.seat, self.stud)
+            or not result.size
+            or not result.min() > math.pi / 2 > self.angle
+        ):
             return
         key = "seat" if self.seat is None else "stud"
-        least, most = np.degrees([found.min(), found.max()])
+        least, most = np.degrees([result.min(), result.max()])
         hint = "the direction in which it is mounted"
         with suppress(NotFollowedError):
             cone = circuits[0].ball_cone(self.joint, seat=self.seat, stud=self.stud)

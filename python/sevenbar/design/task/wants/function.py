@@ -172,9 +172,9 @@ class FunctionWant(SampledWant):
 
 class _FunctionResiduals(ReadingsWanted):
     def facts(self, used: Used) -> Sequence[Fact]:
-        linkage, found = used.loop.linkage, []
+        linkage, result = used.loop.linkage, []
         ends = (("input_zero", linkage.drive.joint), ("output_zero", linkage.drive.output))
         for (name, column), value in zip(ends, self.shown_zeros(used), strict=True):
             unit, scale = shown_in(linkage, column)
-            found.append(Fact(name, unit, value * scale))
-        return found
+            result.append(Fact(name, unit, value * scale))
+        return result

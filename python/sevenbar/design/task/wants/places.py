@@ -84,8 +84,8 @@ class PlacesWanted(Wanted):
         self.count = places.size
 
     def residuals(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
-        found, by = here.points[:, self.numbers], here.points_by[:, self.numbers]
-        places = found.reshape(-1, 3)
+        result, by = here.points[:, self.numbers], here.points_by[:, self.numbers]
+        places = result.reshape(-1, 3)
         return places, by.reshape(*places.shape, by.shape[-1])
 
     def missed(self, here: Here, u: Floats, placing: Placing) -> Floats:
@@ -110,16 +110,16 @@ class PlacesWanted(Wanted):
 
     def _timed(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[TaskStart]:
         assert self.timing is not None
-        found = [
+        result = [
             self._start(np.array([phase] * self.phase), rows, curve, placing)
             for phase, rows in zip(*one.begins(self.timing, free=self.phase), strict=True)
         ]
-        return sorted(found, key=lambda start: start.error)[:1]
+        return sorted(result, key=lambda start: start.error)[:1]
 
     def _start(self, u: Floats, rows: Integers, curve: Floats, placing: Placing | None) -> TaskStart:
-        wanted, found = self.places.reshape(-1, 3), curve[rows].reshape(-1, 3)
-        own = placed(wanted, found) if placing is None else placing
-        error = float(((own.put(found) - wanted) ** 2).sum()) / self.count / self.unit**2
+        wanted, result = self.places.reshape(-1, 3), curve[rows].reshape(-1, 3)
+        own = placed(wanted, result) if placing is None else placing
+        error = float(((own.put(result) - wanted) ** 2).sum()) / self.count / self.unit**2
         return TaskStart(u, rows, error, own)
 
     def _path(
@@ -136,8 +136,8 @@ class PlacesWanted(Wanted):
         # the same as before, and by lengths along the curve, which tell the sides of a cusp apart
         other = by_length(match.placing.put(curve), wanted, **ways)
         error = match.error / 3 / self.unit**2
-        found = (match.rows, other) if other is not None else (match.rows,)
-        return [TaskStart(one.unwound(rows), rows, error, match.placing) for rows in found]
+        result = (match.rows, other) if other is not None else (match.rows,)
+        return [TaskStart(one.unwound(rows), rows, error, match.placing) for rows in result]
 
     def _poses(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[TaskStart]:
         """In order, the linkage placed so that some row takes the first pose."""

@@ -41,12 +41,12 @@ SAME_INPUT = 1e-9
 
 def _sides(value: object, info: ValidationInfo) -> Three:
     """Half the sides of a box: three lengths, or one for all."""
-    found = three(value if isinstance(value, (list, tuple)) else [value] * 3, info, "length")
-    if not min(found) > 0:
+    result = three(value if isinstance(value, (list, tuple)) else [value] * 3, info, "length")
+    if not min(result) > 0:
         raise refuse(
             f"{shown(value)} is no box; give how far the place may be off, > 0, as in 2 or [2, 2, 1]"
         )
-    return found
+    return result
 
 
 _Sides = Annotated[
@@ -184,11 +184,11 @@ class _PoseAtResiduals(PlacesWanted):
     def facts(self, used: Used) -> Sequence[Fact]:
         places = used.points(self.numbers, used.stations)[0]
         off = float(np.linalg.norm(places[0] - self.places[0, 0]))
-        found = [Fact("off", self._length, off, tabled=True)]
+        result = [Fact("off", self._length, off, tabled=True)]
         if self._want.turn is not None:
             axes_off = (places[1:] - places[0] - (self.places[0, 1:] - self.places[0, 0])) / self._arm
-            found.append(Fact("turned", "deg", math.degrees(_turned(axes_off)), tabled=True))
-        return found
+            result.append(Fact("turned", "deg", math.degrees(_turned(axes_off)), tabled=True))
+        return result
 
 
 def _turned(axes_off: Floats) -> float:

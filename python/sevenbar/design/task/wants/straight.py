@@ -137,7 +137,7 @@ class LineWanted(Wanted):
 
     def starts(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[TaskStart]:
         curve = one.point(self._name)
-        found = []
+        result = []
         for rows in one.begins(self.stations.fixed, free=False)[1][:1]:
             p = curve[rows]
             middle = p.mean(axis=0)
@@ -145,8 +145,8 @@ class LineWanted(Wanted):
             along = (p - middle) @ way
             error = float(((p - middle - along[:, None] * way) ** 2).sum() / p.size / self.unit**2)
             u = np.concatenate([middle + along.min() * way, middle + along.max() * way])
-            found.append(TaskStart(u, rows, error, placing))
-        return found
+            result.append(TaskStart(u, rows, error, placing))
+        return result
 
     def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
         way = (u[3:] - u[:3]) / np.linalg.norm(u[3:] - u[:3])
