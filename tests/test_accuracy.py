@@ -169,7 +169,6 @@ def test_an_error_in_a_row_is_seen() -> None:
     assert spoilt[0] == clean["joints"][0]
 
 
-@pytest.mark.slow
 def test_rows_beside_a_dead_centre_are_counted_apart() -> None:
     linkage = sb.load("rscr")
     rows = [row for _, row in gallery_rows.compared(linkage, "rscr", gallery_rows.Amount(8, 2, 720))]
@@ -223,7 +222,6 @@ def small() -> dict[str, object]:
     return json.loads(command.as_json(whole))
 
 
-@pytest.mark.slow
 def test_one_linkage_goes_through_the_whole(small: dict) -> None:
     rows = small["rows"]["planar_4r"]
     assert rows["circuits"] == 2
@@ -243,7 +241,6 @@ def test_one_linkage_goes_through_the_whole(small: dict) -> None:
     assert small["closed_forms"]["planar_4r"]["output"]["jerk"]["errors"]["greatest"] < 1e-12
 
 
-@pytest.mark.slow
 def test_the_page_holds_each_number_of_the_results(small: dict) -> None:
     text = page.text(small)
     assert "**A part only:**" in text
@@ -275,7 +272,6 @@ def test_an_engine_that_is_missing_is_told_once(small: dict) -> None:
     assert "Without exudyn of planar_4r, rssr: needs exudyn." in text
 
 
-@pytest.mark.slow
 def test_figures_are_small_and_the_same_each_time(small: dict, tmp_path: Path) -> None:
     first = {path.name: path.read_bytes() for path in figures.write(small, tmp_path / "one")}
     again = {path.name: path.read_bytes() for path in figures.write(small, tmp_path / "two")}

@@ -75,7 +75,6 @@ def call(folder, command, *options):
     return sevenbar(*command.split(), "b.toml", *table, *rest, *options, cwd=folder)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("command", [c for c in CALLS if c not in ("modes", "export", "axodes")])
 def test_a_command_for_which_the_rounded_linkage_is_rigid_takes_it_as_moving(folder, command):
     rigid, moves = call(folder, command), call(folder, command, "--agree", "1e-5")
@@ -92,7 +91,6 @@ def test_modes_and_rows_are_there_where_constraints_agree(folder):
     assert len((folder / "motion.csv").read_text(encoding="utf-8").splitlines()) > 12
 
 
-@pytest.mark.slow
 def test_a_sweep_and_a_map_have_its_motion_type(folder):
     over = ("--over", "length_1=49.9999,50,50.0001", "--measure", "motion_type", "--json")
     for agree, moving in ((), None), (("--agree", "1e-5"), 3):

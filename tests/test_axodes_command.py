@@ -58,7 +58,6 @@ def test_a_motion_is_a_sequence_of_its_circuits():
     assert apart
 
 
-@pytest.mark.slow
 def test_results_draw_themselves():
     motion = sb.load("planar_4r").motion(24)
     for figure in (

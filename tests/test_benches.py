@@ -279,7 +279,6 @@ def test_the_half_turn_of_a_loop_is_no_closure():
     assert Closure(links).error(pose)[0] > 1.0
 
 
-@pytest.mark.slow
 def test_a_quick_look_at_an_array_of_rssrs_agrees_with_numpy_and_tells_of_numba():
     gone = peers.Peer("numba", reason="not installed")
     from evidence.benches.setting import Setting
@@ -291,7 +290,6 @@ def test_a_quick_look_at_an_array_of_rssrs_agrees_with_numpy_and_tells_of_numba(
         assert table.rows[2][-1] == "not installed"
 
 
-@pytest.mark.slow
 def test_a_change_in_the_studio_is_timed_by_what_it_sends_itself(monkeypatch):
     """Also where its last message comes so late that the page seemed to be at rest before."""
     from evidence.benches.cases import studio

@@ -200,7 +200,6 @@ def as_often_as_claimed(calibrations, truth):
             assert low <= count <= high, f"{name}: {count} of {len(calibrations)} at {level}"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", [100, pytest.param(300, marks=pytest.mark.proof)])
 def test_intervals_of_an_rssr_hold_the_truth_as_often_as_they_claim(count):
     truth = replace(SKEW, N=652.0, L1=251.5, L3=548.0, D=148.0, L2=982.0)
@@ -221,7 +220,6 @@ def test_intervals_of_an_rssr_hold_the_truth_as_often_as_they_claim(count):
     assert noise.mean() == pytest.approx(2e-4, rel=0.02)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", [100, pytest.param(400, marks=pytest.mark.proof)])
 def test_intervals_hold_where_what_is_untold_was_found_out_on_the_way(count):
     truth = replace(PAPER, L1=251.5, L3=548.0, D=2.0, L2=999.0)
@@ -234,7 +232,6 @@ def test_intervals_hold_where_what_is_untold_was_found_out_on_the_way(count):
     as_often_as_claimed(found, {name: getattr(truth, name) for name in ("L1", "L2", "L3", "D")})
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", [100, pytest.param(300, marks=pytest.mark.proof)])
 def test_intervals_hold_where_quantities_of_unlike_noise_are_measured_together(count):
     truth = replace(PAPER, L1=251.5, L3=548.0, L2=999.0)
@@ -260,7 +257,6 @@ def test_intervals_hold_where_quantities_of_unlike_noise_are_measured_together(c
         assert np.mean([c.noise[quantity] for c in found]) == pytest.approx(noise, rel=0.03)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", [60, pytest.param(150, marks=pytest.mark.proof)])
 def test_intervals_of_a_7r_hold_the_truth_as_often_as_they_claim(count):
     linkage, truth, inputs, angle, _ = seven_r(4)

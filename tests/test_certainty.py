@@ -31,7 +31,6 @@ def test_a_small_sample_holds_and_the_page_has_every_family(tmp_path, monkeypatc
         assert f"| {name} | {family.quick} | 0 |" in text
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", command.FAMILIES)
 def test_a_few_of_each_family_hold(name):
     family = command.FAMILIES[name]

@@ -147,7 +147,6 @@ def random_grashof(rng: np.random.Generator, unit: float) -> list[float]:
             return [round(float(x) * unit, 6) for x in rng.permutation(lengths)]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("unit", [0.1, 0.01])
 def test_four_bars_that_fold_in_decimals_lose_nothing(unit: float) -> None:
     rng = np.random.default_rng(3)
@@ -155,7 +154,6 @@ def test_four_bars_that_fold_in_decimals_lose_nothing(unit: float) -> None:
         is_whole(planar_rows(*random_grashof(rng, unit)))
 
 
-@pytest.mark.slow
 def test_beside_a_change_nothing_is_lost_or_found_twice() -> None:
     rng = np.random.default_rng(4)
     for _ in range(80):
@@ -318,7 +316,6 @@ def test_loops_with_freedoms_to_spare_are_found_from_their_rows_too(joints: int)
         assert modes.residual.max() < 1e-10
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("joints", [5, 6, 7])
 def test_longer_loops_that_close_stretched_only_are_rigid(joints: int) -> None:
     lengths = [1.2, 0.7, 2.0, 0.4, 1.1, 0.3][: joints - 1]
@@ -374,11 +371,10 @@ def test_a_sarrus_linkage_of_equal_links_passes_the_poses_in_which_it_folds(long
     assert "there it can also move with 2 freedoms" in sb.report.markdown(motion)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "error",
     [
-        *(pytest.param(error, marks=pytest.mark.slow) for error in (0.0, 1e-11, -1e-11)),
+        *(error for error in (0.0, 1e-11, -1e-11)),
         *(1.7e-9, -1e-7, 1e-6, 1e-5, -3e-5),
     ],
 )
@@ -422,7 +418,6 @@ def test_a_motion_leads_over_poses_where_redundant_constraints_miss_each_other(e
     np.testing.assert_allclose(np.sort(passed), [-2 * pi / 3, 2 * pi / 3], atol=1e-6)
 
 
-@pytest.mark.slow
 def test_a_walk_into_a_change_point_from_afar_is_not_told_beside_the_whole_motion() -> None:
     """Two slides run to infinity on both sides of a pose in which three motions meet; at right angles but for 1.7e-9."""
     row = [("R", 1, 90, 0.5, 0), ("R", 2, 90, 1, 0), ("P", 10, 89.9999999, 0, -90)] * 2

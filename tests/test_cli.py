@@ -78,7 +78,6 @@ def test_a_value_without_bound_is_null_beside_its_status():
     assert report["circuits"][0]["extremes"]["angle"]["status"] == "turns-fully"
 
 
-@pytest.mark.slow
 def test_the_folder_holds_report_rows_and_figures(tmp_path):
     out = tmp_path / "new" / "folder"
     run = sevenbar("analyze", "rssr", "--samples", 36, "--out", out, "--figures", "png", "--figures", "svg")
@@ -107,7 +106,6 @@ def test_the_folder_holds_report_rows_and_figures(tmp_path):
     assert json.loads((out / "report.json").read_text())["motion_type"] == "crank-rocker"
 
 
-@pytest.mark.slow
 def test_a_row_without_value_is_an_empty_cell_beside_its_status(tmp_path):
     assert (
         sevenbar("analyze", "rssr", "--input", "rocker", "--samples", 36, "--out", tmp_path).returncode == 0
@@ -120,7 +118,6 @@ def test_a_row_without_value_is_an_empty_cell_beside_its_status(tmp_path):
     assert "nan" not in (tmp_path / "motion.csv").read_text()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "taken"),
     [
@@ -142,7 +139,6 @@ def test_nothing_is_overwritten_without_force(tmp_path, arguments, taken):
     assert (tmp_path / taken).read_bytes() != b"mine"
 
 
-@pytest.mark.slow
 def test_a_written_file_replaces_the_old_one_and_leaves_others_alone(tmp_path):
     (tmp_path / "report.json").write_text("old")
     (tmp_path / "mine.txt").write_text("keep")
@@ -169,7 +165,6 @@ def test_a_linkage_that_does_not_close_is_an_answer(tmp_path):
     assert not (tmp_path / "film").exists()
 
 
-@pytest.mark.slow
 def test_animation_goes_where_it_is_told(tmp_path):
     run = sevenbar("analyze", "rssr", "--samples", 36, "--animate", tmp_path / "move.gif", "--seconds", 0.4)
     assert run.returncode == 0, run.stderr
@@ -181,7 +176,6 @@ def test_animation_goes_where_it_is_told(tmp_path):
     assert (tmp_path / "again.gif").exists()
 
 
-@pytest.mark.slow
 def test_an_animation_goes_into_the_folder_that_is_made_for_the_report(tmp_path):
     asked = [
         "analyze", "rssr", "--samples", 36, "--figures", "svg", "--out", "new/report", "--seconds", 0.4
@@ -204,7 +198,6 @@ def test_an_animation_goes_into_the_folder_that_is_made_for_the_report(tmp_path)
     assert {path.name for path in folder.iterdir()} == made
 
 
-@pytest.mark.slow
 def test_an_animation_that_fails_leaves_no_report_in_its_folder(tmp_path):
     broken = (
         "import sevenbar.drawing.animate as a\n"
@@ -356,7 +349,6 @@ def test_the_modes_are_drawn(tmp_path):
     assert "</svg>" in (tmp_path / "modes.svg").read_text()
 
 
-@pytest.mark.slow
 def test_each_kind_of_figure_is_written(tmp_path):
     run = sevenbar("plot", "rssp", "--samples", 24, "--out", tmp_path)
     assert run.returncode == 0, run.stderr
@@ -367,7 +359,6 @@ def test_each_kind_of_figure_is_written(tmp_path):
     assert {p.name for p in tmp_path.iterdir()} == {*kinds, "path_link_2_50_0_1.svg"}
 
 
-@pytest.mark.slow
 def test_the_folder_of_a_general_loop_holds_joints_and_paths_too(tmp_path):
     assert sevenbar("analyze", "rssp", "--samples", 24, "--out", tmp_path).returncode == 0
     figures = {"configuration.png", "motion.png", "joints.png", "path_B.png"}
@@ -442,7 +433,6 @@ def test_each_way_not_to_move_is_told_in_a_sentence():
     assert "turns fully" not in told
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_the_report_of_every_linkage_of_the_gallery_holds_its_extremes_within_a_page(name):
     motion = sb.load(name).motion(samples=36)
@@ -504,7 +494,6 @@ def test_circuits_of_two_kinds_tell_their_kind_and_narrow_consoles_fold_at_the_p
     assert all(cell in narrow for cell in (" 0.18743 ", "@ 306.021°", "-118.968°", "@ 47.539°"))
 
 
-@pytest.mark.slow
 def test_the_page_for_people_shows_the_figures_beside_it(tmp_path):
     assert sevenbar("analyze", "rssp", "--samples", 24, "--out", tmp_path).returncode == 0
     page = (tmp_path / "report.md").read_text(encoding="utf-8")

@@ -29,7 +29,6 @@ def commands(group=None, words=()):
             yield (*words, name), command
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("words", [(), *(words for words, _ in commands())], ids=" ".join)
 def test_h_is_help(words):
     short, long = sevenbar(*words, "-h"), sevenbar(*words, "--help")
@@ -166,7 +165,6 @@ def test_it_asks_only_before_much():
         confirm(Ahead("--steps", "a run", seconds=70), yes=False)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("line", "words"),
     [
@@ -197,7 +195,6 @@ plot.configuration = interrupted
 """
 
 
-@pytest.mark.slow
 def test_ctrl_c_leaves_whole_files_and_says_which(tmp_path):
     run = sevenbar("analyze", "rssr", "--samples", 12, "-o", "out", cwd=tmp_path, before=INTERRUPTED)
     assert run.returncode == 130
@@ -236,7 +233,6 @@ plot.curves = seen
 """
 
 
-@pytest.mark.slow
 def test_the_report_is_printed_before_the_first_figure_is_drawn(tmp_path):
     run = sevenbar("analyze", "rssr", "-o", "out", cwd=tmp_path, before=SLOW_FIGURE)
     assert run.returncode == 2

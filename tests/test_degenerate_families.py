@@ -73,7 +73,6 @@ def grashof(ground: float, crank: float, coupler: float, rocker: float) -> tuple
     return shortest[links[0]], 2
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("changed", range(4))
 @pytest.mark.parametrize(
@@ -154,7 +153,6 @@ def opened_four_bar(off: float) -> sb.Linkage:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "family", [bennett_off("length"), bennett_off("twist"), bennett_off("offset"), opened_four_bar],
     ids=["length", "twist", "offset", "axis that leans"],
@@ -225,7 +223,6 @@ def perturbed(case: Rows, off: float, rng: np.random.Generator) -> sb.Linkage:
     ).linkage()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
@@ -305,7 +302,7 @@ def near_joints(kind: str, off: float) -> list[dict[str, object]]:
     "kind",
     [
         *("ball on an axis", "axes of a U", "C beside R"),
-        *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("two balls", "U and S in one place")),
+        *(kind for kind in ("two balls", "U and S in one place")),
     ],
 )
 def test_joints_that_nearly_fall_together_are_analysed_or_refused_in_words(kind: str) -> None:
@@ -337,7 +334,6 @@ def test_screws_of_vanishing_pitch_turn_as_hinges(off: float) -> None:
     assert np.abs(screw.q).max(axis=1).min() < 1e-9
 
 
-@pytest.mark.slow
 def test_seven_axes_at_right_angles_whose_circuits_run_into_a_surface_are_found_within_bounds():
     """Links of lengths 1 and 0 in turn: circuits near the folded pose as the cube of what is left to it."""
     rows = {"length": [1, 0] * 3 + [1], "twist": ["90 deg", "-90 deg"] * 3 + [0], "offset": [0] * 7}

@@ -302,7 +302,6 @@ def test_lengths_of_any_size_give_the_same_angles():
         np.testing.assert_allclose(got, want, rtol=1e-11)
 
 
-@pytest.mark.slow
 def test_mutated_files_load_or_say_why():
     """Random edits of a good file never end in anything but a linkage or a message."""
     random = np.random.default_rng(7)

@@ -68,7 +68,6 @@ def test_brute_force_over_both_numbers_has_the_planar_front(brute_force):
         assert best(*brute_force, 50, off) == pytest.approx(angle, abs=0.06)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("wants", "points"), [((1, 2), 5), ((2, 1), 6)])
 def test_a_front_of_two_measures_is_that_of_brute_force_at_its_ends_and_between(wants, points, brute_force):
     front = pareto(four_bar_task(), *wants, points=points, starts=2)
@@ -85,7 +84,6 @@ def test_a_front_of_two_measures_is_that_of_brute_force_at_its_ends_and_between(
         assert sorted(point.values) == pytest.approx(sorted((abs(swing - 50), angle)), abs=1e-6)
 
 
-@pytest.mark.slow
 def test_a_front_of_a_spherical_four_bar_is_that_of_brute_force():
     free = (FreeNumber("twist_1", 15, 50), FreeNumber("twist_3", 50, 110))
     wants = FigureWant("swing", 90.0), FigureWant("transmission_lowest", "great")
@@ -102,7 +100,6 @@ def test_a_front_of_a_spherical_four_bar_is_that_of_brute_force():
     assert max(point.design.optimality for point in front.points) < 1e-9
 
 
-@pytest.mark.slow
 def test_a_front_over_lengths_of_a_drawing_is_that_of_the_law_of_cosines():
     # input link 40, coupler 98.5, output link 80, ground 90 as drawn
     places = {"a": (0, 0, 0), "b": (0, 40, 0), "c": (90, 80, 0), "d": (90, 0, 0)}

@@ -34,7 +34,6 @@ def test_slopes_by_masses_and_dimensions_are_those_of_differences():
         np.testing.assert_allclose(found[1][:, k], wanted, rtol=1e-5, atol=1e-6)
 
 
-@pytest.mark.slow
 def test_the_mass_of_a_counterweight_is_that_of_least_squares():
     draft = Draft.of_linkage(weighed(counterweight(5.0) | RODS))
     task = DesignTask(draft, (FreeNumber("mass_1", 0.1, 60),), (FigureWant("rms_torque", "small"),))

@@ -213,7 +213,6 @@ def test_least_squares_say_where_no_step_leads_on():
 CHOSEN = {"path": (0, 3, 14), "function": (6, 10, 12), "poses": (4, 10), "cusp": (3,)}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("family", CHOSEN)
 def test_known_answers_are_found_to_nine_digits_and_whole(family):
     for number, made in enumerate(tasks(family)):
@@ -223,7 +222,6 @@ def test_known_answers_are_found_to_nine_digits_and_whole(family):
             assert is_whole(best)
 
 
-@pytest.mark.slow
 def test_musts_hold_to_the_stop_and_the_optimum_meets_its_conditions():
     want = FunctionWant(
         np.radians(np.linspace(0, 60, 13)), np.radians(20 * np.linspace(0, 1, 13) ** 2), (None, None)
@@ -252,7 +250,6 @@ def test_a_path_and_poses_of_a_linkage_that_may_stand_anywhere_are_found_togethe
     assert max(met.greatest for met in design.met) < 1e-8
 
 
-@pytest.mark.slow
 def test_the_least_greatest_error_ripples_evenly():
     want = FunctionWant(
         np.radians(np.linspace(0, 60, 41)), np.radians(20 * np.linspace(0, 1, 41) ** 2), (None, None)
@@ -273,7 +270,6 @@ def test_the_least_greatest_error_ripples_evenly():
     assert best.optimality < 1e-6
 
 
-@pytest.mark.slow
 def test_a_swing_with_its_time_ratio_is_found_by_the_figures_alone():
     task = DesignTask(
         KNOWN, free(KNOWN, NAMES), (FigureWant("swing", 60.0, 50.0), FigureWant("time_ratio", 1.2))
@@ -354,7 +350,6 @@ WAVED = FunctionWant(
 )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "must",
     [Apart((1, 3), 892.0), InBox((-763.0,) * 3, (763.0,) * 3, ("ball_b", "Q"))],
@@ -409,7 +404,6 @@ def test_the_least_greatest_error_up_to_a_must_is_that_of_the_law_of_cosines(mus
     assert design.optimality < 1e-11
 
 
-@pytest.mark.slow
 def test_a_design_that_ends_where_its_motion_type_changes_says_so():
     values = {"length_1": 64.0, "length_2": 61.0, "length_3": 87.1}
     start = Draft.of_linkage(sb.load("planar_4r")).with_values(values)
@@ -427,7 +421,6 @@ def test_a_design_that_ends_where_its_motion_type_changes_says_so():
     assert "KKT residual of design 1: ends at an edge" in printed.file.getvalue()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("least", [880.0, 900.0])
 def test_a_path_at_any_inputs_keeps_links_apart_between_its_places_and_ends_at_an_optimum(least):
     # fewer distances are equal than there are unknowns, and rods come nearest between two places
@@ -489,7 +482,6 @@ def test_what_shall_be_great_is_better_the_greater_it_is_below_zero_too():
     assert left[4] == pytest.approx((left[3] + left[5]) / 2, abs=1e-4)
 
 
-@pytest.mark.slow
 def test_a_bound_of_a_path_is_one_of_its_distances():
     places = PLACES + 3 * np.sign(np.random.default_rng(0).normal(size=PLACES.shape))
     want = PathWant("Q", places, timing=INPUTS)

@@ -77,7 +77,6 @@ def test_a_want_in_words_has_its_unit(want, words):
     assert want.words(sb.load("rssr")) == words
 
 
-@pytest.mark.slow
 def test_the_design_of_known_readings_is_found_and_reported(task_path, tmp_path):
     read = task_file(task_path)
     found = TaskDesigns(designed(read.task, count=1, starts=0), read.name, read.source, 0, 0)
@@ -128,7 +127,6 @@ def test_nothing_found_says_what_was_nearest_and_what_to_ease(task_path):
     assert "a wider range of the joint" in str(caught.value) or "wider bounds" in str(caught.value)
 
 
-@pytest.mark.slow
 def test_a_front_holds_no_point_that_another_beats():
     linkage = sb.load("planar_4r")
     rows = linkage.motion(18).circuits[0]
@@ -169,7 +167,6 @@ def test_wants_of_a_front_that_there_are_not(first, second, expected):
         pareto(task, first, second)
 
 
-@pytest.mark.slow
 def test_a_task_file_in_place_of_a_command_is_a_task(task_path):
     options = ("--designs", 1, "--starts", 0, "--json")
     short = sevenbar("design", task_path, *options)
@@ -178,7 +175,6 @@ def test_a_task_file_in_place_of_a_command_is_a_task(task_path):
     assert json.loads(short.stdout)["designs"] == json.loads(whole.stdout)["designs"]
 
 
-@pytest.mark.slow
 def test_a_front_is_written(task_path, tmp_path):
     task_path.write_text(
         task_path.read_text() + "[[want]]\nkind = 'figure'\nname = 'swing'\nvalue = 'small'\n"

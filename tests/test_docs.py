@@ -28,19 +28,7 @@ WITH_EXAMPLES = [
 ]
 
 
-#: Those whose examples take seconds.
-LONG = (
-    "sevenbar.design.maps.heights",
-    "sevenbar.design.synthesis.function.generation",
-    "sevenbar.design.synthesis.function.swing",
-)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[pytest.mark.slow] if name in LONG else []) for name in WITH_EXAMPLES],
-)
+@pytest.mark.parametrize("name", WITH_EXAMPLES)
 def test_docstring_examples_give_what_they_show(name):
     tested = doctest.testmod(importlib.import_module(name.removesuffix(".__init__")))
     assert tested.attempted > 0
@@ -69,7 +57,6 @@ def test_the_examples_of_the_readme_print_what_their_comments_say():
         assert promise.startswith(line)
 
 
-@pytest.mark.slow
 def test_the_report_in_the_readme_is_the_report_of_today():
     command = [sys.executable, "-m", "sevenbar.commands.cli", "analyze", "examples/rssr.toml"]
     report = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
@@ -79,7 +66,6 @@ def test_the_report_in_the_readme_is_the_report_of_today():
     assert all(f"    {line}\n" in shown for line in lines if line)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "count"), [("analyze", 5), ("measured", 4), ("tolerance", 2)])
 def test_what_a_page_prints_is_what_its_commands_print_today(name, count, tmp_path):
     page = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
@@ -124,7 +110,6 @@ def test_the_example_of_a_page_prints_what_its_comments_say(name, monkeypatch):
     assert list(dict.fromkeys(printed.getvalue().splitlines())) == promised
 
 
-@pytest.mark.slow
 def test_the_example_of_the_page_on_tolerances_prints_what_its_comments_say():
     page = (ROOT / "docs" / "tolerance.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
@@ -134,7 +119,6 @@ def test_the_example_of_the_page_on_tolerances_prints_what_its_comments_say():
     assert printed.getvalue().splitlines() == re.findall(r"print\(.*\)  # (.*)", code)
 
 
-@pytest.mark.slow
 def test_the_designs_of_the_page_on_synthesis_are_those_of_today():
     page = (ROOT / "docs" / "synthesis.md").read_text(encoding="utf-8")
     shown = re.findall(r"^    \$ sevenbar (.*)\n\n((?:    (?!\$).*\n|\n)+)", page, flags=re.MULTILINE)
@@ -151,7 +135,6 @@ def test_the_designs_of_the_page_on_synthesis_are_those_of_today():
                 assert float(there) == pytest.approx(float(here), rel=1e-2)
 
 
-@pytest.mark.slow
 def test_the_example_of_the_page_on_engines_is_right(capsys):
     page = (ROOT / "docs" / "simulation.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
@@ -162,7 +145,6 @@ def test_the_example_of_the_page_on_engines_is_right(capsys):
 
 
 # that both engines agree in the whole gallery is held by test_engines.py; here, that the page has its numbers
-@pytest.mark.slow
 @pytest.mark.parametrize("every", [3, pytest.param(1, marks=pytest.mark.proof)])
 def test_the_table_on_the_engines_is_that_of_today(every):
     page = (ROOT / "docs" / "simulation.md").read_text(encoding="utf-8")
@@ -187,7 +169,6 @@ def test_links_of_the_documentation_lead_somewhere():
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
-@pytest.mark.slow
 def test_the_tables_on_the_seven_r_are_those_of_today():
     page = (ROOT / "docs" / "seven_r.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)

@@ -32,9 +32,8 @@ def calls():
         if step["file"]:
             files[step["file"]] = step["content"]
         else:
-            marks = [pytest.mark.slow] if step["words"].startswith("design swing") else []
             call = (dict(files), step["words"], step["without"], step["said"])
-            yield pytest.param(*call, id=step["words"], marks=marks)
+            yield pytest.param(*call, id=step["words"])
 
 
 @pytest.fixture
@@ -52,7 +51,6 @@ def call(tmp_path, monkeypatch, capsys):
     return called
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("files", "words", "without", "said"), list(calls()))
 def test_a_command_of_the_page_says_what_the_page_shows(
     call, tmp_path, monkeypatch, files, words, without, said

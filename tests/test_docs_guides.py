@@ -13,7 +13,6 @@ ENGLISH, CHINESE = QUICK
 SIMPLE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["quick-start", "planar", "papers", "zh/quick-start"])
 def test_the_examples_of_a_page_print_what_their_comments_say(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -27,7 +26,6 @@ def test_the_examples_of_a_page_print_what_their_comments_say(name, tmp_path, mo
     assert output.getvalue().splitlines() == promised
 
 
-@pytest.mark.slow
 def test_the_quick_start_shows_what_its_commands_print_today(tmp_path):
     for kind, text in boxes(ENGLISH):
         if kind == "toml":
@@ -37,7 +35,6 @@ def test_the_quick_start_shows_what_its_commands_print_today(tmp_path):
     assert (tmp_path / "fourbar.gif").read_bytes().startswith(b"GIF8")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["planar", "papers"])
 def test_the_commands_of_a_page_run(name, tmp_path):
     for kind, text in boxes(ENGLISH):

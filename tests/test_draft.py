@@ -94,7 +94,6 @@ def test_a_text_that_nothing_changed_comes_back_byte_for_byte(name: str) -> None
     assert Draft.of(TEXTS[name], name).toml() == TEXTS[name]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", TEXTS)
 def test_a_changed_dimension_is_the_only_place_that_differs_in_the_file(name: str) -> None:
     content = TEXTS[name]
@@ -124,7 +123,6 @@ def test_a_changed_dimension_is_the_only_place_that_differs_in_the_file(name: st
         assert written.count("\r\n") in (0, written.count("\n"))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", TEXTS)
 def test_points_come_and_go_and_leave_the_rest_of_the_file(name: str) -> None:
     content = TEXTS[name]

@@ -49,7 +49,6 @@ def slides(run):
     )
 
 
-@pytest.mark.slow
 def test_the_paper_s_rssr_in_exudyn_is_sevenbar_s_to_the_figures_asked_for(rssr_in_exudyn):
     run = rssr_in_exudyn
     assert len(run.time) == 3601
@@ -89,7 +88,6 @@ def test_the_paper_s_rssr_in_mujoco_is_sevenbar_s_to_the_figures_asked_for(rssr_
     assert 1e-9 < run.gap / run.course.circuit.size < 1e-5
 
 
-@pytest.mark.slow
 def test_the_paper_s_seven_r_in_exudyn_is_sevenbar_s_on_all_joints():
     run = simulate(sb.load("seven_r"), "exudyn")
     assert len([found for found in run.differences if found.quantity.endswith(" angle")]) == 7
@@ -97,7 +95,6 @@ def test_the_paper_s_seven_r_in_exudyn_is_sevenbar_s_on_all_joints():
     assert run.difference("P position").greatest < 1e-9 * run.course.circuit.size
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in names() if name not in ("rssr", "screw_drill")])
 def test_gallery_linkages_move_in_exudyn_as_sevenbar_says(name):
     run = simulate(sb.load(name), "exudyn", steps=FEW)
@@ -108,7 +105,6 @@ def test_gallery_linkages_move_in_exudyn_as_sevenbar_says(name):
     assert told == bool(run.linkage.mobility().redundant)
 
 
-@pytest.mark.slow
 def test_a_screw_moves_in_exudyn_though_it_has_none():
     run = simulate(sb.load("screw_drill"), "exudyn", steps=180)
     assert max(turns(run), slides(run), run.tilt, run.gap / run.course.circuit.size) < 1e-9
@@ -124,14 +120,12 @@ ON_A_PLATE = [
 ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("input", ["crank", "plate.1", "plate.2", "plate.3"])
 def test_a_plate_on_the_ground_moves_and_drives_in_exudyn_as_sevenbar_says(input):
     run = simulate(sb.from_axes(ON_A_PLATE), "exudyn", input=input, steps=400)
     assert max(turns(run), slides(run), run.tilt, run.gap / run.course.circuit.size) < 1e-9
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_gallery_linkages_move_in_mujoco_as_sevenbar_says(name):
     run = simulate(sb.load(name), "mujoco", steps=3600)
@@ -147,7 +141,6 @@ def errors(engine, steps):
     return run, [found.greatest for found in run.differences[:3]], run.gap
 
 
-@pytest.mark.slow
 def test_differences_shrink_with_the_step_at_the_order_of_the_method(rssr_in_exudyn, rssr_in_mujoco):
     _, few, _ = errors("exudyn", 1800)
     many = [found.greatest for found in rssr_in_exudyn.differences[:3]]
@@ -199,7 +192,6 @@ def test_constraints_that_do_not_repeat_each_other_are_not_hidden_as_if_they_did
     assert moved(way, spoilt(model, 0.5), "mujoco").gap > 5 * moved(way, model, "mujoco").gap
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(
     ("name", "options"),
@@ -269,7 +261,6 @@ def test_the_constraint_of_a_screw_has_the_slope_of_its_value():
         assert screw.slope(None, 0.0, 0, q, None, False)[0] == pytest.approx(differences, abs=1e-8)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("unit", "factor", "speed"),
     [("um", 1e-3, 10.0), ("ft", 100.0, 10.0), ("mm", 1.0, 1e4), ("mm", 1.0, -1e-6)],

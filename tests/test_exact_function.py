@@ -69,7 +69,6 @@ def test_random_pairs_have_as_many_linkages_as_theory_counts(count, given, theor
     assert seen == real
 
 
-@pytest.mark.slow
 def test_a_hundred_tasks_of_eight_pairs_have_one_linkage_each():
     for seed in range(100):
         found = function_pairs(*random_pairs(8, seed))
@@ -139,7 +138,6 @@ def test_seven_pairs_of_square_axes_agree_with_the_other_closed_form(seed):
         assert np.abs(ours - scaled).max(axis=1).min() < 1e-5
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("given", [{}, {"twist": RIGHT}, {"twist": 1.0}, {"zeros": (0.2, 0.3)}])
 @pytest.mark.parametrize("count", [3, 4])
 def test_fewer_pairs_have_a_family_whose_members_all_take_them(count, given):

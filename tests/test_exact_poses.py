@@ -38,7 +38,6 @@ def test_five_planar_poses_have_four_dyads_and_every_pair_takes_the_poses(seed):
         assert worst_miss(answer, displaced(poses)) < 1e-7
 
 
-@pytest.mark.slow
 def test_a_hundred_random_planar_tasks_are_complete():
     counts = [planar_poses(random_planar(5, seed)) for seed in range(100)]
     assert all(found.complete and found.real in (0, 2, 4) for found in counts)
@@ -47,7 +46,6 @@ def test_a_hundred_random_planar_tasks_are_complete():
     assert {found.real for found in counts} == {0, 2, 4}
 
 
-@pytest.mark.slow
 def test_a_known_four_bar_is_found_again_without_defects():
     rng, done = np.random.default_rng(5), 0
     while done < 20:
@@ -117,7 +115,6 @@ def test_coordinates_far_away_and_tiny_ones_change_nothing():
         assert 1e6 * lines_of(small)[0] == pytest.approx(lines_of(one)[0], rel=1e-9)
 
 
-@pytest.mark.slow
 def test_three_and_four_poses_have_families():
     for count in (3, 4):
         found = planar_poses(FIVE[:count], samples=8)
@@ -173,7 +170,6 @@ def test_five_orientations_have_six_dyads_and_every_pair_takes_them(seed):
     assert max([a.error for a in found.answers], default=0.0) < 1e-12
 
 
-@pytest.mark.slow
 def test_a_hundred_random_spherical_tasks_are_complete():
     counts = [spherical_orientations(random_turns(5, seed)) for seed in range(100)]
     assert all(found.complete and found.real in (0, 2, 4, 6) for found in counts)
@@ -181,7 +177,6 @@ def test_a_hundred_random_spherical_tasks_are_complete():
     assert {2, 4, 6} <= {found.real for found in counts}
 
 
-@pytest.mark.slow
 def test_a_known_spherical_four_bar_is_found_again_without_defects():
     rng, done = np.random.default_rng(2), 0
     while done < 20:

@@ -30,7 +30,6 @@ def same_line(at, axis, other_at, other_axis):
     return max(np.abs(np.cross(axis, other_axis)).max(), np.abs(apart).max() / 50)
 
 
-@pytest.mark.slow
 def test_a_hundred_tasks_of_five_poses_have_six_dyads_cc():
     real = []
     for seed in range(100):
@@ -126,7 +125,6 @@ def test_poses_without_dyads_say_so(poses, said):
         cc_dyads(poses)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(10))
 def test_three_poses_have_one_bennett_linkage_without_defects(seed):
     poses = random_poses(3, seed)
@@ -145,7 +143,6 @@ def test_three_poses_have_one_bennett_linkage_without_defects(seed):
     assert worst_miss(found.answers[0], poses @ inverse(poses[0])) < 1e-8
 
 
-@pytest.mark.slow
 def test_a_hundred_tasks_have_one_bennett_linkage_each():
     for seed in range(100):
         found = bennett_poses(random_poses(3, seed))
@@ -155,7 +152,6 @@ def test_a_hundred_tasks_have_one_bennett_linkage_each():
         assert max(a.error for a in found.answers) < 1e-9
 
 
-@pytest.mark.slow
 def test_a_known_bennett_linkage_is_found_again():
     rng = np.random.default_rng(1)
     for _ in range(20):
@@ -208,7 +204,6 @@ def test_both_factorings_of_a_motion_polynomial_give_it_back():
         assert np.abs(times(-c1 - h, h) - c0).max() < 1e-10
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_a_search_from_many_complex_starts_finds_the_same_six_dyads_rr(seed):
     """Newton's method on the equations of a dyad of two turning joints, reduced to the moving direction."""

@@ -51,7 +51,6 @@ def test_the_drawn_pose_counts_among_them_if_it_is_not_one_of_them(count):
     assert max(stretch(other, values) for values in inside) < 1e-9
 
 
-@pytest.mark.slow
 def test_a_search_that_begins_with_them_meets_the_poses_exactly():
     task = read_task(TASK)
     found = designed(task, count=1, starts=0, given=exact_starts(task, 16))

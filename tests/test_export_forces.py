@@ -54,7 +54,6 @@ def of_mujoco(model, name):
     return body.mass[0], body.ipos, turn @ np.diag(body.inertia) @ turn.T
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("to", ["urdf", "mjcf"])
 @pytest.mark.parametrize("name", NAMES)
 def test_mujoco_reads_the_masses_of_the_linkage(name, to, tmp_path):
@@ -98,7 +97,6 @@ def test_urdf_says_what_it_leaves_out(tmp_path):
     assert "Left out" not in plain.read_text()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_adams_has_the_masses_of_the_linkage_and_its_weight(name, tmp_path):
     linkage = loaded(name)

@@ -27,7 +27,6 @@ def gap(data):
     return np.abs(data.efc_pos[data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]).max()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", sampled())
 def test_the_model_starts_closed_in_the_pose_asked_for_and_runs(name, tmp_path):
     motion = sb.load(name).motion(90)

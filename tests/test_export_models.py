@@ -71,7 +71,6 @@ def closing(joint, values):
     return turn @ slide
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", GALLERY)
 def test_yourdfpy_puts_the_links_of_the_tree_where_the_motion_has_them(name, posed):
     motion, circuit, row, folder = posed(name, "urdf")
@@ -99,7 +98,6 @@ def test_yourdfpy_puts_the_links_of_the_tree_where_the_motion_has_them(name, pos
     assert np.abs(gap[:3, :3]).max() < 1e-9
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["rssr", "seven_r", "rsur", "six_bar", "rccc"])
 def test_mujoco_imports_the_tree(name, posed):
     motion, circuit, row, folder = posed(name, "urdf")
@@ -151,7 +149,6 @@ KIND = {
 }  # fmt: skip
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", GALLERY)
 def test_adams_markers_of_each_joint_meet_and_point_the_same_way(name, posed):
     motion, circuit, row, folder = posed(name, "cmd")

@@ -59,7 +59,6 @@ def joint_lines(linkage, circuit, row):
     return lines
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", sampled())
 def test_step_holds_sound_solids_whose_holes_are_in_line(name, tmp_path):
     linkage = sb.load(name)
@@ -90,7 +89,6 @@ def test_step_holds_sound_solids_whose_holes_are_in_line(name, tmp_path):
             assert off_line((scale * point, along), one, size) < 1e-9
 
 
-@pytest.mark.slow
 def test_the_balls_and_bores_of_the_paper_s_linkage_are_where_it_puts_them(tmp_path):
     alpha = 0.5
     linkage = sb.load("rssr")
@@ -129,7 +127,6 @@ def loaded_glb(path):
     return scene, found
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", sampled())
 def test_glb_holds_watertight_parts_of_the_cad_s_volume(name, tmp_path):
     linkage = sb.load(name)
@@ -148,7 +145,6 @@ def test_glb_holds_watertight_parts_of_the_cad_s_volume(name, tmp_path):
         assert np.linalg.norm(1000 * mesh.center_mass - middle) < 2e-3 * np.linalg.norm(1000 * mesh.extents)
 
 
-@pytest.mark.slow
 def test_glb_s_nodes_are_the_links_in_their_frames(tmp_path):
     linkage = sb.load("seven_r")
     motion = linkage.motion(24)
@@ -165,7 +161,6 @@ def test_glb_s_nodes_are_the_links_in_their_frames(tmp_path):
         np.testing.assert_allclose(upright @ frame[:3, :3], circuit.link_motion(link).rotation[0], atol=1e-12)
 
 
-@pytest.mark.slow
 def test_stl_is_one_file_in_the_linkage_s_unit_or_a_folder_of_parts(tmp_path):
     motion = sb.load("rssr").motion(24)
     assert export(motion, "stl", tmp_path / "all.stl") == [tmp_path / "all.stl"]
@@ -194,7 +189,6 @@ MEET = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", sampled())
 def test_parts_do_not_run_into_each_other(name, tmp_path):
     export(sb.load(name).motion(90), "glb", tmp_path / "a.glb")
@@ -210,7 +204,6 @@ def test_parts_do_not_run_into_each_other(name, tmp_path):
     assert met <= MEET.get(name, set())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("unit", ["um", "m", "ft"])
 def test_any_length_unit_gives_the_same_shape(unit, tmp_path):
     metres = {"um": 1e-6, "m": 1.0, "ft": 0.3048}[unit]

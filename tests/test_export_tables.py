@@ -183,7 +183,6 @@ def test_a_linkage_that_does_not_close_has_nothing_to_export(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("to", "package", "extra"),
     [
@@ -201,7 +200,6 @@ def test_a_missing_library_is_named_with_its_extra(motion, tmp_path, monkeypatch
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.slow
 def test_the_command_says_what_it_wrote_and_ends_mistakes_with_2(tmp_path):
     def run(*arguments):
         command = [sys.executable, "-m", "sevenbar.commands.cli", "export", *arguments]

@@ -16,7 +16,6 @@ LOOPS = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", LOOPS)
 def test_derivatives_of_ranges_bends_and_distances_are_those_of_differences(name):
     linkage, joints, balls = LOOPS[name]
@@ -45,7 +44,6 @@ def test_derivatives_of_ranges_bends_and_distances_are_those_of_differences(name
             assert found[one].slopes[k] == pytest.approx(slope, abs=2e-6 * size), (one, number)
 
 
-@pytest.mark.slow
 def test_a_given_seat_has_the_derivatives_of_its_greatest_angle():
     linkage = LOOPS["rssr"][0].stopped(cones={"ball_a": sb.Cone(1.0, seat=(0, 0, 1))}, radii={1: 10})
     motion = linkage.motion()

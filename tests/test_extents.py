@@ -102,7 +102,6 @@ def cap(directions):
     return math.asin(min(1.0, np.linalg.norm(directions - found.x, axis=1).max()))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "samples"), [("rssr", 720), ("rscr", 1440), ("rssp", 720), ("rsur", 720), ("swash_plate", 720)]
 )

@@ -27,7 +27,6 @@ def motions() -> dict[str, sb.Motion]:
     return {name: sb.load(name).motion(samples=48) for name in names()}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_the_joints_values_lead_to_the_links_places(motions: dict[str, sb.Motion], name: str) -> None:
     motion = motions[name]
@@ -61,7 +60,6 @@ def test_drawn_links_are_rigid_and_meet_in_the_joints(motions: dict[str, sb.Moti
                 assert np.nanmax(gap) < 1e-9 * max(circuit.size, 1.0)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", sampled())
 def test_each_figure_of_each_linkage_can_be_drawn(motions: dict[str, sb.Motion], name: str) -> None:
     motion = motions[name]
@@ -143,7 +141,6 @@ def test_slides_are_drawn_in_the_length_unit(motions: dict[str, sb.Motion]) -> N
     assert "slider at ±1 mm/s" in figure.legends[0].get_title().get_text()
 
 
-@pytest.mark.slow
 def test_all_modes_are_drawn_to_one_scale() -> None:
     linkage = sb.load("seven_r")
     modes = linkage.assembly_modes(math.radians(30))
@@ -173,7 +170,6 @@ def test_circuits_whose_curves_coincide_are_one_line_that_names_both(motions: di
     assert box.x1 <= page.x1
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["seven_r", "rssp", "bricard_trihedral", "spherical_4r"])
 def test_any_loop_can_be_animated(motions: dict[str, sb.Motion], name: str, tmp_path: Path) -> None:
     with Image.open(animate(motions[name], tmp_path / "a.gif", frames=3)) as image:

@@ -207,7 +207,6 @@ def test_a_figure_of_several_panels_is_composed() -> None:
         plot.curves(motion, ax=panels[0])
 
 
-@pytest.mark.slow
 def test_styles_sizes_and_titles_are_as_asked() -> None:
     motion = sb.load("rssr").motion(samples=48)
     before = dict(matplotlib.rcParams)
@@ -335,7 +334,6 @@ def test_the_transmission_angle_is_the_circuits_own() -> None:
         plot.transmission(sb.load("bennett").motion(samples=36))
 
 
-@pytest.mark.slow
 def test_figures_and_films_are_drawn_as_options_say(tmp_path: Path) -> None:
     words = ["--circuit", "1", "--view", "xz", "--size", "85x70mm", "--style", "paper", "--figures", "svg"]
     result = sevenbar(

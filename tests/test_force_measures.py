@@ -52,7 +52,6 @@ def test_measures_are_those_of_the_sizing() -> None:
     assert found["peak_tilting:rocker"] == pytest.approx(rocker.tilting.peak.value, rel=1e-9)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["seven_r", "rscr"])
 def test_derivatives_by_dimensions_are_those_of_differences(name: str) -> None:
     linkage, _ = loaded_circuit(name)

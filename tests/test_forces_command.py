@@ -118,7 +118,6 @@ def test_a_circuit_that_rocks_has_no_peak_at_constant_speed_and_one_under_a_law(
         assert "input torque peak" in page
 
 
-@pytest.mark.slow
 def test_the_table_has_units_and_no_value_for_what_is_not_determined(tmp_path: Path) -> None:
     told("engine", "--samples", "36", "--out", "forces", cwd=tmp_path)
     with (tmp_path / "forces" / "forces.csv").open() as file:
@@ -234,9 +233,8 @@ def forces_of(name: str) -> sb.Forces:
     return loaded(name.split()[0]).motion(72, **FIGURES[name]).circuits[0].forces()
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("fonts_of_matplotlib")
-@pytest.mark.parametrize("style", ["screen", pytest.param("paper", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("style", ["screen", "paper"])
 @pytest.mark.parametrize("kind", force_figures.KINDS)
 @pytest.mark.parametrize("name", FIGURES)
 def test_no_text_of_a_figure_of_forces_lies_on_another(
@@ -311,7 +309,6 @@ def test_counterweights_that_cannot_be_found_are_refused(arguments: list[str], m
     assert message in mistake("forces", "rssr_press", *arguments)
 
 
-@pytest.mark.slow
 def test_the_force_in_the_plane_is_in_the_table_the_json_and_the_csv(tmp_path: Path) -> None:
     page = told("engine", "--out", str(tmp_path / "out"), cwd=tmp_path)
     sizing = sb.load("engine").motion().circuits[0].forces().sizing()

@@ -35,7 +35,6 @@ def test_the_page_has_commands() -> None:
     assert len(shown()) == 3
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("command", "lines"), shown())
 def test_what_the_page_shows_is_printed_today(command: str, lines: list[str], tmp_path: Path) -> None:
     run = sevenbar(*shlex.split(command), cwd=tmp_path)

@@ -150,7 +150,6 @@ def wrong_of(seed: int, numbers: range) -> tuple[list[str], int, int]:
     return wrong, count, well
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("part", [0, 1, *(pytest.param(k, marks=pytest.mark.proof) for k in range(2, 8))])
 def test_random_loops_are_those_of_newton_and_euler(part: int) -> None:
     wrong, count, well = wrong_of(21, range(150 * part, 150 * part + 150))
@@ -159,7 +158,6 @@ def test_random_loops_are_those_of_newton_and_euler(part: int) -> None:
     assert well > 2 * count
 
 
-@pytest.mark.slow
 def test_ten_random_loops_are_those_of_sixty_digits() -> None:
     count = number = 0
     while count < 10:
@@ -197,7 +195,6 @@ def gallery(name: str, seed: int = 3) -> Loaded:
     return Loaded(name, linkage, circuit, random_loading(np.random.default_rng(seed), linkage))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [*KNOWN, "sarrus", "bricard_line", "bricard_plane", "bricard_trihedral", "myard_5r",
                                   "screw_drill", "universal_joint", "swash_plate", "five_bar", "six_bar"])  # fmt: skip
 def test_gallery_linkages_are_those_of_newton_and_euler(name: str) -> None:
@@ -227,7 +224,6 @@ def test_what_is_open_in_sarrus_are_moments_about_one_direction() -> None:
     assert np.isnan(moment[..., :2][:, ~flags[:, :2]]).all()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["seven_r", "rssr", "rscr", "rssp", "planar_4r", "bennett", "spherical_4r"])
 def test_statics_is_the_derivative_of_potential_energy(name: str) -> None:
     loaded = gallery(name)

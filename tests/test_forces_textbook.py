@@ -55,7 +55,6 @@ LOOPS = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", LOOPS)
 def test_a_textbook_loop_keeps_its_energy_through_dead_centres_and_change_points(name: str) -> None:
     for circuit in LOOPS[name]().motion().circuits:

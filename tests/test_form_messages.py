@@ -304,7 +304,6 @@ def test_each_mistake_in_a_call_has_its_own_message(arguments, messages):
     assert str(caught.value).splitlines() == messages
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::sevenbar.errors.AngleUnitWarning")
 def test_mutated_files_of_every_form_load_or_say_why():
     """Words of a good file moved, dropped and exchanged end in a linkage or a message, never in a crash."""
@@ -412,7 +411,6 @@ def test_lengths_that_can_be_seen_beside_each_other_are_taken(text):
     assert sb.loads(text, "f.toml")
 
 
-@pytest.mark.slow
 def test_values_too_large_to_print_are_named_in_plain_words():
     deep = {}
     for _ in range(100_000):

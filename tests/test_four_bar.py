@@ -91,7 +91,6 @@ def test_a_slide_that_the_two_links_do_not_reach_does_not_close():
         assert (loop.motion(24).motion_type != "cannot-assemble") == closes, offset
 
 
-@pytest.mark.slow
 def test_the_class_is_that_of_the_motion_of_random_four_bars_for_every_input():
     rng = np.random.default_rng(2)
     seen = set()
@@ -109,7 +108,6 @@ def test_the_class_is_that_of_the_motion_of_random_four_bars_for_every_input():
     assert seen == {"crank-rocker", "double-crank", "double-rocker", "triple rocker"}
 
 
-@pytest.mark.slow
 def test_the_class_is_that_of_the_motion_of_random_spherical_four_bars_for_every_input():
     rng = np.random.default_rng(3)
     seen, count = set(), 0
@@ -133,7 +131,6 @@ def test_the_class_is_that_of_the_motion_of_random_spherical_four_bars_for_every
     assert seen == {"crank-rocker", "double-crank", "double-rocker", "triple rocker"}
 
 
-@pytest.mark.slow
 def test_the_class_is_that_of_the_motion_of_random_slider_cranks_for_every_input():
     rng = np.random.default_rng(4)
     seen, count = set(), 0

@@ -124,7 +124,6 @@ def angle_of_chain(loops: int, t: float) -> float:
         return float(whole * 2 * mpmath.pi + rest)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("loops", [1, 2])
 def test_a_chain_of_four_bars_passes_its_change_points(loops: int) -> None:
     # a chain of N parallelograms moves as one whose coupler and rocker carry the others' rods
@@ -167,12 +166,10 @@ def bricard_agrees(times: list[float]) -> None:
     assert np.abs(states[:, 1] - fall.dq[:, :5]).max() < 1e-10
 
 
-@pytest.mark.slow
 def test_bricard_falls_as_newton_and_euler_have_it() -> None:
     bricard_agrees([0.2, 0.6])
 
 
-@pytest.mark.slow
 def test_bricard_falls_for_ten_seconds_as_newton_and_euler_have_it() -> None:
     bricard_agrees([1.0, 2.0, 5.0, 10.0])
 
@@ -272,7 +269,6 @@ def angle_of_slider_crank(t: float) -> float:
         return float(at)
 
 
-@pytest.mark.slow
 def test_the_spatial_slider_crank_is_where_energy_has_it() -> None:
     fall = spatial_slider_crank().free_motion(0.2, start=0.0, speed=6.0, samples=3)
     assert abs(fall.input[-1] - angle_of_slider_crank(0.2)) < 2e-12
@@ -354,7 +350,6 @@ def test_a_damper_on_a_crank_slows_it_down_exponentially() -> None:
     assert fall.difference < 1e-7
 
 
-@pytest.mark.slow
 def test_a_motor_curve_leads_to_its_speed() -> None:
     circuit, given, _, inertia = pendulum(gravity=(0.0, 0.0, -G))
     fall = circuit.free_motion(3.0, torque=([0.0, 100.0], [1.0, 0.0]), samples=31, **given)

@@ -53,7 +53,7 @@ def frame(rng: np.random.Generator, hostility: float) -> np.ndarray:
     "letters",
     [
         *("", "R", "RRRR", "RSSR", "SSS", "PPPPP", "RSRPR", "SRSRSRR", "XR"),
-        pytest.param("RRRRRRR", marks=pytest.mark.slow),
+        "RRRRRRR",
     ],
 )
 def test_loops_of_hostile_frames_are_answered_or_refused(letters: str) -> None:

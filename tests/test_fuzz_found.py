@@ -71,7 +71,6 @@ def test_an_output_that_turns_back_where_the_input_does_has_the_range_of_its_row
         assert high - 1e-3 < circuit.output.max() < high + 1e-9
 
 
-@pytest.mark.slow
 def test_an_output_that_turns_back_with_the_input_is_found_whatever_the_sign_of_a_zero() -> None:
     # its rate at the input's second dead centre is -7e-19 in one step and positive in the next: a range of one value was told
     links = [
@@ -124,7 +123,6 @@ axis = [3.0, 4.0, 0.0]
 """
 
 
-@pytest.mark.slow
 def test_a_motion_of_two_slides_alone_meets_one_of_all_joints() -> None:
     # 941 places of the slides' motion were each followed to its ends; in the pose drawn the motion of all joints leaves it, a
     # motion that was not found
@@ -240,7 +238,6 @@ def test_names_in_a_list_of_what_there_is_have_no_characters_that_are_not_printe
     assert "\\ufeff" in str(caught.value)
 
 
-@pytest.mark.slow
 def test_a_circuit_between_change_points_is_found_once() -> None:
     # at a quarter turn a slide is where it may be anything: seeds there were followed as circuits of their own
     linkage = sb.from_axes(
@@ -268,7 +265,6 @@ def test_a_circuit_whose_steps_led_on_over_a_change_point_is_not_told_in_parts_t
     circuits_are_distinct(motion)
 
 
-@pytest.mark.slow
 def test_a_motion_too_long_to_hold_is_not_told_again_from_each_of_its_modes() -> None:
     # three screws go on for more nodes than a curve may have: what was held from one mode did not reach the next
     linkage = sb.from_axes(

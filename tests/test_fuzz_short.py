@@ -40,7 +40,6 @@ CASES = {
 SEED = 21
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("way", list(ways.WAYS))
 def test_nothing_is_found(way: str) -> None:
     count, size = CASES[way], ways.WAYS[way].size
@@ -73,7 +72,6 @@ def test_a_description_is_written_without_losing_a_digit() -> None:
         np.testing.assert_array_equal(sb.loads(written(description)).transforms, want)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_the_gallery_holds_what_must_hold(name: str) -> None:
     assert (
@@ -157,7 +155,6 @@ def test_messages_of_one_kind_are_one_family() -> None:
 # The watch
 
 
-@pytest.mark.slow
 def test_a_worker_that_dies_or_hangs_costs_its_case_only(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(ways.WAYS, "file", dataclasses.replace(ways.WAYS["file"], limit=5.0))
     heard: list[tuple[ways.Job, Tally]] = []
@@ -205,7 +202,6 @@ def test_a_batch_that_takes_the_process_with_it_is_halved_until_one_case_is_left
 # A run and its page
 
 
-@pytest.mark.slow
 def test_a_run_that_was_stopped_goes_on_and_comes_to_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -272,7 +268,6 @@ def test_batches_that_contradict_the_motion_are_found() -> None:
             batches.loop_crossed(linkage, dataclasses.replace(motions, **changes), 0)
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::sevenbar.errors.AngleUnitWarning")
 def test_mutations_reach_every_stage_of_the_loader() -> None:
     seen: Counter[str] = Counter()

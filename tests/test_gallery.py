@@ -155,7 +155,6 @@ def test_a_file_names_its_source_and_its_drive(name: str) -> None:
     assert sb.load(name).kind == FACTS[name].kind
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", FACTS)
 def test_motion_type_and_circuits(name: str) -> None:
     motion, facts = moved(name), FACTS[name]

@@ -11,7 +11,6 @@ def test_the_record_has_each_case_and_no_other():
     assert {path.stem for path in FOLDER.glob("*.txt")} == set(CASES)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_it_is_said_as_before(case):
     assert not difference(CASES[case](), (FOLDER / f"{case}.txt").read_text("utf-8"))

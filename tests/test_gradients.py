@@ -27,7 +27,7 @@ def sides(linkage, name, by):
     "linkage",
     [
         sb.rssr(M=640, N=-710, L1=210, L3=500, D=130, L2=900),
-        pytest.param(sb.load("rssp"), marks=pytest.mark.slow),
+        sb.load("rssp"),
     ],
 )
 def test_the_gradient_of_every_measure_is_that_of_differences(linkage):

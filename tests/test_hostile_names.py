@@ -21,7 +21,6 @@ def test_each_name_is_text_in_a_page_that_plays(tmp_path: Path) -> None:
         page_of(name, tmp_path / str(number))
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:Glyph")  # which fonts there are
 @pytest.mark.parametrize("name", ["<svg onload=alert(1)>", "]]>", "=cmd|'/C calc'!A0", "../../x", "联杆“”"])
 def test_a_name_is_text_in_every_file(name: str, tmp_path: Path) -> None:

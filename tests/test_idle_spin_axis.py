@@ -48,7 +48,6 @@ def in_order(circuit, motion):
     return turn[order], column(circuit, motion.output)[order]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("from_slide", [True, False])
 @pytest.mark.parametrize("gap", GAPS)
 @pytest.mark.parametrize(("crank", "rod"), [(1, 3), (0.1, 0.3), (2, 2.6), (30, 100)])

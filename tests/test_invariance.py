@@ -196,7 +196,6 @@ def changed(
     return made
 
 
-@pytest.mark.slow
 @few
 @given(loops, rotations)
 def test_a_rigid_change_of_frame_changes_no_motion_and_carries_its_traces(
@@ -230,7 +229,6 @@ def test_a_rigid_change_of_frame_changes_no_motion_and_carries_its_traces(
         np.testing.assert_allclose(b.velocity[same], a.velocity[same] @ rotation.T, rtol=0, atol=1e-6 * scale)
 
 
-@pytest.mark.slow
 @few
 @given(loops, st.sampled_from([1e-9, 1e-3, 25.4, 1e6]))
 def test_another_unit_of_length_changes_no_angle_and_slides_by_its_size(joints: Joints, size: float) -> None:
@@ -242,7 +240,6 @@ def test_another_unit_of_length_changes_no_angle_and_slides_by_its_size(joints: 
     alike(first, second, ends, Ends(ends.input, ends.output, 1 / size))
 
 
-@pytest.mark.slow
 @few
 @given(loops)
 def test_the_mirror_image_moves_alike_with_its_slides_turned_round(joints: Joints) -> None:
@@ -262,7 +259,6 @@ def test_the_mirror_image_moves_alike_with_its_slides_turned_round(joints: Joint
     alike(first, second, ends, ends)
 
 
-@pytest.mark.slow
 @few
 @given(loops)
 def test_the_loop_written_from_its_other_end_moves_alike(joints: Joints) -> None:
@@ -283,7 +279,6 @@ def reversed_column(linkage: sb.Linkage, name: str) -> str:
     return joint.columns[1 - joint.columns.index(name)] if joint.kind == "U" else name
 
 
-@pytest.mark.slow
 @few
 @given(loops, st.integers(1, 11))
 def test_the_loop_begun_at_another_joint_moves_alike(joints: Joints, start: int) -> None:
@@ -292,7 +287,6 @@ def test_the_loop_begun_at_another_joint_moves_alike(joints: Joints, start: int)
     alike(first, second, ends, ends)
 
 
-@pytest.mark.slow
 @settings(few, max_examples=12)
 @given(st.integers(0, 10**6), st.integers(1, 6))
 def test_rows_begun_at_another_joint_move_alike(seed: int, start: int) -> None:

@@ -114,7 +114,6 @@ LOOPS = [(kind + "R" * (7 - FREEDOMS[kind]), 0) for kind in KINDS]
 LOOPS += [("R" * (7 - FREEDOMS[kind]) + kind, -1) for kind in KINDS]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("kinds", "end"), LOOPS)
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_the_value_of_a_joint_at_the_ground_is_the_motion_of_its_link(kinds, end, seed):

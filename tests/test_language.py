@@ -119,7 +119,6 @@ def english(motion, text):
     return [word for word in re.findall(r"[A-Za-z]+", text) if word not in {*LEFT, linkage.length_unit}]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", gallery.names())
 def test_no_english_is_left_in_a_chinese_report_of_the_gallery(name):
     motion, text = report_of(name)
@@ -230,10 +229,7 @@ COMMANDS = {
 }
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "call", [pytest.param(c, marks=pytest.mark.slow if c.startswith("design ") else ()) for c in COMMANDS]
-)
+@pytest.mark.parametrize("call", COMMANDS)
 def test_the_reports_of_all_commands_are_in_chinese(call, tmp_path):
     linkage = sb.four_bar(crank=40, coupler=100, rocker=80, ground=90)
     drop = tmp_path / "drop.toml"
@@ -253,7 +249,6 @@ def texts_of(figure):
     return " ".join(text.get_text() for text in figure.findobj(match=lambda one: hasattr(one, "get_text")))
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("chinese_font")
 @pytest.mark.parametrize("kind", ["curves", "configuration", "transmission", "joints", "axodes"])
 def test_a_figure_has_no_english_and_every_character(kind):
@@ -266,7 +261,6 @@ def test_a_figure_has_no_english_and_every_character(kind):
     assert re.search("[\u4e00-\u9fff]", texts)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("chinese_font")
 @pytest.mark.parametrize("kind", ["torque", "reactions", "bearings", "shaking", "energies"])
 def test_a_figure_of_forces_has_no_english(kind):

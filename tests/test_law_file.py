@@ -66,7 +66,6 @@ def test_a_law_with_all_rates_gives_those_of_the_closed_formula(tmp_path):
         assert rows[:, -1] == pytest.approx(wanted[:, order], rel=1e-11, abs=1e-11 * 20**order)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("heads", "count"),
     [
@@ -335,7 +334,6 @@ def test_without_scipy_only_what_needs_a_spline_is_refused(tmp_path, monkeypatch
     )
 
 
-@pytest.mark.slow
 def test_the_command_line_takes_a_law_and_writes_its_rows(tmp_path):
     times = np.linspace(0, 1, 21)
     write(tmp_path / "law.csv", HEAD, [times, 100 * times + 20 * np.sin(4 * times)])
@@ -351,7 +349,6 @@ def test_the_command_line_takes_a_law_and_writes_its_rows(tmp_path):
     assert float(first["crank_rad_s"]) == pytest.approx(np.radians(100 + 80 * np.cos(2)), rel=1e-5)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("linkage", "joint", "unit", "first", "last", "posed"),
     [
@@ -377,7 +374,6 @@ def test_a_law_beyond_the_range_of_circuits_is_told_so(tmp_path, linkage, joint,
     assert (tmp_path / "out" / "configuration.png").exists() == posed
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("linkage", ["rssr", "rssp"])
 @pytest.mark.parametrize("rows", [1, 8])
 def test_a_law_that_rests_is_a_motion_of_its_rows(tmp_path, linkage, rows):

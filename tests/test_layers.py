@@ -150,7 +150,6 @@ def test_what_is_no_order_of_joints_is_none(line):
     assert not ORDER_OF_JOINTS.search(line)
 
 
-@pytest.mark.slow
 def test_the_core_is_imported_by_the_modules_listed_only():
     taken = {
         file.relative_to(PACKAGE).with_suffix("").as_posix(): imported_from_core(

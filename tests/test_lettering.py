@@ -42,7 +42,6 @@ DRAWN: dict[str, Callable[[], sb.Linkage]] = {
         SPHERICAL, points=[{"name": "P", "link": 2, "at": (60, 40, 30)}]
     ),
 }
-FAST = ("planar_4r", "spherical_4r", "rssr", "seven_r", "bennett")
 
 
 def linkage_of(name: str) -> sb.Linkage:
@@ -106,15 +105,10 @@ def motions() -> dict[str, sb.Motion]:
 
 
 def cases() -> list[Any]:
-    """Every linkage with every kind of figure; most are slow."""
-    return [
-        pytest.param(name, kind, marks=() if name in FAST[:2] else pytest.mark.slow)
-        for name in (*names(), *DRAWN)
-        for kind in KINDS
-    ]
+    """Every linkage with every kind of figure."""
+    return [(name, kind) for name in (*names(), *DRAWN) for kind in KINDS]
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("fonts_of_matplotlib")
 @pytest.mark.parametrize(("name", "kind"), cases())
 def test_no_text_of_a_figure_lies_on_another_or_leaves_the_page(
@@ -133,7 +127,7 @@ def test_texts_that_collide_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [line.split()[0] for line in found] == ["'beyond'", "'one'"]
 
 
-@pytest.mark.parametrize("name", ["planar_4r", pytest.param("seven_r", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["planar_4r", "seven_r"])
 def test_names_in_a_film_stay_near_their_joints_and_on_the_page(
     name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

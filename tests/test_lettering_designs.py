@@ -77,53 +77,43 @@ def function():
     return function_generation(function=lambda x: x**2, x_range=(0.0, 1.0), count=1)
 
 
-#: Every kind of figure of a design, and whether it takes seconds to come by.
+#: Every kind of figure of a design.
 FIGURES = {
-    "map, rssr": (lambda: draw(map_of("rssr")), False),
-    "map without key": (lambda: draw(map_of("rssr"), side=False), False),
-    "map, planar": (lambda: draw(map_of("planar_4r")), True),
-    "contours, rssr": (lambda: draw(map_of("rssr"), heights_of("rssr")), False),
-    "contours, planar": (lambda: draw(map_of("planar_4r"), heights_of("planar_4r")), True),
-    **{f"shares, {n}": (lambda n=n: shares_figure(tolerance_of(n)[0]), n != "rssr") for n in TOLERANCES},
-    **{f"deviation, {n}": (lambda n=n: deviation_figure(*tolerance_of(n)), n != "rssr") for n in TOLERANCES},
-    "path, planar": (lambda: path_figure(*path_of("planar_4r")), False),
-    "path, rssr": (lambda: path_figure(*path_of("rssr")), True),
-    "nearest, rssr": (lambda: nearest_figure(nearest_of("rssr"), "nearest"), True),
-    "nearest, planar": (lambda: nearest_figure(nearest_of("planar_4r"), "nearest"), True),
-    "least": (lambda: least_figure(*least(), "least_acceleration"), True),
-    "inertia": (lambda: inertia_figure(inertia(sb.load("seven_r").motion(72), {"P": 2.5})), False),
-    "function": (lambda: function_figure(function().candidates[0], function().wish), True),
-    "swing": (lambda: swing_figure(swing_generation(np.pi / 3, 1.2, count=1).candidates[0]), True),
+    "map, rssr": lambda: draw(map_of("rssr")),
+    "map without key": lambda: draw(map_of("rssr"), side=False),
+    "map, planar": lambda: draw(map_of("planar_4r")),
+    "contours, rssr": lambda: draw(map_of("rssr"), heights_of("rssr")),
+    "contours, planar": lambda: draw(map_of("planar_4r"), heights_of("planar_4r")),
+    **{f"shares, {n}": lambda n=n: shares_figure(tolerance_of(n)[0]) for n in TOLERANCES},
+    **{f"deviation, {n}": lambda n=n: deviation_figure(*tolerance_of(n)) for n in TOLERANCES},
+    "path, planar": lambda: path_figure(*path_of("planar_4r")),
+    "path, rssr": lambda: path_figure(*path_of("rssr")),
+    "nearest, rssr": lambda: nearest_figure(nearest_of("rssr"), "nearest"),
+    "nearest, planar": lambda: nearest_figure(nearest_of("planar_4r"), "nearest"),
+    "least": lambda: least_figure(*least(), "least_acceleration"),
+    "inertia": lambda: inertia_figure(inertia(sb.load("seven_r").motion(72), {"P": 2.5})),
+    "function": lambda: function_figure(function().candidates[0], function().wish),
+    "swing": lambda: swing_figure(swing_generation(np.pi / 3, 1.2, count=1).candidates[0]),
 }
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("fonts_of_matplotlib")
 @pytest.mark.parametrize(
     ("name", "style"),
-    [
-        pytest.param(name, style, marks=pytest.mark.slow if slow else ())
-        for name, (_, slow) in FIGURES.items()
-        for style in ("screen", "paper", "ieee")
-    ],
+    [(name, style) for name in FIGURES for style in ("screen", "paper", "ieee")],
 )
 def test_no_text_of_a_design_s_figure_lies_on_another_or_leaves_the_page(name, style, monkeypatch):
     with drawn_as(style=style):
-        assert collisions(FIGURES[name][0](), monkeypatch) == []
+        assert collisions(FIGURES[name](), monkeypatch) == []
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("chinese_font")
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=pytest.mark.slow if slow else ()) for name, (_, slow) in FIGURES.items()],
-)
+@pytest.mark.parametrize("name", FIGURES)
 def test_nor_does_it_in_chinese(name, monkeypatch):
     with drawn_as(style="paper"), language("zh"):
-        assert collisions(FIGURES[name][0](), monkeypatch) == []
+        assert collisions(FIGURES[name](), monkeypatch) == []
 
 
-@pytest.mark.slow
 def test_a_style_makes_the_page_as_wide_as_its_columns():
     for style, widths in (("paper", (85, 170)), ("ieee", (88.9, 181.864))):
         with drawn_as(style=style):

@@ -71,7 +71,6 @@ def test_a_rod_is_its_halves():
     np.testing.assert_allclose(summed.tensor, whole.tensor, atol=1e-15)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["rssr", "seven_r", "rscr", "rsur"])
 def test_what_is_drawn_has_the_mass_of_the_export_and_its_place(name):
     linkage = sb.load(name)
@@ -93,7 +92,6 @@ def test_what_is_drawn_has_the_mass_of_the_export_and_its_place(name):
         )
 
 
-@pytest.mark.slow
 def test_a_mass_scales_what_is_drawn_and_the_circuit_may_be_another():
     linkage = sb.load("seven_r")
     steel, scaled = (

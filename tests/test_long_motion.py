@@ -67,7 +67,6 @@ def test_rows_that_are_computed_again_are_the_same_to_the_last_bit(name, chosen,
         np.testing.assert_array_equal(trace.status, again.status)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "chosen"), CASES)
 def test_reports_and_tables_are_the_same_to_the_last_digit(name, chosen, monkeypatch, tmp_path):
     kept, long = both(name, chosen, monkeypatch)
@@ -134,7 +133,6 @@ finally:
 """
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs Linux's /proc")
 def test_many_samples_of_many_circuits_take_the_memory_of_one():
     run = subprocess.run([sys.executable, "-c", PEAK, "--json"], capture_output=True, text=True, check=True)

@@ -102,7 +102,6 @@ def well(circuit: sb.Circuit) -> np.ndarray:
 # Each row
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_every_row_closes_and_rows_follow_each_other_without_a_jump(family: str, amount: str) -> None:
     judged = 0
@@ -137,7 +136,6 @@ def _steps_agree_with_rates(circuit: sb.Circuit, loop: Loop, seed: int) -> int:
     return int(calm.sum())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_closed_circuit_returns_to_its_first_row_and_holds_no_row_twice(family: str, amount: str) -> None:
     met = 0
@@ -164,7 +162,6 @@ def test_a_closed_circuit_returns_to_its_first_row_and_holds_no_row_twice(family
 # All modes lie on circuits
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_each_mode_at_an_input_lies_on_exactly_one_row_of_one_circuit(family: str, amount: str) -> None:
     samples = 36
@@ -218,7 +215,6 @@ def _idle_count(loop: Loop, *rows: np.ndarray) -> int:
     return min((loop.idle(row, 0)[0] for row in q[:4]), default=0)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("family", ["general", "drawn", "right twists", "compound joints"])
 def test_modes_come_or_go_at_each_limit_and_nowhere_else(family: str, amount: str) -> None:
     met = 0
@@ -320,7 +316,6 @@ def same_circuits(linkage: sb.Linkage, samples: int, name: object, input: str | 
     assert len(set(partners)) == len(partners), name
 
 
-@pytest.mark.slow
 # bodies and loads move no circuit
 @pytest.mark.parametrize("name", [name for name in names() if not sb.load(name).loading.bodies])
 def test_half_the_step_gives_the_same_circuits_of_the_gallery(name: str) -> None:
@@ -351,7 +346,6 @@ def input_that_moves(linkage: sb.Linkage) -> str | None:
 # Any joint can be the input
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "family", ["general", "drawn", "right twists", "Bennett", "planar 4R", "spherical 4R"]
 )

@@ -46,7 +46,6 @@ def farthest(circuit: _core.RawCircuit) -> float:
     return float(np.abs((joints + math.pi) % (2 * math.pi) - math.pi).max()) if len(joints) else math.inf
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("letters", ["RRRRRRR", "RRRPRRR", "RRRPRPR", "PRRRRRR", "RRRRS", "RRRSR"])
 @pytest.mark.parametrize("epsilon", [1e-5, 1e-8, 1e-11])
 def test_a_narrow_circuit_is_found_on_the_side_on_which_it_opens(letters: str, epsilon: float) -> None:
@@ -111,7 +110,6 @@ def test_a_complex_pair_straight_beside_a_drawn_pose_is_counted() -> None:
         assert opened(seed, "RRRSR", epsilon).search.count.open == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kinds", ["RCCC", "RPRRRPR", "RRPRPRP"])
 def test_circuits_that_end_where_slides_are_infinite_are_counted_and_none_is_missed(kinds: str) -> None:
     rng = np.random.default_rng(8)

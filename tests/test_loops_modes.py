@@ -57,7 +57,7 @@ CLOSURE = 1e-10
     scope="module",
     params=[
         "few",
-        pytest.param("many", marks=pytest.mark.slow),
+        "many",
         pytest.param("all", marks=pytest.mark.proof),
     ],
 )
@@ -118,18 +118,15 @@ def check(cases: list[Case], *, starts: int, even: bool = False) -> None:
     assert sum(bool(found.isolated.any()) for found in every) > len(cases) / 2
 
 
-@pytest.mark.slow
 def test_general_loops_close_in_even_numbers_of_modes_and_none_is_missing(amount: str) -> None:
     check(drawn_by(general, GENERAL_LOOPS[amount]), starts=STARTS, even=True)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("loops", [12, pytest.param(40, marks=pytest.mark.proof)])
 def test_none_is_missing_in_a_search_of_many_more_starts(loops: int) -> None:
     check(drawn_by(general, loops, first=50_000), starts=DEEP_STARTS, even=True)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("family", SPECIAL.values(), ids=SPECIAL.keys())
 def test_no_mode_of_special_geometry_is_missing(
     family: Callable[[np.random.Generator], Case], amount: str
@@ -272,7 +269,6 @@ def test_a_mode_is_one_at_the_value_of_any_of_its_joints() -> None:
                 assert nearest(loop, loop.poses(q), other.q, still) < 1e-8
 
 
-@pytest.mark.slow
 def test_modes_with_another_joint_as_input_are_all_there() -> None:
     rng = np.random.default_rng(5)
     for case in drawn_by(general, 20) + drawn_by(SPECIAL["two slides"], 20):

@@ -62,7 +62,7 @@ def many_digits() -> Iterator[None]:
 @pytest.fixture(
     params=[
         "two",
-        pytest.param("few", marks=pytest.mark.slow),
+        "few",
         pytest.param("many", marks=pytest.mark.proof),
     ]
 )
@@ -190,7 +190,6 @@ def motions(family: str, count: int) -> Iterator[tuple[np.random.Generator, sb.L
         yield rng, FAMILIES[family](rng).linkage()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_rates_of_joints_points_and_links_hold_10_9_and_8_digits(family: str, amount: int) -> None:
     worst = {"joints": np.zeros(3), "points": np.zeros(3), "links": np.zeros(2)}
@@ -240,7 +239,6 @@ def test_rates_follow_an_input_law() -> None:
     assert compared > 8
 
 
-@pytest.mark.slow
 def test_rates_with_any_joint_as_input() -> None:
     compared = 0
     for family in ("general", "two slides", "compound joints"):

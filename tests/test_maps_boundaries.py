@@ -66,7 +66,7 @@ def made(name: str) -> Map:
 
 
 def cases():
-    return [*FAST, *(pytest.param(name, marks=pytest.mark.slow) for name in SLOW)]
+    return [*FAST, *(name for name in SLOW)]
 
 
 def kind_of(dimensions: dict[str, float], input: str) -> Kind:
@@ -85,7 +85,6 @@ def apart(of: Map, place: np.ndarray) -> float:
     return float(nearest)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", cases())
 def test_three_thousand_points_have_the_motion_type_of_the_region_they_are_drawn_in(name):
     of = made(name)
@@ -96,7 +95,6 @@ def test_three_thousand_points_have_the_motion_type_of_the_region_they_are_drawn
     assert len(np.unique(drawn)) > 1
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", cases())
 def test_points_a_hair_beside_a_boundary_have_the_type_of_their_side_by_the_ordinary_analysis(name):
     of, case = made(name), (FAST | SLOW)[name]
@@ -197,7 +195,6 @@ def test_where_the_file_leaves_nothing_out_nothing_can_follow():
         motion_map(given, {"L1": (1, 2), "M": (1, 2)}, follow=["L2"])
 
 
-@pytest.mark.slow
 def test_the_same_rule_bounds_the_wedges_over_both_axes():
     of = made("the paper's axes")
     places = np.concatenate([line.places for line in of.boundaries])
@@ -208,7 +205,6 @@ def test_the_same_rule_bounds_the_wedges_over_both_axes():
     assert off[np.abs(M) > 0.1].max() < 1e-6
 
 
-@pytest.mark.slow
 def test_the_loop_fails_to_close_where_the_coupler_is_the_least_or_the_greatest_distance_of_the_circles():
     of = made("crank and coupler")
     number = of.kinds.index(Kind("cannot-assemble", 0))
@@ -242,7 +238,6 @@ def extreme_distances(d: dict[str, float]) -> tuple[float, float]:
     return found[0], found[1]
 
 
-@pytest.mark.slow
 def test_regions_do_not_depend_on_the_grid():
     linkage, over = sb.rssr(**GENERAL), {"L1": (50, 1800), "L2": (50, 3000)}
     coarse, fine = motion_map(linkage, over, grid=6), made("crank and coupler")
@@ -253,7 +248,6 @@ def test_regions_do_not_depend_on_the_grid():
     assert 1e-3 < coarse.areas[Kind("double-rocker", 2)] < 2e-3
 
 
-@pytest.mark.slow
 def test_critical_distances_are_those_that_a_search_from_many_starts_finds():
     rng = np.random.default_rng(5)
     found = 0
@@ -286,7 +280,6 @@ def stationary_distance(d: dict[str, float], start: np.ndarray) -> float | None:
     return float(distance(d, *at)) if np.abs(slope(*at)).max() < 1e-7 * scale else None
 
 
-@pytest.mark.slow
 def test_where_no_critical_distance_is_near_the_coupler_the_type_is_one_all_over_a_square():
     of = made("crank and coupler")
     rng = np.random.default_rng(11)
@@ -303,7 +296,6 @@ def test_where_no_critical_distance_is_near_the_coupler_the_type_is_one_all_over
     assert certain > 300
 
 
-@pytest.mark.slow
 def test_the_design_stands_on_the_map_with_its_distances_to_the_next_types():
     of = motion_map(sb.load("rssr"), {"L1": (100, 400), "L3": "30 cm : 80 cm"}, follow=["L2"])
     design = of.design
@@ -321,7 +313,6 @@ def test_the_design_stands_on_the_map_with_its_distances_to_the_next_types():
     assert (off.inside, off.steps, off.kind) == (False, (), design.kind)
 
 
-@pytest.mark.slow
 def test_all_four_sides_of_a_design_are_told_the_type_beyond():
     of = motion_map(sb.load("rssr"), {"M": (-1000, 1400), "D": (-1000, 1500)}, grid=11, follow=["L2"])
     assert [step.kind for step in of.design.steps] == [Kind("double-rocker", 1)] * 4
@@ -333,7 +324,6 @@ def test_the_speed_changes_no_motion_type():
     assert of.areas[Kind("crank-rocker", 2)] == pytest.approx(170 / 200, abs=1e-9)
 
 
-@pytest.mark.slow
 def test_a_planar_four_bar_of_the_general_way_follows_grashof():
     of = motion_map(sb.load("planar_4r"), {"length_1": (10, 150), "length_3": (10, 200)}, grid=13)
     points = np.random.default_rng(2).uniform(0, 1, (3_000, 2))

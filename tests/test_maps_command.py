@@ -56,7 +56,6 @@ def table(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-@pytest.mark.slow
 def test_the_folder_holds_the_map_for_people_and_for_programs(tmp_path):
     out = tmp_path / "atlas"
     run = sevenbar(
@@ -94,7 +93,6 @@ def test_the_folder_holds_the_map_for_people_and_for_programs(tmp_path):
     assert levels
 
 
-@pytest.mark.slow
 def test_nothing_is_replaced_without_force(tmp_path):
     (tmp_path / "map.json").write_text("mine")
     message = mistake("map", "rssr", *OVER, "--out", tmp_path)
@@ -102,7 +100,6 @@ def test_nothing_is_replaced_without_force(tmp_path):
     assert sevenbar("map", "rssr", *OVER, "--out", tmp_path, "--force").returncode == 0
 
 
-@pytest.mark.slow
 def test_json_is_printed_alone():
     run = sevenbar("map", "rssr", *OVER, "--json")
     assert json.loads(run.stdout)["format"] == 1
@@ -250,7 +247,6 @@ def test_a_circuit_that_no_linkage_on_the_map_has_is_refused(tmp_path):
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("size", SIZES)
 def test_a_sheet_has_the_size_asked_for_and_nothing_leaves_it(of, size):
     (heights,) = measure_heights(of, ["swing"])
@@ -275,7 +271,6 @@ def lightness(colour) -> float:
     return 116 * y ** (1 / 3) - 16
 
 
-@pytest.mark.slow
 def test_the_motion_types_can_be_told_apart_in_grey():
     names = ["double-crank", "rocker-crank", "crank-rocker", "double-rocker", "cannot-assemble"]
     light = sorted(lightness(LOOKS[name][0]) for name in names)
@@ -288,7 +283,6 @@ def test_the_motion_types_can_be_told_apart_in_grey():
     assert min(np.diff(light)) > 6
 
 
-@pytest.mark.slow
 def test_what_the_page_on_maps_prints_is_what_its_commands_print_today(tmp_path):
     page = PAGE.read_text(encoding="utf-8")
     shown = re.sub(r" +", " ", page)
@@ -302,7 +296,6 @@ def test_what_the_page_on_maps_prints_is_what_its_commands_print_today(tmp_path)
             assert not told.strip("─") or f" {told}\n" in shown, line
 
 
-@pytest.mark.slow
 def test_the_example_of_the_page_on_maps_prints_what_its_comments_say(capsys):
     (code,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL)
     exec(code, {})

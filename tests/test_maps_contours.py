@@ -29,7 +29,6 @@ def values_at(of, place, name):
     return [MEASURES[name].value(circuit) for circuit in motion.circuits]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "take"),
     [
@@ -59,7 +58,6 @@ def test_the_measure_has_the_value_of_the_contour_at_its_points(of, name, take):
     assert looked >= 0.95 * 4 * len(heights.contours)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["swing", "transmission_lowest"])
 def test_no_contour_leaves_the_region_of_its_kind(of, name):
     (heights,) = measure_heights(of, [name])
@@ -73,13 +71,11 @@ def test_no_contour_leaves_the_region_of_its_kind(of, name):
     assert not unassembled & {line.kind for line in heights.contours}
 
 
-@pytest.mark.slow
 def test_a_measure_that_some_types_have_not_is_drawn_in_the_others_only(of):
     (heights,) = measure_heights(of, ["time_ratio"])
     assert {of.kinds[line.kind].motion_type for line in heights.contours} == {"crank-rocker"}
 
 
-@pytest.mark.slow
 def test_higher_values_stand_on_the_left_of_a_contour(of):
     (heights,) = measure_heights(of, ["transmission_lowest"], levels=[30.0])
     assert {line.level for line in heights.contours} == {30.0}
@@ -92,7 +88,6 @@ def test_higher_values_stand_on_the_left_of_a_contour(of):
     assert higher > 30.0 > lower
 
 
-@pytest.mark.slow
 def test_the_value_of_the_design_is_that_of_its_motion(of):
     names = ["swing", "velocity_highest"]
     swing, velocity = measure_heights(of, names)
@@ -102,7 +97,6 @@ def test_the_value_of_the_design_is_that_of_its_motion(of):
     assert (swing.unit, velocity.unit) == ("deg", "rad_s")
 
 
-@pytest.mark.slow
 def test_a_function_of_the_motion_has_contours_too():
     def branches(motion):
         """limits of the input, apart"""

@@ -158,7 +158,6 @@ def test_each_broken_table_has_its_own_message(tmp_path, text, message):
     assert str(caught.value) == f"{tmp_path / 'measured.csv'}: {message}"
 
 
-@pytest.mark.slow
 def test_whatever_is_done_to_a_table_it_is_read_or_told(tmp_path):
     rng = np.random.default_rng(7)
     whole = "time [s],angle [deg],velocity [rad/s]\n" + "".join(

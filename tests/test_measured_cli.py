@@ -69,7 +69,6 @@ def test_a_comparison_is_printed_written_and_told_as_json(tmp_path):
     assert float(lines["range"]["error"]) == pytest.approx(report["table"][0]["range"]["error"], rel=1e-12)
 
 
-@pytest.mark.slow
 def test_a_calibration_is_printed_written_and_told_as_json(tmp_path):
     options = ("--offset", "input", "--offset", "output", "--hold", "D")
     run = sevenbar("calibrate", "rssr", BENCH, *options, "--out", tmp_path)
@@ -102,7 +101,6 @@ def test_a_calibration_is_printed_written_and_told_as_json(tmp_path):
     assert float(told["input_offset"]["value"]) == pytest.approx(math.degrees(found["input_offset"]["value"]))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("command", ["compare", "calibrate"])
 def test_nothing_is_overwritten_without_force(tmp_path, command):
     arguments = (command, "rssr", BENCH, "--out", tmp_path / "out")

@@ -313,7 +313,6 @@ def test_copies_of_rows_change_no_interval_and_turns_later_are_the_same_place():
         assert "60 rows at 30 places of angle" in page(found)
 
 
-@pytest.mark.slow
 def test_intervals_of_repeated_rows_hold_the_truth_as_often_as_they_claim():
     inputs = np.tile(np.linspace(0.0, 6.0, 15), 4)
     angle = REAL.reference().outputs(inputs)[0]

@@ -113,7 +113,6 @@ def test_points_long_circuits_and_copies_know_which_joint_rests():
     assert np.allclose(through.input_range, motion.circuits[0].input_range, atol=1e-9)
 
 
-@pytest.mark.slow
 def test_the_answer_is_the_same_however_the_loop_is_written():
     found = compared(families()["doubly met constraint that moves"](), seed=7)
     assert found.moves

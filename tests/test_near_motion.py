@@ -68,7 +68,6 @@ def test_with_what_is_let_pass_it_turns_by_bennett_s_law_and_says_the_closure_er
     assert motion.near_motion is None
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 def test_a_bennett_whose_four_lengths_are_cut_to_a_hundredth_of_a_millimetre_moves_where_that_is_let_pass(
     seed,
@@ -152,7 +151,6 @@ def test_the_commands_take_it(tmp_path):
     assert (tmp_path / "own.csv").is_file()
 
 
-@pytest.mark.slow
 def test_what_is_nearly_a_surface_of_poses_is_followed_twice_and_the_rest_is_counted():
     # the last twist is a billionth of a degree; at zero the loop moves with two freedoms
     rows = {

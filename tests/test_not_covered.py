@@ -25,7 +25,6 @@ def refusals() -> list[list[str]]:
     return found
 
 
-@pytest.mark.slow
 def test_every_refusal_of_the_code_stands_on_the_page():
     messages = refusals()
     assert len(messages) >= 7

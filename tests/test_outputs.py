@@ -39,7 +39,6 @@ def called(*arguments: str, **how) -> subprocess.CompletedProcess[bytes]:
     return subprocess.run(command, env=environment, stderr=subprocess.PIPE, check=False, timeout=600, **how)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["gbk", "ascii", "shift_jis", "cp932"])
 def test_a_report_is_printed_in_any_encoding(encoding):
     run = called("analyze", "rssr", environment={"PYTHONIOENCODING": encoding}, stdout=subprocess.PIPE)
@@ -47,7 +46,6 @@ def test_a_report_is_printed_in_any_encoding(encoding):
     assert "rocker acceleration max [rad/s^2]" in run.stdout.decode(encoding)
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(not FULL.exists(), reason="no output that is always full")
 @pytest.mark.parametrize(
     "arguments",
@@ -63,7 +61,6 @@ def test_a_full_output_is_one_line(arguments):
     )
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="no shell")
 def test_a_closed_output_is_one_line():
     call = f"{sys.executable} -m sevenbar.commands.cli gallery rssr >&-"
@@ -80,7 +77,6 @@ def test_a_terminal_of_no_width_gets_the_usual_one(monkeypatch):
     assert sevenbar("analyze", "rssr").stdout == usual != ""
 
 
-@pytest.mark.slow
 def test_another_backend_of_matplotlib_changes_nothing(tmp_path):
     backend = {"MPLBACKEND": "nonsense"}
     options = ["plot", "rssr", "--kind", "curves", "--out", str(tmp_path / "figures")]

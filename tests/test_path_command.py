@@ -33,7 +33,6 @@ def table(folder, head="x [mm],y [mm],z [mm]", rows=PATH, scale=1.0):
 ASKED = ("--link", 2, "--at", "0,-55,35", "--vary", "P.*", "--designs", 1, "--starts", 0)
 
 
-@pytest.mark.slow
 def test_a_design_is_written_opens_and_makes_the_path(tmp_path):
     out = tmp_path / "found"
     run = sevenbar("design", "path", "planar_4r", "--path", table(tmp_path), *ASKED, "--out", out)
@@ -135,7 +134,6 @@ def test_a_gap_in_a_table_is_told_with_its_line(tmp_path):
         read_curve(table(tmp_path, rows=rows), LINKAGE, "theta_1")
 
 
-@pytest.mark.slow
 def test_the_example_of_the_page_prints_what_its_comment_says():
     (code,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
     printed = io.StringIO()
@@ -144,7 +142,6 @@ def test_the_example_of_the_page_prints_what_its_comment_says():
     assert printed.getvalue().splitlines() == re.findall(r"print\(.*\)  # (.*)", code)
 
 
-@pytest.mark.slow
 def test_what_the_page_prints_is_what_its_command_prints_today(tmp_path):
     commands = re.findall(r"^    \$ sevenbar (.*)$", PAGE, flags=re.MULTILINE)
     assert len(commands) == 1

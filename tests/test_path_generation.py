@@ -33,7 +33,6 @@ RSSR = Draft.of_linkage(sb.load("rssr")).with_values({"L2": 1000.0}).with_point(
 OF_RSSR = ("M", "N", "L1", "L2", "L3", "Q.x", "Q.y", "Q.z")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.05, 0.1, 0.2])
 def test_the_path_of_an_rssr_gives_its_dimensions_back_from_a_start_that_is_off(share):
     path = RSSR.linkage.motion(15).circuits[0].point(2, (300.0, 120.0, -80.0)).position
@@ -44,7 +43,6 @@ def test_the_path_of_an_rssr_gives_its_dimensions_back_from_a_start_that_is_off(
     assert found.motion_type == RSSR.linkage.motion().motion_type
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("place", [False, True])
 def test_timed_points_come_at_their_inputs(place):
     circuit = RSSR.linkage.motion(24).circuits[0]
@@ -62,7 +60,6 @@ def test_timed_points_come_at_their_inputs(place):
     assert np.diff(free.claim.inputs) == pytest.approx(np.diff(inputs), abs=1e-12)
 
 
-@pytest.mark.slow
 def test_the_path_of_the_papers_7r_point_is_made_again_from_a_start_that_is_off():
     draft = Draft.of_linkage(sb.load("seven_r"))
     point = next(p for p in draft.linkage.points if p.name == "P")
@@ -75,7 +72,6 @@ def test_the_path_of_the_papers_7r_point_is_made_again_from_a_start_that_is_off(
         assert found.draft.dimension(name).value == pytest.approx(draft.dimension(name).value, abs=1e-6)
 
 
-@pytest.mark.slow
 def test_a_drawn_linkage_that_may_stand_anywhere_is_written_where_its_path_is_wanted():
     draft = Draft.of_linkage(sb.load("rsur")).with_point("Q", 2, (300.0, 120.0, 80.0))
     circuit = draft.linkage.motion(16).circuits[0]
@@ -97,7 +93,6 @@ def test_a_drawn_linkage_that_may_stand_anywhere_is_written_where_its_path_is_wa
     assert again < 1e-8
 
 
-@pytest.mark.slow
 def test_points_round_a_sharp_turn_are_told_apart_by_lengths_along_the_path():
     draft = Draft.of_linkage(sb.load("rsur")).with_point("Q", 2, (300.0, 120.0, 80.0))
     path = draft.linkage.motion(16).circuits[0].point(2, (300.0, 120.0, 80.0)).position
@@ -110,7 +105,6 @@ def test_points_round_a_sharp_turn_are_told_apart_by_lengths_along_the_path():
 FAR_FROM_IT = {"length_1": 60.0, "length_2": 150.0, "length_3": 120.0, "length_4": 130.0}
 
 
-@pytest.mark.slow
 def test_a_planar_path_is_found_from_scratch_with_the_linkages_of_roberts():
     known = sb.load("planar_4r")
     path = known.motion(16).circuits[0].point(2, (0.0, -60.0, 30.0)).position
@@ -133,7 +127,6 @@ def test_a_planar_path_is_found_from_scratch_with_the_linkages_of_roberts():
         assert sides / sides[0] == pytest.approx(np.array([40.0, 80.0, 90.0, 100.0]) / 40.0, rel=1e-7)
 
 
-@pytest.mark.slow
 def test_a_path_of_an_rssr_is_found_from_scratch():
     path = RSSR.linkage.motion(15).circuits[0].point(3, (60.0, 90.0, 40.0)).position
     start = Draft.of_linkage(sb.rssr(M=500, N=450, L1=150, L3=350, D=0, L2=800)).with_point(
@@ -158,7 +151,6 @@ def hoecken(theta):
     return np.array([[2.0], [0.0]]) + across * np.sqrt(25.0 - long**2)
 
 
-@pytest.mark.slow
 def test_a_straight_line_is_made_no_worse_than_hoeckens_linkage_makes_it():
     theta = np.linspace(math.pi - 1.2, math.pi + 1.2, 41)
     curve = 40 * hoecken(theta)
@@ -189,7 +181,6 @@ def test_a_circle_is_made_by_the_pin_of_a_crank():
     assert math.hypot(v, w) == pytest.approx(20.0, abs=1e-8)
 
 
-@pytest.mark.slow
 def test_limits_are_held_by_each_design():
     path = RSSR.linkage.motion(12).circuits[0].point(2, (300.0, 120.0, -80.0)).position[:7]
     limits = Limits(math.radians(35.0), (100.0, 1500.0), "crank-rocker")
@@ -205,7 +196,6 @@ def test_limits_are_held_by_each_design():
             assert low <= one.draft.dimension(name).value <= high
 
 
-@pytest.mark.slow
 def test_the_same_seed_gives_the_same_designs():
     path = RSSR.linkage.motion(12).circuits[0].point(1, (250.0, 30.0, 0.0)).position[:6]
     start = moved_off(RSSR, OF_RSSR, 0.05, 1)

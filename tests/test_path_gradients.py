@@ -36,7 +36,6 @@ def drawn(name, link, at):
     return draft, loop, circuit
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", LINKAGES)
 def test_a_point_and_its_velocity_are_those_of_the_ordinary_analysis(name):
     for link in range(1, len(sb.load(name).links) + 1):
@@ -62,7 +61,6 @@ def test_a_point_and_its_velocity_are_those_of_the_ordinary_analysis(name):
         assert by_input * speed == pytest.approx(velocity, abs=1e-8 * np.abs(velocity).max())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "link"),
     [("rssr", 2), ("seven_r", 4), ("planar_4r", 2), ("rsur", 2), ("rssp", 2), ("six_bar", 3)]

@@ -70,7 +70,6 @@ def in_parts(joints: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return found
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kinds", LOOPS)
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_planar_joint_moves_as_two_slides_and_a_turn(kinds: str, seed: int) -> None:
@@ -200,7 +199,6 @@ def test_adams_measures_the_slides_of_a_planar_joint_and_says_that_it_cannot_dri
         export(other, None, tmp_path / "other.cmd")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kinds", ["RERC", "RURE"])
 def test_all_derivatives_by_dimensions_of_a_loop_with_a_planar_joint_are_differences(kinds: str) -> None:
     _, compared = compare_all(sb.from_axes(drawn(kinds, 1)))

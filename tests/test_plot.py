@@ -81,7 +81,6 @@ def lines(figure: Figure, panel: int, label: str) -> list[Any]:
 # --- figures as files
 
 
-@pytest.mark.slow
 def test_each_ending_gives_a_file_of_its_kind(figure: Figure, tmp_path: Path) -> None:
     png, svg, pdf, eps = (plot.save(figure, tmp_path / f"curves.{ending}") for ending in plot.FORMATS)
     assert png.read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
@@ -93,7 +92,6 @@ def test_each_ending_gives_a_file_of_its_kind(figure: Figure, tmp_path: Path) ->
     assert eps.read_bytes().startswith(b"%!PS-Adobe-3.0 EPSF")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("ending", plot.FORMATS)
 def test_the_same_figure_gives_the_same_bytes(crank_rocker: sb.Motion, tmp_path: Path, ending: str) -> None:
     first, second = (
@@ -150,7 +148,6 @@ def test_drawing_leaves_matplotlib_as_it_was(crank_rocker: sb.Motion) -> None:
 # --- the configuration
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", MOTIONS)
 def test_a_length_is_as_long_along_each_axis_and_all_is_inside(name: str) -> None:
     motion = MOTIONS[name]()
@@ -165,7 +162,6 @@ def test_a_length_is_as_long_along_each_axis_and_all_is_inside(name: str) -> Non
     assert (places <= limits[:, 1]).all()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", MOTIONS)
 def test_every_drawn_pose_is_an_assembled_pose(name: str) -> None:
     motion = MOTIONS[name]()
@@ -234,7 +230,6 @@ def test_names_are_shown_as_they_are_written() -> None:
 # --- the curves
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", MOTIONS)
 def test_curves_are_the_circuits_numbers(name: str) -> None:
     motion = MOTIONS[name]()
@@ -300,7 +295,6 @@ def test_one_quantity_may_be_a_word() -> None:
     assert axes.get_ylabel() == "rocker velocity [rad/s]"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("over", ["input", "time"])
 def test_extremes_lie_on_their_curves(over: str) -> None:
     for name in ("crank-rocker", "double-rocker", "backwards"):
@@ -349,7 +343,6 @@ def test_bounded_rates_at_a_change_point_are_not_cut() -> None:
     np.testing.assert_allclose(marked, np.degrees(motion.change_point_inputs))
 
 
-@pytest.mark.slow
 def test_time_runs_above_a_turning_input_and_beside_a_rocking_one(crank_rocker: sb.Motion) -> None:
     assert len(plot.curves(crank_rocker).axes) == 3
     (above,) = plot.curves(crank_rocker).axes[0].child_axes
@@ -407,7 +400,6 @@ def test_wrong_requests_say_what_is_allowed(crank_rocker: sb.Motion, tmp_path: P
 # --- animations
 
 
-@pytest.mark.slow
 def test_a_gif_has_its_pictures_its_pace_and_no_end(crank_rocker: sb.Motion, tmp_path: Path) -> None:
     seen: list[tuple[int, int]] = []
     path = animate(
@@ -473,7 +465,6 @@ def test_a_film_of_a_linkage_with_stops_goes_from_stop_to_stop_and_back(tmp_path
     assert len(np.flatnonzero(np.diff(np.sign(steps[steps != 0])))) == 1
 
 
-@pytest.mark.slow
 def test_an_mp4_holds_every_picture(tmp_path: Path) -> None:
     path = animate(MOTIONS["double-rocker"](), tmp_path / "a.mp4", frames=20, fps=25)
     assert imageio_ffmpeg.count_frames_and_secs(str(path)) == (20, pytest.approx(0.8))

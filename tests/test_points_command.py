@@ -89,7 +89,6 @@ def test_json_is_what_the_folder_has(tmp_path):
     assert "spin of the coupler (link 2)" in printed["notes"][0]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("timed", [False, True])
 def test_a_curve_in_other_units_is_met_by_the_point_it_came_from(tmp_path, timed):
     circuit = sb.load("seven_r").motion(33).circuits[0]

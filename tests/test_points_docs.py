@@ -13,7 +13,6 @@ ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs" / "points.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
 def test_the_example_prints_what_its_comments_say():
     (code,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
     printed = io.StringIO()
@@ -23,7 +22,6 @@ def test_the_example_prints_what_its_comments_say():
     assert printed.getvalue().splitlines() == promised
 
 
-@pytest.mark.slow
 def test_the_dense_search_of_the_page_is_that_of_today_and_never_beats_the_bound():
     run = subprocess.run(
         [sys.executable, "evidence/benches/least_acceleration.py"],

@@ -54,7 +54,6 @@ def dense_search(motion, link, box, *, of="acceleration", per_side=17, rounds=10
     return best, where
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "link"), [("seven_r", 4), ("rssr", 2)])
 def test_a_dense_search_never_beats_the_point_of_least_acceleration_and_comes_near_it(name, link):
     motion = sb.load(name).motion(720)
@@ -76,7 +75,6 @@ def test_the_paper_s_link_4_has_less_than_a_third_of_its_point_s_acceleration_el
     assert found.sides == ()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("of", ["velocity", "acceleration", "jerk"])
 @pytest.mark.parametrize("side", [200.0, 50.0, 5.0])
 @pytest.mark.parametrize(
@@ -89,7 +87,6 @@ def test_the_gap_between_value_and_bound_is_nothing(name, link, side, of):
     assert found.optimal
 
 
-@pytest.mark.slow
 def test_the_bound_holds_at_random_points_of_the_box(seven_r):
     circuit, random = seven_r.circuits[0], np.random.default_rng(5)
     for of in ("velocity", "acceleration", "jerk"):
@@ -116,7 +113,6 @@ def test_the_bound_follows_from_the_inputs_and_weights_that_are_told(seven_r):
     assert bound == pytest.approx(found.value, rel=1e-7)
 
 
-@pytest.mark.slow
 def test_the_greatest_is_sought_between_the_rows(seven_r):
     found = least_acceleration_point(seven_r, 4, CUBE)
     fine = seven_r.linkage.motion(36_000).circuits[0]
@@ -155,7 +151,6 @@ def test_the_axis_of_a_planar_crank_has_no_acceleration():
     assert found.optimal
 
 
-@pytest.mark.slow
 def test_a_crank_s_point_off_the_axis_has_r_omega_squared():
     motion = sb.load("planar_4r").motion(speed=3.0)
     found = least_acceleration_point(motion, 1, [(0, 0), (12, 30), (5, 30)])
@@ -193,7 +188,6 @@ def test_the_least_root_mean_square_is_the_zero_of_its_gradient_by_differences(s
     assert min(np.sqrt(square(at)) for at in random.uniform(-50, 50, (200, 3))) >= bounded.bound
 
 
-@pytest.mark.slow
 def test_the_idle_spin_of_a_coupler_makes_no_difference_to_points_on_its_line():
     motion = sb.load("rssr").motion()
     on_line = [(0, 600), (0, 0), (0, 0)]

@@ -32,7 +32,6 @@ def test_with_inputs_a_known_point_is_found_again(seven_r, odd_rows, measure):
     assert found.bound is not None
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "link", "at"), [("seven_r", 4, KNOWN), ("rssr", 2, (310.0, 40.0, -25.0))])
 def test_without_inputs_a_known_point_is_found_again(name, link, at):
     linkage = sb.load(name)
@@ -63,7 +62,6 @@ def test_with_inputs_no_point_of_the_box_is_nearer_than_the_bound(seven_r, odd_r
             assert other >= found.bound * (1 - 1e-12)
 
 
-@pytest.mark.slow
 def test_without_inputs_small_moves_of_the_point_bring_its_path_no_nearer(seven_r, odd_rows):
     _, places = odd_rows
     random = np.random.default_rng(4)
@@ -82,7 +80,6 @@ def test_without_inputs_small_moves_of_the_point_bring_its_path_no_nearer(seven_
         assert value(found.at + step) > found.rms
 
 
-@pytest.mark.slow
 def test_a_box_in_the_way_is_kept(seven_r, odd_rows):
     inputs, places = odd_rows
     box = [(-80.0, 200.0), (-200.0, 200.0), (-200.0, 200.0)]

@@ -145,7 +145,6 @@ def test_a_trace_and_the_closed_form_print_their_extent(motion):
     ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_every_result_of_the_gallery_prints_short_lines_without_solving(name, monkeypatch):
     linkage = sb.load(name)
@@ -166,7 +165,6 @@ def test_every_result_of_the_gallery_prints_short_lines_without_solving(name, mo
         assert str(result) == repr(result)
 
 
-@pytest.mark.slow
 def test_a_notebook_shows_the_lines_and_a_picture(linkage, motion):
     circuit = motion.circuits[0]
     for result in (linkage, motion, circuit, circuit.point(1, (250, 0, 0))):

@@ -83,7 +83,6 @@ importlib.import_module("sevenbar.{module}").{name} = interrupted
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("module", "name", "command"),
     [

@@ -42,7 +42,6 @@ def system(
     return NewtonEuler(linkage, circuit.input_column, loading, metre, precise=precise)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", GALLERY)
 def test_torque_and_losses_feed_kinetic_and_potential_energy(name: str) -> None:
     linkage, circuit, row = a_row(name)
@@ -80,7 +79,6 @@ def test_the_ground_bears_weights_loads_and_shaking(name: str) -> None:
     assert np.abs(total + got.shaking[3:]).max() < 1e-12 * scale
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", GALLERY)
 def test_double_precision_and_sixty_digits_agree(name: str) -> None:
     linkage, circuit, row = a_row(name)
@@ -101,7 +99,6 @@ def test_double_precision_and_sixty_digits_agree(name: str) -> None:
     assert abs(got.torque - float(want.torque)) < 1e-12 * max(abs(got.torque), np.abs(got.moment).max())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["seven_r", "rscr", "screw_drill", "planar_4r"])
 def test_its_rates_are_those_of_finite_differences(name: str) -> None:
     linkage, circuit, row = a_row(name)

@@ -43,7 +43,6 @@ NAMES = (
 )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_a_linkage_answers_alike_however_it_is_written(name: str) -> None:
     found = compared(families()[name](), seed=7)
@@ -56,7 +55,6 @@ def test_there_are_a_hundred_families_and_a_lattice() -> None:
     assert len(families()) >= 100
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("index", [175, 156])
 def test_a_loop_on_the_lattice_answers_alike(index: int) -> None:
     # 175: circuits of equal ranges; 156: two dead centres within a step, a sharp bend at a change point
@@ -106,7 +104,6 @@ def test_a_circuit_asked_for_again_at_other_inputs_has_the_rows_of_one_followed_
         )
 
 
-@pytest.mark.slow
 def test_a_search_that_stops_short_names_the_bound() -> None:
     motion = lattice(124, seed=1).linkage().motion(36, input="j1", output="j7")
     assert motion.search.bound == "change-points"

@@ -53,7 +53,6 @@ def check_poses(linkage: sb.Linkage, reference: Rssr, inputs: np.ndarray, driver
     return found
 
 
-@pytest.mark.slow
 @DRIVERS
 def test_a_million_poses_close_and_a_missing_one_cannot_be_reached(driver: str) -> None:
     rng = np.random.default_rng(2024 if driver == "crank" else 2025)
@@ -65,7 +64,6 @@ def test_a_million_poses_close_and_a_missing_one_cannot_be_reached(driver: str) 
     assert found > 500_000  # the other half comes from the other input
 
 
-@pytest.mark.slow
 @DRIVERS
 @pytest.mark.parametrize("decades", [4.0, 8.0])
 def test_lengths_that_differ_by_many_decades_close(driver: str, decades: float) -> None:
@@ -78,7 +76,6 @@ def test_lengths_that_differ_by_many_decades_close(driver: str, decades: float) 
     assert found > 2000
 
 
-@pytest.mark.slow
 @DRIVERS
 @pytest.mark.parametrize("share", [1e-2, 1e-5, 1e-8])
 def test_a_tiny_coupler_closes(driver: str, share: float) -> None:
@@ -92,7 +89,6 @@ def test_a_tiny_coupler_closes(driver: str, share: float) -> None:
     assert found > 500
 
 
-@pytest.mark.slow
 @DRIVERS
 def test_the_two_poses_meet_at_a_limit(driver: str) -> None:
     rng = np.random.default_rng(9)

@@ -183,7 +183,7 @@ FACTORS = {"square": (4, 20, 120), "drawn": (25, 100, 400)}
 TWELVE_DIGITS_BELOW = {"square": 1e4, "drawn": 1e3}
 
 
-@pytest.fixture(scope="module", params=["few", pytest.param("many", marks=pytest.mark.slow)])
+@pytest.fixture(scope="module", params=["few", "many"])
 def amount(request: pytest.FixtureRequest) -> int:
     return {"few": 10, "many": 70}[request.param]
 
@@ -227,7 +227,6 @@ def test_the_reference_agrees_with_the_derivatives_of_eq_8() -> None:
         assert all(abs(g - w) < mp.mpf(10) ** -18 for g, w in zip(got, want, strict=True))
 
 
-@pytest.mark.slow
 def test_rates_of_the_output_hold_12_11_and_10_digits_away_from_dead_centres(
     of_output: list[Error], form: str
 ) -> None:
@@ -235,7 +234,6 @@ def test_rates_of_the_output_hold_12_11_and_10_digits_away_from_dead_centres(
     assert (worst(of_output, 1e4) < 10 * np.array(RELATIVE)).all()
 
 
-@pytest.mark.slow
 def test_rates_of_the_output_lose_no_more_than_their_condition_takes(
     of_output: list[Error], form: str
 ) -> None:
@@ -243,7 +241,6 @@ def test_rates_of_the_output_lose_no_more_than_their_condition_takes(
     assert (worst_over_condition(of_output) < FACTORS[form]).all()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("quantity", ["output", "turns", "points"])
 def test_rates_along_a_circuit_hold_12_11_and_10_digits_away_from_dead_centres(
     of_circuits: dict[str, list[Error]], form: str, quantity: str

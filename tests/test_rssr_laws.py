@@ -47,7 +47,6 @@ def loop_errors(linkage: sb.Linkage, q: np.ndarray, size: float) -> np.ndarray:
     return errors.max(axis=(1, 2))
 
 
-@pytest.mark.slow
 @laws
 @given(linkages, drivers)
 def test_the_product_round_the_loop_is_the_identity_on_every_row(
@@ -91,7 +90,6 @@ def test_a_loop_whose_balls_nearly_touch_closes_too() -> None:
 # Continuity
 
 
-@pytest.mark.slow
 @laws
 @given(linkages, drivers, st.sampled_from([1.0, -1.0]))
 def test_a_coarse_walk_finds_the_same_unwrapped_output_as_a_fine_one(
@@ -112,7 +110,6 @@ def test_a_coarse_walk_finds_the_same_unwrapped_output_as_a_fine_one(
             np.testing.assert_allclose(coarse.output[rows], fine.output[same], rtol=0, atol=1e-9)
 
 
-@pytest.mark.slow
 @laws
 @given(linkages, drivers, st.sampled_from([1.0, -1.0]))
 def test_columns_are_continuous_and_come_back_to_the_first_row(
@@ -133,7 +130,6 @@ def test_columns_are_continuous_and_come_back_to_the_first_row(
 # Change of frame, of unit, of input
 
 
-@pytest.mark.slow
 @laws
 @given(drawings, seeds, st.floats(-3, 3), drivers)
 def test_a_linkage_carried_to_another_frame_moves_the_same(
@@ -201,7 +197,6 @@ def test_the_way_back_leads_to_the_input(description: Dimensions | Drawing, driv
         assert (nearest[~near_a_dead_centre] < 1e-8).all()
 
 
-@pytest.mark.slow
 @laws
 @given(linkages, drivers)
 def test_velocity_there_and_back_multiply_to_one(description: Dimensions | Drawing, driver: str) -> None:
@@ -246,7 +241,6 @@ def test_a_law_obeys_the_chain_rule(
 # Rows
 
 
-@pytest.mark.slow
 @laws
 @given(linkages, drivers, st.integers(4, 400), st.sampled_from([1.0, -3.0, 0.25]))
 def test_rows_stand_on_the_grid_and_at_the_dead_centres(
@@ -297,7 +291,6 @@ def test_every_row_has_the_input_s_rates_but_a_dead_centre_has_none(
         )
 
 
-@pytest.mark.slow
 @laws
 @given(linkages, drivers)
 def test_a_dead_centre_of_the_output_lies_on_the_pass_that_it_names(
@@ -384,7 +377,6 @@ def to_and_fro() -> tuple[np.ndarray, np.ndarray, sb.Law]:
 # Extremes and measures
 
 
-@pytest.mark.slow
 @laws
 @given(linkages, drivers)
 def test_assembly_modes_are_the_rows_of_the_circuits_there(
@@ -447,7 +439,6 @@ def folding(ground: float, crank: float, coupler: float, rocker: float) -> Drawi
     return Drawing(places[0], axis, places[1], places[2], places[3], axis)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("driver", DRIVERS)
 @pytest.mark.parametrize("lengths", [(2, 1, 2, 1), (1, 1, 2, 2), (2, 1, 1, 2), (2, 2, 1, 1), (3, 1, 2, 2)])
 def test_a_circuit_goes_smoothly_through_its_change_points(lengths: tuple[float, ...], driver: str) -> None:

@@ -18,7 +18,6 @@ from evidence.fuzz.random_linkages import (
 from strategies import drivers, laws, linkages, wrapped
 
 
-@pytest.mark.slow
 @laws
 @given(linkages, drivers, st.sampled_from([2.0, -2.0]))
 def test_no_sample_exceeds_the_extremes_and_dense_ones_come_near(
@@ -64,7 +63,6 @@ def test_the_output_is_at_an_extreme_where_it_is_said_to_be(
                 assert apart.min() < 1e-7 * max(1.0, abs(want))
 
 
-@pytest.mark.slow
 @laws
 @given(linkages, drivers)
 def test_the_transmission_angle_is_that_between_the_coupler_and_the_driven_ball_s_path(
@@ -137,7 +135,6 @@ BESIDE_CHANGE_POINTS = (
 )
 
 
-@pytest.mark.slow
 @laws
 @given(linkages, drivers)
 def test_the_time_ratio_is_that_of_the_two_strokes(description: Dimensions | Drawing, driver: str) -> None:

@@ -69,7 +69,7 @@ class Case:
     courses: list[Course]
 
 
-@pytest.fixture(scope="module", params=["some", pytest.param("many", marks=pytest.mark.slow)])
+@pytest.fixture(scope="module", params=["some", "many"])
 def cases(request: pytest.FixtureRequest) -> list[Case]:
     count = {"some": 50, "many": 750}[request.param]
     made = []
@@ -81,7 +81,6 @@ def cases(request: pytest.FixtureRequest) -> list[Case]:
     return made
 
 
-@pytest.mark.slow
 def test_motion_types_are_those_that_sampling_finds(cases: list[Case]) -> None:
     seen: Counter[str] = Counter()
     for case in cases:
@@ -146,7 +145,6 @@ def nearest_circuit(course: Course, circuits: list[sb.Circuit]) -> int:
     return int(np.argmin(distances))
 
 
-@pytest.mark.slow
 def test_output_dead_centres_are_the_limits_of_the_other_joint(cases: list[Case]) -> None:
     for case in cases:
         other = "rocker" if case.driver == "crank" else "crank"
@@ -181,7 +179,6 @@ def test_the_other_input_gives_the_mirrored_type(cases: list[Case]) -> None:
         assert len(backward.motion.circuits) == len(forward.motion.circuits)
 
 
-@pytest.mark.slow
 def test_limits_are_exact_to_1e_12_times_their_condition() -> None:
     """By the secant method in 40 digits on the reach past the nearest or short of the farthest point."""
     rng = np.random.default_rng(4)
@@ -203,7 +200,6 @@ def test_limits_are_exact_to_1e_12_times_their_condition() -> None:
     assert compared > 40
 
 
-@pytest.mark.slow
 def test_square_axes_give_no_strict_double_crank() -> None:
     """A fact measured beforehand (design.md): none in 10^6; a single one here would be news, or a defect."""
     rng = np.random.default_rng(12)
@@ -314,7 +310,6 @@ def places(motion: sb.Motion) -> np.ndarray:
     return np.array([point.input for point in motion.change_points])
 
 
-@pytest.mark.slow
 def test_a_linkage_tuned_to_a_change_point_is_said_to_be_there(
     tuned: list[tuple[Dimensions, str, Meeting]],
 ) -> None:
@@ -325,7 +320,6 @@ def test_a_linkage_tuned_to_a_change_point_is_said_to_be_there(
             assert apart(places(motion), meeting.input).min() < 1e-6
 
 
-@pytest.mark.slow
 def test_a_thousandth_from_a_change_point_it_is_not_said_to_be_there(
     tuned: list[tuple[Dimensions, str, Meeting]],
 ) -> None:
@@ -346,7 +340,6 @@ def test_a_thousandth_from_a_change_point_it_is_not_said_to_be_there(
     assert len(either_side) > 2
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("width", "is_one"), [(1e-8, True), (3e-7, True), (5e-6, False), (1e-4, False)])
 def test_two_limits_nearer_than_1e_6_are_a_change_point(
     tuned: list[tuple[Dimensions, str, Meeting]], width: float, is_one: bool

@@ -12,7 +12,6 @@ from sevenbar.reporting import report
 from sevenbar.reporting.how_found import how_found
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda f: f.__name__)
 @pytest.mark.parametrize("places", [1, 9])
 def test_every_input_says_of_a_screw_loop_what_mobility_says(family, places):
@@ -65,7 +64,6 @@ def test_screws_are_seeds_where_nothing_turns():
     assert "screws within one turn" in how_found(motion)
 
 
-@pytest.mark.slow
 def test_screws_on_the_corners_of_a_kite_are_told_to_move():
     """Each fold leads on to others, some turns of a screw on, out to where screws are no longer followed."""
     kite = sb.from_axes([screw([x, y, 0]) for x, y in ((0, 0), (1, 1.5), (2.7, 0), (1, -1.5))])

@@ -34,7 +34,6 @@ def poses(linkage, input, output, count=5, circuit=0):
     return loop, q, found.output_column
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("driver", "other", "dims"),
     [
@@ -74,7 +73,6 @@ def precise_rows(loop, values):
     return precise
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["seven_r", "random"])
 def test_a_7r_s_derivatives_by_its_dimensions_are_those_in_60_digits(name):
     linkage = sb.load("seven_r") if name == "seven_r" else general(np.random.default_rng(4)).linkage()
@@ -194,16 +192,15 @@ def held_columns(numbers):
     return columns
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "orders"),
     [
         pytest.param("rscr", 1),
-        pytest.param("rsur", 3, marks=pytest.mark.slow),
-        pytest.param("rssp", 1, marks=pytest.mark.slow),
-        pytest.param("screw_drill", 3, marks=pytest.mark.slow),
-        pytest.param("five_bar", 1, marks=pytest.mark.slow),
-        pytest.param("sarrus", 1, marks=pytest.mark.slow),
+        ("rsur", 3),
+        ("rssp", 1),
+        ("screw_drill", 3),
+        ("five_bar", 1),
+        ("sarrus", 1),
     ],
 )
 def test_derivatives_of_drawn_loops_are_those_in_60_digits_for_every_kind_of_joint(name, orders):
@@ -263,7 +260,6 @@ def test_rates_by_the_input_are_those_of_the_motion_up_to_the_jerk(name, input):
             np.testing.assert_allclose(ours[:, order, column], rates[:, column], rtol=0, atol=1e-12 * size)
 
 
-@pytest.mark.slow
 def test_slides_and_screws_of_rows_have_derivatives_too():
     for linkage in (prismatic(2)(np.random.default_rng(3)).linkage(), sb.load("rccc")):
         loop, q, column = poses(linkage, linkage.drive.joint, linkage.drive.output)

@@ -137,7 +137,6 @@ def test_rates_follow_the_speed_of_the_drive(linkage: sb.Linkage, motion: sb.Mot
             np.testing.assert_allclose(got, want, rtol=1e-9, atol=1e-9 * np.abs(want).max())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("samples", [90, 720])
 def test_the_number_of_samples_changes_no_circuit(
     linkage: sb.Linkage, motion: sb.Motion, samples: int

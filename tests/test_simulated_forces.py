@@ -42,7 +42,6 @@ def forces_of(name: str, steps: int, engine: str = "exudyn") -> dict[str, Differ
     return {d.quantity: d for d in run.differences if d.quantity.endswith((" torque", " force", " moment"))}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["rssr", "seven_r", "rscr", "rsur", "rccc", "rssp", "spherical_4r"])
 def test_torque_and_reactions_come_out_of_an_engine_with_the_square_of_its_step(name: str) -> None:
     coarse, fine = forces_of(name, 720), forces_of(name, 1440)
@@ -61,7 +60,6 @@ def test_torque_and_reactions_come_out_of_an_engine_with_the_square_of_its_step(
 SOFTNESS = {"rssr": 1e-3, "rscr": 3e-4, "rsur": 3e-3, "seven_r": 6e-3}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", SOFTNESS)
 def test_mujoco_s_torque_and_reactions_are_sevenbar_s_within_its_softness(name: str) -> None:
     pytest.importorskip("mujoco")
@@ -76,7 +74,6 @@ def test_mujoco_s_torque_and_reactions_are_sevenbar_s_within_its_softness(name: 
         assert found.greatest < 0.6 * coarse[quantity].greatest, (quantity, coarse[quantity], found)
 
 
-@pytest.mark.slow
 def test_bodies_without_mass_weigh_next_to_nothing_in_mujoco() -> None:
     pytest.importorskip("mujoco")
     body = sb.Body(2.0, (0.0, 0.0, 0.0), 0.02 * np.eye(3))
@@ -87,7 +84,6 @@ def test_bodies_without_mass_weigh_next_to_nothing_in_mujoco() -> None:
     assert any("link_1, link_2, link_4, link_5, link_6 weigh 1e-05 of" in note for note in run.record.notes)
 
 
-@pytest.mark.slow
 def test_weight_is_no_acceleration_in_mujoco() -> None:
     pytest.importorskip("mujoco")
     run = simulate(loaded("rssr"), "mujoco", steps=720)
@@ -96,7 +92,6 @@ def test_weight_is_no_acceleration_in_mujoco() -> None:
         assert found.greatest < 5e-3 * found.scale, found
 
 
-@pytest.mark.slow
 def test_report_rows_and_figure_have_torque_and_reactions() -> None:
     run = simulate(loaded("planar_4r"), "mujoco", steps=720)
     assert [f"{force.name} {force.what}" for force in run.forces][:2] == ["theta_1 torque", "theta_1 force"]

@@ -78,7 +78,6 @@ def test_json_is_one_object_and_nothing_else():
     assert found["closure_error"]["length"] > 0
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["exudyn", "mujoco"])
 def test_an_engine_that_is_not_there_is_named_with_the_extra_that_brings_it(engine, tmp_path):
     message = mistake(
@@ -106,7 +105,6 @@ def test_an_engine_that_cannot_be_loaded_says_why(tmp_path):
     )
 
 
-@pytest.mark.slow
 def test_the_rest_works_without_any_engine():
     before = "sys.modules['exudyn'] = sys.modules['mujoco'] = None"
     assert sevenbar("analyze", "rssr", "--json", before=before).returncode == 0
@@ -186,7 +184,6 @@ def test_the_loop_that_is_named_in_place_of_one_with_an_idle_freedom_has_its_mot
     assert len(prototype(own, other[0], 0, 1.0).bodies) == 4
 
 
-@pytest.mark.slow
 def test_the_folder_holds_report_rows_model_and_figures(rssr, tmp_path):
     written = simulation_report.write(rssr, tmp_path / "new", ("png", "svg"))
     kinds = [
@@ -223,7 +220,6 @@ def test_the_rows_are_written_with_both_sides_and_their_units(rssr, rccc, tmp_pa
     assert "slide_2_exudyn_in" in simulation_report.columns(rccc)
 
 
-@pytest.mark.slow
 def test_nothing_is_written_over_without_being_told_to(rssr, tmp_path):
     (tmp_path / "mujoco.csv").write_text("mine")
     with pytest.raises(
@@ -244,7 +240,6 @@ def test_a_folder_that_cannot_be_made_is_told_before_the_run(tmp_path):
     )
 
 
-@pytest.mark.slow
 def test_the_program_refuses_before_the_run_and_writes_with_force(tmp_path):
     call = ["simulate", "five_bar", "--engine", "exudyn", "--steps", 60, "--out", "out"]
     assert sevenbar(*call, cwd=tmp_path).returncode == 0
@@ -297,7 +292,6 @@ def test_figures_have_theory_as_a_line_the_engine_as_marks_and_the_difference_on
     ]
 
 
-@pytest.mark.slow
 def test_each_run_draws_what_it_has(rssr, rccc, tmp_path):
     for run, stems in ((rssr, ["joints", "output", "points"]), (rccc, ["joints", "output"])):
         name = run.record.engine.lower()

@@ -155,7 +155,6 @@ def drawn(kinds, seed):
 KINDS = ["RSRS", "SRSR", "RSPS", "PSRS", "SPSR", "SRSP", "HSRS", "SHRS", "SRRS", "SRPS"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("kinds", "seed"), list(itertools.product(KINDS, range(2))))
 def test_told_turns_of_the_balls_close_the_loop_and_carry_its_points(kinds, seed):
     linkage = drawn(kinds, seed)

@@ -37,7 +37,6 @@ def apart(axis, frame):
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["rscr", "seven_r"])
 def test_the_axes_shared_by_parts_are_those_of_the_joints(models, name):
     path, pose = models[name]

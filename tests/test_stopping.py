@@ -122,7 +122,6 @@ WILD = [
 ]  # fmt: skip
 
 
-@pytest.mark.slow
 def test_of_a_loop_whose_curves_have_no_end_two_are_followed_at_most_and_the_other_modes_counted():
     # lengths of 1e-12 beside such of 1e6, axes of 1e14 beside such of 5e-324
     joints = "\n".join(f'[[joint]]\nkind = "{kind}"\nat = {at}\naxis = {axis}' for kind, at, axis in WILD)
@@ -144,7 +143,6 @@ linkage.Linkage.motion = motion
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("how", "code"), [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
 def test_a_signal_ends_a_command_with_one_line_and_its_number(how, code, tmp_path):
     done = sevenbar("analyze", "rssr", "--out", "out", cwd=tmp_path, before=STOP.format(how=how))

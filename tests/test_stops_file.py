@@ -149,7 +149,6 @@ def test_the_report_has_ranges_bends_distances_and_what_can_be_used():
         assert "ball_b 的摆角" in markdown(plain, ranges=True)
 
 
-@pytest.mark.slow
 def test_the_command_shows_and_writes_them(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text(RSSR + STOPS)

@@ -159,7 +159,6 @@ class Own:
         return [joint.name for joint in self.linkage.joints].index(self.linkage.drive.joint)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_torque_and_rests_between_stops_are_those_of_virtual_work(name: str) -> None:
     linkage = sb.loads(CASES[name])

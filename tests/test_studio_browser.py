@@ -503,7 +503,6 @@ def test_closing_the_terminal_ends_it(studio, pages, how):
     assert code == (0 if how == signal.SIGINT else 129)
 
 
-@pytest.mark.slow
 def test_another_address_is_told_for_what_it_is(studio):
     one = studio("rssr", "--host", "0.0.0.0")
     assert "served at 0.0.0.0, over the network: whoever has the address printed here" in one.stderr

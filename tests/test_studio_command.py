@@ -28,7 +28,6 @@ def test_an_address_that_is_none_of_this_machine_is_told_at_once(tmp_path, host)
     assert told.endswith("; give another address")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("missing", ["viser", "tomlkit"])
 def test_a_missing_extra_is_named(tmp_path, missing):
     told = mistake("studio", "rssr", "--no-open", cwd=tmp_path, before=WITHOUT.format(missing))
@@ -44,7 +43,6 @@ def test_the_command_line_does_not_load_the_studio_without_need(tmp_path):
     assert run.stdout.splitlines()[-1] == "False"
 
 
-@pytest.mark.slow
 def test_it_ends_also_where_the_signal_reaches_another_thread():
     # a wait without end did not notice, and the program went on
     code = """

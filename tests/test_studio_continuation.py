@@ -56,9 +56,7 @@ CASES: dict[str, tuple[str, tuple[str, str] | None]] = {
 }
 
 
-@pytest.fixture(
-    params=[4, pytest.param(40, marks=pytest.mark.slow), pytest.param(400, marks=pytest.mark.proof)]
-)
+@pytest.fixture(params=[4, 40, pytest.param(400, marks=pytest.mark.proof)])
 def steps(request: pytest.FixtureRequest) -> int:
     return request.param
 
@@ -203,7 +201,6 @@ class Walked:
             self.wrong.append(f"{what}: shown {distance(motion, gone, true):.3g} from where it went")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_a_pose_goes_on_through_small_changes(case: str, steps: int) -> None:
     walked = Walked(begun(case), np.random.default_rng(steps))
@@ -214,7 +211,6 @@ def test_a_pose_goes_on_through_small_changes(case: str, steps: int) -> None:
     assert walked.followed > steps / 3
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_a_pose_goes_on_while_a_slider_is_dragged(case: str, steps: int) -> None:
     """From the pose that was left to the next, without a person's hand: small errors must not add up to a leap."""
@@ -243,12 +239,11 @@ def test_a_pose_goes_on_while_a_slider_is_dragged(case: str, steps: int) -> None
     assert followed_all
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "steps",
     [
         4,
-        *(pytest.param(count, marks=pytest.mark.slow) for count in (25, 40)),
+        *(count for count in (25, 40)),
         pytest.param(400, marks=pytest.mark.proof),
     ],
 )
@@ -264,7 +259,6 @@ def test_after_a_great_change_a_true_mode_is_shown_and_told(case: str, steps: in
     assert not walked.wrong, "\n".join(walked.wrong)
 
 
-@pytest.mark.slow
 def test_a_pose_where_its_circuit_begins_goes_on_there() -> None:
     """The last rows of a circuit that turns lie beside its first ones, and may be more like the pose before."""
     session = Session(text("five_bar"), "five_bar")

@@ -17,7 +17,7 @@ from tab_client import TabClient
 #: Growth of the process that is no leak [MB]: caches of sizes and fonts that come with what is drawn first.
 GROWTH = 40.0
 #: Each waits for seconds as a person does.
-pytestmark = pytest.mark.slow
+
 BAD = ("abc", "NaN", "0", "1e300", "-1e300", "", "1e-300", "30deg", "1,5", "<b>", "9" * 400)
 
 

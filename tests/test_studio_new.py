@@ -4,7 +4,6 @@ import time
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
@@ -16,7 +15,7 @@ from test_studio_dragging import done, visited
 from test_why_rigid import DOUBLE, linkage
 
 #: Each waits for seconds as a person does.
-pytestmark = pytest.mark.slow
+
 FOUR_BAR = drawn("Four", "mm", beginning(kinds_of("RRRR")))
 
 

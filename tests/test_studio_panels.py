@@ -104,7 +104,6 @@ def assert_inside(svg: str, width: int, height: int) -> None:
         assert 9 <= text.y <= height - 3, text
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("width", [300, 420])
 def test_every_text_and_the_cursor_stay_inside_the_frame(name: str, width: int) -> None:

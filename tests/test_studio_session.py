@@ -250,7 +250,6 @@ def test_a_linkage_that_could_not_be_assembled_moves_once_it_can() -> None:
     assert session.view is not None
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["rssr", "five_bar", "rssp", "seven_r", "rccc"])
 def test_dimensions_of_any_size_raise_nothing_but_refusals(name: str) -> None:
     session = opened(name)
@@ -272,7 +271,6 @@ def test_dimensions_of_any_size_raise_nothing_but_refusals(name: str) -> None:
 # --- the drive
 
 
-@pytest.mark.slow
 def test_another_joint_drives_and_the_pose_stays() -> None:
     for name in ("rssr", "rssp", "rscr", "five_bar", "six_bar", "rccc"):
         session = opened(name)

@@ -56,7 +56,6 @@ def test_what_are_no_kinds_is_refused(words, message):
     assert str(refused.value).startswith(message)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "words", ["RR", "RRRRR", "RRRRRRR", "RCCC", "RHRR", "RUSR", "RPUS", "REES", "R" * 12]
 )

@@ -41,7 +41,6 @@ def ends(found: tuple[Floats, Floats, Floats]) -> tuple[Floats, Floats]:
     return middle - half, middle + half
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", gallery.names())
 def test_each_link_has_tubes_from_joint_to_joint_in_every_pose(name: str) -> None:
     _, frame, made = planned(name)
@@ -56,7 +55,6 @@ def test_each_link_has_tubes_from_joint_to_joint_in_every_pose(name: str) -> Non
         assert off.max(axis=0).min() < 1e-12 * max(frame.span, np.abs(frame.places).max())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", gallery.names())
 def test_no_solid_of_a_rigid_link_changes_its_size_along_the_motion(name: str) -> None:
     motion, frame, made = planned(name)
@@ -66,7 +64,6 @@ def test_no_solid_of_a_rigid_link_changes_its_size_along_the_motion(name: str) -
     assert motion.circuits
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", gallery.names())
 def test_orientations_are_unit_quaternions_and_blocks_and_nuts_turn_little_from_row_to_row(name: str) -> None:
     _, frame, made = planned(name)
@@ -95,7 +92,6 @@ def test_turns_lead_z_onto_the_way_and_x_towards_the_roll_straight_down_too() ->
     assert (np.sum(rotated(turn, (1, 0, 0)) * across, axis=1)[:200] > 0).all()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", gallery.names())
 def test_a_pose_that_is_not_known_hides_what_stands_on_it_and_raises_nothing(name: str) -> None:
     _, frame, made = planned(name)

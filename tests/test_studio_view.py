@@ -73,7 +73,6 @@ def test_the_output_of_the_drawn_pose_reads_zero_whatever_the_pin() -> None:
 # --- modes
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in names() if name != "screw_drill"])
 def test_the_modes_of_every_input_are_the_assembly_modes(name: str) -> None:
     linkage = sb.load(name)
@@ -188,7 +187,6 @@ def test_choosing_a_circuit_keeps_the_input_where_it_gets_there() -> None:
     assert (session.view.circuit.index, session.row) == (1, 0.0)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_places_worked_out_from_joint_values_are_those_of_the_frame(name: str) -> None:
     session = opened(name)
@@ -215,7 +213,6 @@ ROCKING: list[tuple[str, tuple[str, str] | None]] = [
 ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize(("content", "ends"), ROCKING)
 def test_a_motion_turns_back_at_its_dead_centres_and_returns_to_its_start(

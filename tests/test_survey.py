@@ -104,7 +104,6 @@ def test_measures_are_those_of_the_ordinary_analysis():
         assert assert_measured_alike(special) >= 5
 
 
-@pytest.mark.slow
 def test_measures_of_a_thousand_are_those_of_the_ordinary_analysis():
     assert assert_measured_alike(drawn(1000, seed=1)) > 400
 
@@ -156,7 +155,6 @@ def test_what_is_kept_does_what_is_said_of_it(want):
             assert np.allclose(angles, one.balls, atol=1e-7)
 
 
-@pytest.mark.slow
 def test_no_start_of_a_dense_scan_is_much_better_than_the_one_that_was_found():
     task = SurveyTask(parabola(), count=400, tolerance=math.radians(90), transmission_lowest=0.0)
     core, (inputs, wanted) = task.core(), task.readings
@@ -270,7 +268,6 @@ def test_a_line_of_a_journal_is_taken_as_the_part_it_was_written_for_or_not_at_a
     assert survey(task, designs_wanted=0, out=tmp_path / "a", resume=True).tally.line() == whole
 
 
-@pytest.mark.slow
 def test_a_survey_that_was_killed_goes_on(tmp_path):
     words = [
         "design",
@@ -297,14 +294,12 @@ def test_a_survey_that_was_killed_goes_on(tmp_path):
     assert again.tally.line() == survey(task, designs_wanted=0, threads=2).tally.line()
 
 
-@pytest.mark.slow
 def test_workers_of_a_cluster_give_the_same_answer(workers):
     task = SurveyTask(FLAP, count=600_000)
     there = survey(task, designs_wanted=0, scheduler=workers(2).scheduler_address)
     assert there.tally.line() == survey(task, designs_wanted=0, threads=1).tally.line()
 
 
-@pytest.mark.slow
 def test_designs_are_better_than_what_was_drawn_and_keep_what_must_hold():
     task = SurveyTask(parabola(), count=30000, tolerance=math.radians(5), ball_angle=math.radians(40))
     tally = SurveyTally.of(task.core().tally(0, task.count))
@@ -324,7 +319,6 @@ def test_designs_are_better_than_what_was_drawn_and_keep_what_must_hold():
         assert off.min() < candidate.error_greatest + 1e-9
 
 
-@pytest.mark.slow
 def test_a_swing_and_a_travel_are_met_exactly():
     for want in (FLAP, SwingWish(math.radians(60), 1.2)):
         task = SurveyTask(want, count=40000, tolerance=math.radians(4))
@@ -333,7 +327,6 @@ def test_a_swing_and_a_travel_are_met_exactly():
         assert found.candidates[0].transmission_lowest > math.radians(40)
 
 
-@pytest.mark.slow
 def test_a_swing_as_quick_one_way_as_back_is_met_though_change_points_are_near():
     square = {"angle": (math.pi / 2, math.pi / 2)}
     task = SurveyTask(SwingWish(math.radians(60), 1.0), square, count=40000, tolerance=math.radians(4))
@@ -360,7 +353,6 @@ def test_that_none_does_it_is_an_answer_with_what_comes_nearest():
     assert list(found.tally.refused) == list(VERDICTS[1:])
 
 
-@pytest.mark.slow
 def test_a_survey_is_printed_written_and_given_as_json(tmp_path):
     words = ["design", "survey", "--output-range", "0:23.75deg", "--count", "2e3", "--ball-angle", "30deg"]
     words += ["--bound", "angle=90deg", "--designs", "2", "--threads", "1"]

@@ -76,7 +76,6 @@ def test_each_verdict_is_that_of_the_analysis():
     assert 0 <= max(np.flatnonzero(counts)) * 10 <= most
 
 
-@pytest.mark.slow
 def test_the_answer_is_the_same_however_the_work_is_divided(tmp_path, monkeypatch):
     whole = LoopSurvey(about("planar_4r", 30.0, Most(0, 0.05)), 60, 2).tally(0)
     monkeypatch.setattr(LoopSurvey, "part_size", 25)
@@ -94,7 +93,6 @@ def test_the_answer_is_the_same_however_the_work_is_divided(tmp_path, monkeypatc
     assert again.tally.line() == whole.line()
 
 
-@pytest.mark.slow
 def test_two_processes_give_the_answer_of_one_and_a_killed_run_goes_on(tmp_path, task_file):
     asked = LoopSurvey(read_task(task_file), 600)
     words = ["design", "survey", str(task_file), "--count", "600", "--threads", "2"]
@@ -106,7 +104,6 @@ def test_two_processes_give_the_answer_of_one_and_a_killed_run_goes_on(tmp_path,
     assert again.tally.line() == survey(asked, designs_wanted=0, threads=1).tally.line()
 
 
-@pytest.mark.slow
 def test_designs_are_better_than_what_was_drawn():
     found = survey(LoopSurvey(about("planar_4r", 20.0, Most(0, 0.2)), 40, 1), designs_wanted=1, threads=1)
     assert found.found is not None
@@ -115,7 +112,6 @@ def test_designs_are_better_than_what_was_drawn():
     assert found.answer == f"{found.tally.found} of 40 do it"
 
 
-@pytest.mark.slow
 def test_that_none_does_it_is_an_answer_with_what_comes_nearest(task_file):
     text = (
         TASK.replace('most = "20deg"', 'most = "0.001deg"').replace("ball.[xy]", "ball.x").replace("z]", "y]")

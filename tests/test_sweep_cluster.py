@@ -29,7 +29,6 @@ def bits(folder: Path) -> dict[str, str]:
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir()}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 4])
 def test_any_number_of_workers_makes_the_bits_of_one_thread(workers, tmp_path: Path, count: int) -> None:
     swept(out=tmp_path / "alone", threads=1)
@@ -37,7 +36,6 @@ def test_any_number_of_workers_makes_the_bits_of_one_thread(workers, tmp_path: P
     assert bits(tmp_path / "cluster") == bits(tmp_path / "alone")
 
 
-@pytest.mark.slow
 def test_a_worker_that_is_killed_costs_nothing_but_time(workers, tmp_path: Path) -> None:
     cluster = workers(2)
     killed = []
@@ -60,7 +58,6 @@ def ends_its_process(motion: sb.Motion) -> float | None:
     return None
 
 
-@pytest.mark.slow
 def test_a_part_that_ends_every_worker_is_told_and_the_others_are_kept(workers, tmp_path: Path) -> None:
     cluster = workers(2, **{"distributed.scheduler.allowed-failures": 1})
     with pytest.raises(EngineError) as caught:
@@ -75,7 +72,6 @@ def test_a_part_that_ends_every_worker_is_told_and_the_others_are_kept(workers, 
     assert {path.suffix for path in (tmp_path / "one").iterdir()} <= {".json", ".parquet"}
 
 
-@pytest.mark.slow
 def test_without_workers_it_is_told_and_goes_on_without_the_cluster(
     workers, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -101,7 +97,6 @@ def test_without_workers_it_is_told_and_goes_on_without_the_cluster(
     assert kept.items() <= bits(tmp_path / "one").items()
 
 
-@pytest.mark.slow
 def test_a_cluster_that_ends_is_told_and_its_parts_are_kept(workers, tmp_path: Path) -> None:
     cluster = workers(1)
     ended = []

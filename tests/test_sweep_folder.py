@@ -283,7 +283,6 @@ main()
 """
 
 
-@pytest.mark.slow
 def test_a_full_disk_leaves_whole_parts_and_says_how_to_go_on(tmp_path: Path) -> None:
     # couplers that reach nothing come first: their parts are small
     sweep = [
@@ -317,7 +316,6 @@ def test_a_full_disk_leaves_whole_parts_and_says_how_to_go_on(tmp_path: Path) ->
     assert bits(tmp_path / "one") == bits(tmp_path / "all")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("kills", "count"), [(3, 200), pytest.param(20, 400, marks=pytest.mark.proof)])
 def test_a_sweep_killed_at_random_moments_loses_no_finished_part(
     kills: int, count: int, tmp_path: Path
@@ -354,7 +352,6 @@ def test_a_sweep_killed_at_random_moments_loses_no_finished_part(
     assert bits(folder) == bits(tmp_path / "whole")
 
 
-@pytest.mark.slow
 def test_memory_stays_flat_through_four_million_linkages(tmp_path: Path) -> None:
     code = (
         "import re, sys, sevenbar as sb\n"

@@ -224,7 +224,6 @@ def test_totals_are_those_of_the_rows() -> None:
     assert extent.highest_at == frame["linkage"][frame["swing_deg"].idxmax()]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("measures", [["motion_type", "limits"], ["motion_type", "circuits"], list(MEASURES)])
 @pytest.mark.parametrize("input", ["crank", "rocker"])
 def test_linkages_measured_all_at_once_have_the_rows_of_linkages_one_by_one(

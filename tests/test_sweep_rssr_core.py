@@ -84,8 +84,7 @@ def apart(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.abs((a - b + np.pi) % (2 * np.pi) - np.pi)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("count", [600, pytest.param(5000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [600, 5000])
 @pytest.mark.parametrize("driver", DRIVERS)
 def test_types_and_limits_are_those_of_the_linkage_s_own_motion(driver: str, count: int) -> None:
     linkages = of_all_kinds(count, count)
@@ -167,7 +166,6 @@ def test_dimensions_that_make_no_linkage_are_invalid_and_their_neighbours_are_no
         assert np.isnan(measured.limits[1::2]).all()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("unit", [1e-300, 1e-30, 1e3, 1e300, 1e307])
 def test_the_unit_of_length_does_not_matter(unit: float) -> None:
     linkages = dimensions(
@@ -201,7 +199,6 @@ def measure(many: np.ndarray, driver: str, threads: int) -> _core.RssrBatch:
     return _core.measure_rssr(many, driver, np.ones(many.shape[1]), threads)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("driver", DRIVERS)
 def test_what_is_measured_is_what_the_linkage_s_own_motion_says(driver: str) -> None:
     linkages = of_all_kinds(4, 240)
@@ -254,7 +251,6 @@ def test_measures_do_not_depend_on_the_number_of_threads() -> None:
         assert {key: again[key].tobytes() for key in one} == {key: one[key].tobytes() for key in one}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("driver", DRIVERS)
 def test_no_sampled_jerk_exceeds_its_extremes_and_the_output_has_them_where_they_are_said_to_be(
     driver: str,
@@ -279,7 +275,6 @@ def test_no_sampled_jerk_exceeds_its_extremes_and_the_output_has_them_where_they
         np.testing.assert_allclose(there, [lowest, highest], rtol=1e-8, atol=1e-9 * span)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("off", [1e-4, 1e-6, 1e-8, 1e-10])
 def test_the_extremes_of_jerk_hold_the_narrow_peak_beside_a_change_point(off: float) -> None:
     """A crank that just turns past where it would stick: the rates rise within sqrt(off) of a radian."""

@@ -19,7 +19,6 @@ from sevenbar.errors import RequestError
 PAIRS = "input_deg,output_deg\n0,0\n20,31\n40,50\n60,64\n"
 
 
-@pytest.mark.slow
 def test_a_function_is_printed_written_and_told_as_json(tmp_path):
     out = tmp_path / "new" / "folder"
     words = ("design", "function", "--y", "x^2", "--points", "7", "--designs", "2")
@@ -42,7 +41,6 @@ def test_a_function_is_printed_written_and_told_as_json(tmp_path):
     assert again.endswith("exists already; give another path, or --force to replace it")
 
 
-@pytest.mark.slow
 def test_pairs_of_a_table_are_met(tmp_path):
     table = tmp_path / "pairs.csv"
     table.write_text(PAIRS, encoding="utf-8")
@@ -51,7 +49,6 @@ def test_pairs_of_a_table_are_met(tmp_path):
     assert design["error_greatest_deg"] < 1e-10
 
 
-@pytest.mark.slow
 def test_a_swing_is_printed_and_written(tmp_path):
     out = tmp_path / "out"
     run = sevenbar(
@@ -71,7 +68,6 @@ def test_a_swing_is_printed_and_written(tmp_path):
     assert min(abs(circuit.time_ratio - 1.2) for circuit in circuits) < 1e-9
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -149,7 +145,6 @@ def test_degrees_are_not_taken_twice():
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("y", "x"), [("sin(x)", "0:90deg"), ("sind(x)", "0:90"), ("sin(x)", "0:pi/2")])
 def test_a_sine_of_degrees_is_found(y, x, tmp_path):
     out = tmp_path / "out"
@@ -169,7 +164,6 @@ def test_a_sine_of_degrees_is_found(y, x, tmp_path):
         assert np.abs(off).min() < 0.003
 
 
-@pytest.mark.slow
 def test_a_sine_of_degrees_taken_for_radians_is_hinted_at():
     told = mistake("design", "function", "--y", "sin(x)", "--x", "0:90", "--designs", "1")
     assert "sin takes radians; x goes to 90: write sind(x) or x = 0:90deg if these are degrees" in told
@@ -199,7 +193,6 @@ module.least_error = interrupted
 """
 
 
-@pytest.mark.slow
 def test_ctrl_c_leaves_the_best_so_far_and_says_so(tmp_path):
     words = ("design", "function", "--y", "x^2", "--designs", "5", "--out", "out")
     run = sevenbar(*words, cwd=tmp_path, before=STOPPED.format(calls=3))
@@ -212,7 +205,6 @@ def test_ctrl_c_leaves_the_best_so_far_and_says_so(tmp_path):
     assert json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))["unfinished"]
 
 
-@pytest.mark.slow
 def test_ctrl_c_before_anything_is_found_leaves_nothing(tmp_path):
     words = ("design", "function", "--y", "sin(x)", "--x", "0:90", "--out", "out")
     run = sevenbar(*words, cwd=tmp_path, before=STOPPED.format(calls=2))
@@ -221,7 +213,6 @@ def test_ctrl_c_before_anything_is_found_leaves_nothing(tmp_path):
     assert (run.stdout, list(tmp_path.iterdir())) == ("", [])
 
 
-@pytest.mark.slow
 def test_a_wish_that_cannot_be_met_writes_nothing(tmp_path):
     told = mistake("design", "swing", "--swing", "340", "--designs", "1", "--out", "out", cwd=tmp_path)
     told = told.splitlines()[-1].removeprefix("sevenbar: ")
@@ -248,7 +239,6 @@ def test_a_wrong_table_is_told_with_its_place(text, message, tmp_path):
     assert message in mistake("design", "function", "--table", table)
 
 
-@pytest.mark.slow
 def test_without_scipy_the_extra_is_named():
     hide = "import sys; sys.modules['scipy.optimize'] = None"
     examples = Path(__file__).parent.parent / "examples"

@@ -77,7 +77,6 @@ def test_the_closed_form_of_crank_and_rocker_is_the_general_loop(branch, sides, 
     np.testing.assert_allclose(plain.closed(moved, poses[:, 0], poses)[:, -1], closed, atol=1e-10)
 
 
-@pytest.mark.slow
 def test_x_squared_over_a_quarter_turn_errs_by_less_than_three_thousandths_of_a_degree(squared):
     best = squared.candidates[0]
     errors = np.degrees(told_errors(best, square))
@@ -88,7 +87,6 @@ def test_x_squared_over_a_quarter_turn_errs_by_less_than_three_thousandths_of_a_
     assert best.transmission_lowest > math.radians(30)
 
 
-@pytest.mark.slow
 def test_the_greatest_errors_are_equal_and_alternate(squared):
     """Chebyshev: of seven unknowns the best has eight greatest errors of alternating sign."""
     errors = told_errors(squared.candidates[0], square)
@@ -99,7 +97,6 @@ def test_the_greatest_errors_are_equal_and_alternate(squared):
     assert np.abs(peaks).min() > 0.98 * np.abs(peaks).max()
 
 
-@pytest.mark.slow
 def test_designs_differ_and_stand_in_the_order_of_their_errors(squared):
     errors = [candidate.error_greatest for candidate in squared.candidates]
     assert errors == sorted(errors)
@@ -110,7 +107,6 @@ def test_designs_differ_and_stand_in_the_order_of_their_errors(squared):
             assert np.abs(row - other).max() > 50.0
 
 
-@pytest.mark.slow
 def test_files_tell_errors_that_the_ordinary_analysis_finds_again(squared, tmp_path):
     written = synthesis_report(3, "a test", ()).write(squared, tmp_path / "out")
     names = [path.name for path in written]
@@ -126,7 +122,6 @@ def test_files_tell_errors_that_the_ordinary_analysis_finds_again(squared, tmp_p
         assert math.degrees(np.abs(best).max()) == pytest.approx(told["error_greatest_deg"], rel=1e-3)
 
 
-@pytest.mark.slow
 def test_the_logarithm_over_a_quarter_turn_errs_by_half_a_degree_with_thirty_degrees_of_transmission():
     found = function_generation(function="log10(x)", x_range=(1, 10), count=1)
     best = found.candidates[0]
@@ -138,7 +133,6 @@ def test_the_logarithm_over_a_quarter_turn_errs_by_half_a_degree_with_thirty_deg
     assert free.candidates[0].error_greatest < 0.5 * best.error_greatest
 
 
-@pytest.mark.slow
 def test_limits_are_kept_to_and_cost_accuracy():
     limits = Limits(math.radians(30), (50.0, 1000.0), "crank-rocker")
     found = function_generation(function="x^2", limits=limits, count=2)
@@ -162,7 +156,6 @@ def test_seven_precision_points_of_x_squared_are_met_and_lie_at_chebyshevs_place
     np.testing.assert_allclose(places, wanted, atol=1e-3)
 
 
-@pytest.mark.slow
 def test_pairs_are_met_exactly_and_those_with_the_best_transmission_stand_first():
     a, b = np.radians([0.0, 20.0, 40.0, 60.0]), np.radians([0.0, 31.0, 50.0, 64.0])
     found = function_generation((a, b), count=2)
@@ -176,7 +169,6 @@ def test_pairs_are_met_exactly_and_those_with_the_best_transmission_stand_first(
         assert off.max(axis=1).min() < 1e-11
 
 
-@pytest.mark.slow
 def test_many_pairs_of_a_known_linkage_lead_back_to_its_function():
     known = sb.rssr(M=300, N=200, L1=250, L2=420, L3=350, D=-100)
     a = np.linspace(0.0, 1.2, 15)
@@ -185,13 +177,11 @@ def test_many_pairs_of_a_known_linkage_lead_back_to_its_function():
     assert found.candidates[0].error_greatest < 1e-6
 
 
-@pytest.mark.slow
 def test_one_seed_gives_one_answer():
     first, second = (function_generation(function="x^3", precision=6, count=1, seed=4) for _ in range(2))
     assert [c.columns for c in first.candidates] == [c.columns for c in second.candidates]
 
 
-@pytest.mark.slow
 def test_a_wish_that_cannot_be_met_has_no_design_and_says_what_was_nearest():
     found = function_generation(function="sin(20*x)", count=1)
     assert found.candidates == ()
@@ -269,7 +259,6 @@ def test_wrong_pairs_are_told_in_a_line(a, b, words):
     assert words in str(told.value)
 
 
-@pytest.mark.slow
 def test_the_example_of_the_page_prints_what_its_comments_say():
     code, *_ = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL)
     printed = io.StringIO()
@@ -278,7 +267,6 @@ def test_the_example_of_the_page_prints_what_its_comments_say():
     assert printed.getvalue().splitlines() == re.findall(r"print\(.*\)  # (.*)", code)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("row", "wish"),
     [

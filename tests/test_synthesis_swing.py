@@ -59,7 +59,6 @@ def test_newtons_steps_bring_a_design_back_to_its_swing(branch):
     np.testing.assert_array_equal(polish.exact(z + 5.0), z + 5.0)
 
 
-@pytest.mark.slow
 def test_a_swing_beyond_half_a_turn_is_no_swing_the_other_way_round():
     """The output's difference counts along the way to the high end, not by the short way round."""
     found = swing_generation(math.radians(200), 1.0, limits=Limits(), count=1)
@@ -80,7 +79,6 @@ def test_a_linkage_with_M_zero_is_as_quick_one_way_as_back():
         np.testing.assert_allclose(np.abs(np.sin(ends)), 1.0, atol=1e-12)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("degrees", "wanted"), [(60, 1.2), (90, 1.0)])
 def test_swing_and_time_ratio_are_met_by_designs_that_differ(degrees, wanted):
     found = swing_generation(math.radians(degrees), wanted, count=2)
@@ -106,7 +104,6 @@ def test_swing_and_time_ratio_are_met_by_designs_that_differ(degrees, wanted):
     assert lowest[0] > lowest[1] > math.radians(40)
 
 
-@pytest.mark.slow
 def test_no_random_crank_rocker_of_the_wish_transmits_better():
     """Thousands of random designs near the wish, by the closed form alone."""
     found = swing_generation(math.radians(60), 1.0, count=1)
@@ -132,7 +129,6 @@ def test_no_random_crank_rocker_of_the_wish_transmits_better():
     assert rivals > 5
 
 
-@pytest.mark.slow
 def test_limits_of_a_swing_are_kept_to():
     limits = Limits(math.radians(40), (100.0, 800.0))
     found = swing_generation(math.radians(60), 1.1, limits=limits, count=1)
@@ -142,7 +138,6 @@ def test_limits_of_a_swing_are_kept_to():
     assert found.candidates[0].transmission_lowest >= math.radians(40)
 
 
-@pytest.mark.slow
 def test_a_swing_that_cannot_be_reached_tells_the_nearest():
     found = swing_generation(math.radians(340), 1.1, count=1)
     assert found.candidates == ()

@@ -31,7 +31,6 @@ def extremes(**changes):
     return np.array([value for e in pairs for value in (e.lowest, e.highest)])
 
 
-@pytest.mark.slow
 def test_the_equal_tolerances_cause_the_paper_s_differences_at_worst(tables):
     nominal = extremes()
     for place, one in enumerate(tables[0]):

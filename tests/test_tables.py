@@ -257,7 +257,6 @@ def test_a_damaged_workbook_is_refused(tmp_path, content):
         sb.load(path)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", gallery.names())
 def test_the_gallery_goes_to_tables_and_back(tmp_path, name):
     linkage = sb.load(name)

@@ -98,7 +98,6 @@ def long_calls() -> dict[str, Callable[[int], object]]:
     }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", list(long_calls()))
 def test_a_long_call_leaves_the_interpreter_to_other_threads(name: str) -> None:
     call = long_calls()[name]
@@ -143,7 +142,6 @@ sys.exit(after != [before] * 4)
 """
 
 
-@pytest.mark.slow
 def test_processes_forked_after_threads_have_run_get_the_same_bits() -> None:
     # a newer Python warns of any fork beside threads
     command = [sys.executable, "-W", "ignore::DeprecationWarning", "-c", FORKED]
@@ -169,7 +167,6 @@ except KeyboardInterrupt:
 """
 
 
-@pytest.mark.slow
 def test_an_interrupt_during_a_batch_is_raised_when_the_batch_is_done() -> None:
     command = [sys.executable, "-c", INTERRUPTED]
     with subprocess.Popen(command, env=SHARED, stdout=subprocess.PIPE) as child:

@@ -133,7 +133,6 @@ def near_a_change_point(coupler):
     return sb.rssr(M=700, N=700, L1=250, L3=550, D=0, L2=coupler)
 
 
-@pytest.mark.slow
 def test_near_a_change_point_it_says_that_the_linear_estimate_does_not_hold():
     linkage = near_a_change_point(964)
     exact = monte_carlo(linkage, {"L2": 5.0}, 300, seed=3)
@@ -149,7 +148,6 @@ def test_near_a_change_point_it_says_that_the_linear_estimate_does_not_hold():
     assert smaller.holds is True
 
 
-@pytest.mark.slow
 def test_designs_whose_crank_stops_between_two_rows_are_seen():
     # rows at 176 and 184 degrees, between which the crank of some designs stops
     found = sensitivities(near_a_change_point(962.5), samples=45)

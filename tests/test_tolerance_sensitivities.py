@@ -100,14 +100,12 @@ QUICK = ("rssr", "planar_4r", "universal_joint", "rscr")
 RIGID = ("bennett", "bricard_line", "bricard_plane", "bricard_trihedral", "goldberg_5r", "myard_5r")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", QUICK)
 def test_all_derivatives_are_those_of_differences_of_the_analysis(name):
     _, compared = compare_all(sb.load(name))
     assert compared > 400
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in names() if name not in (*QUICK, *RIGID)])
 def test_all_derivatives_are_those_of_differences_in_the_whole_gallery(name):
     # a drawn joint that lies on the axis before it has a frame with rounding of 1e-10 when it is moved a little
@@ -115,7 +113,6 @@ def test_all_derivatives_are_those_of_differences_in_the_whole_gallery(name):
     assert compared > 400
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("output", ["theta_2", "theta_6"])
 def test_another_output_and_a_sliding_joint_have_derivatives_too(output):
     linkage = prismatic(2)(np.random.default_rng(3)).linkage()
@@ -123,7 +120,6 @@ def test_another_output_and_a_sliding_joint_have_derivatives_too(output):
     assert compared > 1000
 
 
-@pytest.mark.slow
 def test_rows_in_radians_have_derivatives_by_radians():
     linkage = general(np.random.default_rng(4)).linkage()
     found, _ = compare_all(linkage)
@@ -137,7 +133,6 @@ def test_a_rocker_that_drives_has_derivatives_between_its_limits():
     assert np.isnan(found.of()[found.status == "dead-centre"]).all()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "dims",
     [Dimensions(700, 700, 250, 550, 0, 997.4968671630002), Dimensions(640, -710, 210, 500, 130, 900)],
@@ -220,14 +215,13 @@ def measures(circuit):
     return told | {f"limit_{i}": x for i, x in enumerate(centres, 1)}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("linkage", "options", "least"),
     [
         (sb.rssr(M=640, N=-710, L1=210, L3=500, D=130, L2=900), {}, 10),
         (sb.rssr(M=640, N=-710, L1=210, L3=500, D=130, L2=900), {"input": "rocker"}, 3),
         (sb.load("planar_4r"), {}, 8),
-        pytest.param(sb.load("six_bar"), {}, 8, marks=pytest.mark.slow),
+        (sb.load("six_bar"), {}, 8),
         (sb.load("rssp"), {}, 8),
         (sb.load("seven_r"), {}, 4),
     ],
@@ -270,7 +264,6 @@ def test_what_spins_idly_is_not_told_and_the_rest_is():
     assert told["B.x"]
 
 
-@pytest.mark.slow
 def test_dimensions_that_open_an_overconstrained_loop_are_named():
     assert set(sensitivities(sb.load("planar_4r"), samples=8).opening) == {
         f"{word}_{i}" for word in ("offset", "twist") for i in range(1, 5)

@@ -66,7 +66,6 @@ def test_of_a_planar_four_bar_it_is_that_of_the_law_of_cosines_on_every_row(leng
         assert extremes.highest == pytest.approx(highest, abs=1e-12)
 
 
-@pytest.mark.slow
 def test_random_planar_four_bars_have_the_extremes_of_the_law_of_cosines_either_way():
     rng = np.random.default_rng(11)
     for number in range(60):
@@ -119,7 +118,6 @@ def test_of_a_slider_crank_it_is_the_rods_angle_against_the_normal_of_the_slide(
         assert circuit.transmission.lowest == 0.0
 
 
-@pytest.mark.slow
 def test_of_an_inverted_slider_crank_the_force_is_square_to_the_rocker():
     # crank pin in a slot of a rocker whose line goes through its own pivot
     joints = [
@@ -254,7 +252,6 @@ def test_extremes_do_not_depend_on_samples_speed_or_law():
         assert extremes.highest == pytest.approx(reference.highest, abs=1e-12)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "lengths", [(1, 1, 1, 1), (2, 1, 2, 1), (3, 5, 3, 5), (0.3, 0.1, 0.3, 0.1), (2, 3, 3, 2)]
 )

@@ -201,7 +201,6 @@ def test_a_batch_says_the_same_of_it():
                     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("index", WITH_SUCH[:2])
 def test_report_and_figures_say_that_it_turns_and_where_it_turns_back(index):
     motion = moved(index)
@@ -221,7 +220,6 @@ def test_report_and_figures_say_that_it_turns_and_where_it_turns_back(index):
     assert "±" in note(motion, cut=False)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("index", WITH_SUCH[:2])
 def test_other_programs_are_driven_within_one_pass(index, tmp_path):
     motion = moved(index, 360)

@@ -53,7 +53,6 @@ def linkage(name, **changed):
     return sb.loads(text)
 
 
-@pytest.mark.slow
 def test_the_tutorial_shows_what_its_commands_print_and_draw_today(tmp_path):
     count = 0
     for kind, text in boxes(ENGLISH):

@@ -75,7 +75,6 @@ def answers_alike(motion: sb.Motion, other: sb.Motion) -> bool:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("again", AGAIN)
 @pytest.mark.parametrize("name", gallery.names())
 def test_a_linkage_is_copied_before_and_after_it_is_used(name, again):
@@ -90,7 +89,6 @@ def test_a_linkage_is_copied_before_and_after_it_is_used(name, again):
     assert answers_alike(linkage.motion(SAMPLES), late.motion(SAMPLES))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("again", AGAIN)
 @pytest.mark.parametrize("name", gallery.names())
 def test_a_copied_motion_tells_the_points_of_every_link(name, again):
@@ -131,7 +129,6 @@ def _path(circuit: Circuit) -> Floats:
     return circuit.point(1, (0.0, 0.0, 1.0)).jerk
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("start", ["spawn", "forkserver"])
 def test_linkages_and_circuits_go_through_a_pool_of_processes(start):
     linkages = [used(sb.load(name)) for name in WAYS]

@@ -160,7 +160,6 @@ def test_the_words_of_random_descriptions_are_what_their_form_means(form):
     assert checked(form, 40) > 30
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", [250, pytest.param(1000, marks=pytest.mark.proof)])
 @pytest.mark.parametrize("form", list(CHECKS))
 def test_the_words_of_hundreds_of_random_descriptions_are_what_their_form_means(form, count):

@@ -126,11 +126,11 @@ class HeldFolder:
 
     def _unwritable(self, error: OSError) -> OutputError:
         reason = (error.strerror or str(error)).lower()
-        selected = ""
+        there = ""
         if self.done:
-            selected = f"; {len(self.done)} of {self._plan.parts} parts are kept, --resume goes on with them"
+            there = f"; {len(self.done)} of {self._plan.parts} parts are kept, --resume goes on with them"
         return OutputError(
-            f"{self.path}: cannot be written: {reason}; make room or give a folder that can be written{selected}"
+            f"{self.path}: cannot be written: {reason}; make room or give a folder that can be written{there}"
         )
 
 

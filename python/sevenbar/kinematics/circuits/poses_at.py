@@ -146,8 +146,8 @@ def pose_near(
     pose = result.nearest(q, within=NEAR_POSE)
     if pose is None:
         raise RequestError(
-            f"pose: no circuit has it, of {len(result.poses)} poses at this {result.motion.input}; give a row "
-            "of assembly_modes() or of a circuit"
+            f"pose: no circuit has it, of {len(result.poses)} poses at this {result.motion.input}; "
+            "give a row of assembly_modes() or of a circuit"
         )
     return pose
 
