@@ -88,6 +88,10 @@ def test_a_draft_keeps_them_through_changes_and_toml():
             '[[stop]]\njoint = "crank"\nrange = [0, 400]',
             "stop[1].range: [0, 400]: 400 deg is more than a turn",
         ),
+        (
+            '[[stop]]\njoint = "crank"\nlimits = [0, 30]',
+            "stop[1].limits: is not known here; give range = [low, high]",
+        ),
         ('[[stop]]\njoint = "crank"\nrange = 30', "stop[1].range: 30 is not a range; give low and high"),
         ('[[stop]]\njoint = "crank"\nrange = [0, "3 mm"]', "stop[1].range: "),
         ('[[stop]]\njoint = "ball_b"\ncone = -4', "stop[1].cone: -4 deg is no cone; give an angle above 0"),

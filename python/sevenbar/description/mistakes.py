@@ -17,6 +17,10 @@ _NO_PLACE = ("tuple",)
 #: What to say of the key `value` in rows.
 ROW_READS = "is of joints as drawn; a row reads its own angle, or offset of P, so leave it out"
 
+#: Other names that people give the ends of a stop, and what to say of them.
+STOP_ENDS = ("limits", "limit", "ends", "between", "min", "max", "low", "high")
+RANGE = "is not known here; give range = [low, high]"
+
 
 @dataclass(frozen=True)
 class FileForms:
@@ -50,6 +54,7 @@ class FileForms:
                 near = suggestion(str(location[-1]), owner.model_fields if owner else ())
                 home = not_covered(location[-1], of_joint=location[0] == "joint" and len(location) > 1)
                 home = home or ROW_READS * (location[0] == "link" and location[-1] == "value")
+                home = home or RANGE * (location[0] == "stop" and location[-1] in STOP_ENDS)
                 home = home or ("" if near else self._home(str(location[-1])))
                 message = home or f"is not known here; {near}allowed: {keys}"
             case "literal_error" | "int_parsing_size":

@@ -16,6 +16,7 @@ from sevenbar.curves.curve import mean
 from sevenbar.curves.cycle_series import ENOUGH, CycleSeries
 from sevenbar.curves.pieces import smooth_pieces
 from sevenbar.curves.stationary import nodes
+from sevenbar.forces.heard import ROUNDING
 
 
 class Closing(NamedTuple):
@@ -25,33 +26,44 @@ class Closing(NamedTuple):
     work: float
 
 
+#: Energy, what the drive gives and what loads supply, (3, n).
+Given = Floats
+
+
 def closing(
-    energy: Floats,
-    total: Floats,
-    drive: float,
+    rows: Given,
+    rate: float,
     *,
+    pull: float,
     first: float,
     period: float,
-    least: float = 0.0,
-    evaluate: Callable[[Floats], Floats] | None = None,
+    evaluate: Callable[[Floats], Given] | None = None,
 ) -> Closing:
     """How well what is given over a cycle is the slope of the energy by the input x.
 
-    Rows (n,) are the energy E [J] and what is given in `total` [J by the input], of which `drive` is the peak
-    of the drive's part. A slope of `least` is rounding. Where the rows are too few, `evaluate` gives both
-    (m, 2) at any inputs (m,), and the slope is that of pieces.
+    Rows are the energy E [J], the power of the drive and of the loads [W] at a constant `rate` of the input;
+    at rest the torque in place of the power, and 1. A slope of less than rounding of the greatest energy, and
+    of the `pull` of what acts, is none. Where the rows are too few, `evaluate` gives the same at any inputs
+    (m,), and the slope is that of pieces.
     """
+    energy, total = _energy_and_total(rows, rate)
     slope = CycleSeries(energy, first, period).finer(1, 1)
+    drive = float(np.abs(rows[1]).max()) / abs(rate)
+    least = ROUNDING * (pull + float(np.abs(energy).max()))
     if max(float(np.abs(slope).max()), drive) <= least:
         return Closing(0.0, 0.0)
     result = _closing(slope, total, drive, float(np.mean(total)))
     if evaluate is None or max(result) <= ENOUGH:
         return result
-    rows = np.stack([energy, total], axis=1)
+    both = np.stack([energy, total], axis=1)
     # the slope is as large as what is given
     units = np.array([np.abs(energy).max(), max(np.abs(total).max(), np.abs(slope).max())])
     units[units == 0] = 1.0
-    own = smooth_pieces(lambda inputs: evaluate(inputs) / units, rows / units, first, period)
+
+    def between(inputs: Floats) -> Floats:
+        return np.asarray(np.stack(_energy_and_total(evaluate(inputs), rate), axis=1) / units)
+
+    own = smooth_pieces(between, both / units, first, period)
     if own.tail > result.power:
         return result
     half = (own.ends - own.starts) / 2
@@ -59,6 +71,11 @@ def closing(
     given = units[1] * _values(own.series[:, :, 1])
     finer = _closing(units[0] * _values(slopes), given, drive, units[1] * mean(own.part(1)))
     return Closing(min(result.power, finer.power), min(result.work, finer.work))
+
+
+def _energy_and_total(rows: Given, rate: float) -> tuple[Floats, Floats]:
+    energy, drive, supplied = rows
+    return energy, (drive + supplied) / rate
 
 
 def _closing(slope: Floats, total: Floats, drive: float, gained: float) -> Closing:

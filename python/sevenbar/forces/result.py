@@ -15,7 +15,6 @@ from sevenbar.arrays import Booleans, Floats, Integers, ReadOnly, Words
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.closing import Closing, closing
-from sevenbar.forces.heard import ROUNDING
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.sizing import WITHHELD, CycleLoads, Sizing, cycle_loads, unevenness_of
 from sevenbar.text.printing import Drawable, Printed
@@ -357,22 +356,16 @@ class Forces(ReadOnly, Drawable):
         if period is None or len(self.input) < 3 or not np.isfinite(self.power + self.supplied).all():
             return None
 
-        # at rest the torque is the slope of the energy by the input; else power is, by the speed
-        rate = 1.0 if self.at_rest else self.even_speed
-
         def rows(own: Forces) -> Floats:
-            total = own.torque if own.at_rest else own.power + own.supplied
-            return np.stack([own.kinetic + own.potential, total / rate], axis=1)
+            given = (own.torque, np.zeros(len(own.input))) if own.at_rest else (own.power, own.supplied)
+            return np.stack([own.kinetic + own.potential, *given])
 
-        drive = float(np.abs(self.torque if self.at_rest else self.power).max())
-        energy, total = rows(self).T
         return closing(
-            energy,
-            total,
-            drive / abs(rate),
+            rows(self),
+            1.0 if self.at_rest else self.even_speed,
+            pull=self.pull,
             first=float(self.input[0]),
             period=period,
-            least=ROUNDING * (self.pull + float(np.abs(energy).max())),
             evaluate=None if between is None else lambda inputs: rows(between(inputs)),
         )
 

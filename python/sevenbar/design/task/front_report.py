@@ -70,11 +70,14 @@ def _text(found: FrontFound) -> RenderableType:
     # whatever the goal of the task
     facts.add_all(task_facts(replace(found.task, goal="minimax")), bold=["wanted"])
     both = " and ".join(str(place + 1) for place in front.wants)
+    points, searches = len(front.points), front.solved
     facts.add(
-        "front", f"of wants {both}: {len(front.points)} points of {front.solved} searches, seed {found.seed}"
+        "front",
+        f"of wants {both}: {points} point{'s' * (points != 1)} of {searches} search{'es' * (searches != 1)}, "
+        f"seed {found.seed}",
     )
     if front.missing:
-        facts.add("", f"{front.missing} bounds had no design")
+        facts.add("", f"{front.missing} bound{'s' * (front.missing != 1)} had no design")
     if front.unfinished:
         facts.add("unfinished", front.unfinished, "bold yellow")
     heads = [f"{name.replace('_', ' ')}\n[{unit}]" if unit else name for name, unit, _ in found.axes]

@@ -23,7 +23,6 @@ from sevenbar.curves.curve import Curve
 from sevenbar.curves.cycle_series import CycleSeries
 from sevenbar.curves.pieces import pieces
 from sevenbar.forces.closing import closing
-from sevenbar.forces.heard import ROUNDING
 from sevenbar.forces.result import LITTLE
 from sevenbar.forces.sizing import WITHHELD, CycleLoads, Wrenches
 from sevenbar.forces.waves import ForceWaves
@@ -135,11 +134,8 @@ class _Waves:
             return series.rows_to(RESOLVED / series.scale)
         rate = self.speed * metre
         power = whole * rate
-        given = (power + self._whole(supplied, inputs)) / self.speed
-        energy = energies.sum(axis=1)
-        least = ROUNDING * (pull + float(np.abs(energy).max()))
-        drive = float(np.abs(power).max()) / abs(self.speed)
-        if max(closing(energy, given, drive, first=inputs[0], period=period, least=least)) > CLOSED:
+        given = np.stack([energies.sum(axis=1), power, self._whole(supplied, inputs)])
+        if max(closing(given, self.speed, pull=pull, first=float(inputs[0]), period=period)) > CLOSED:
             return None
         rows = _Torque(inputs, circuit.time[:: self.stride], whole, power)
         return ForceWaves(self._loads(rows, torque / peak, peak, period, rate), shaking, period)
