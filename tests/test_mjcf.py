@@ -88,6 +88,25 @@ def test_it_runs_on_its_own_for_a_turn_at_the_drive_s_speed():
     assert data.qpos[rocker.qposadr[0]] == pytest.approx(expected, abs=1e-4)
 
 
+def test_a_fast_engine_keeps_the_speed_it_is_driven_at():
+    linkage = sb.load("engine")
+    way, _ = prepared(linkage, steps=360)
+    speed = abs(way.motion.speed)
+    step = 2 * np.pi / speed / 360
+    built = prototype(linkage, way.circuit, int(way.rows[5]), way.motion.speed)
+    model = mujoco.MjModel.from_xml_string(mjcf(built, drive="velocity", time_step=step))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
+    crank = model.jnt_dofadr[model.actuator("drive").trnid[0]]
+    speeds = []
+    for _ in range(720):
+        mujoco.mj_step(model, data)
+        speeds.append(abs(data.qvel[crank]))
+    # two turns at 3,000 rpm
+    assert speed == pytest.approx(314.159, rel=1e-5)
+    assert np.abs(np.array(speeds) / speed - 1).max() < 2e-3
+
+
 def test_bodies_do_not_collide_and_weigh_what_the_text_says():
     _, _, _, built, model, _ = loaded("rssr")
     assert not model.geom_contype.any()

@@ -161,6 +161,14 @@ def test_that_not_all_was_followed_hides_no_circuit_away_from_change_points() ->
     assert unexplained(drawn, answers([1.0, 2.0, 4.0], is_change=True)) == []
 
 
+def test_a_way_that_is_refused_differs() -> None:
+    drawn = answers([1.0])
+    assert unexplained(drawn, Answers({"refused": "RequestError", "idle": 0}, [], [], {}, False)) == [
+        "refused"
+    ]
+    assert unexplained(drawn, drawn) == []
+
+
 def test_a_search_explains_circuits_that_it_missed_and_none_that_it_has_alone() -> None:
     counted = answers([1.0, 2.0], completeness="counted")
     assert unexplained(counted, answers([2.0], completeness="searched")) == []

@@ -43,7 +43,8 @@ def compared(one: Drawing, seed: int) -> Compared:
             try:
                 answers = answers_of(way)
             except SevenbarError as error:
-                answers = Answers({"refused": type(error).__name__}, [], [], {}, False)
+                idle = len(way.linkage.idle)
+                answers = Answers({"refused": type(error).__name__, "idle": idle}, [], [], {}, False)
             if first is None:
                 first = answers
                 found.moves = bool(answers.circuits)

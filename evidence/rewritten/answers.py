@@ -139,6 +139,10 @@ def _circuit(way: Way, circuit: Circuit) -> Numbers:
 
 def differences(way: Way, drawn: Answers, written: Answers) -> Iterator[str]:
     """What differs from the drawing, in words; nothing where all agrees."""
+    refused = [one.words.get("refused", "nothing") for one in (drawn, written)]
+    if refused[0] != refused[1]:
+        yield f"refused: {refused[0]} as drawn, {refused[1]} {way.name}"
+        return
     for word, value in written.words.items():
         if word in drawn.words and value != drawn.words[word]:
             yield f"{word}: {drawn.words[word]!r} as drawn, {value!r} {way.name}"

@@ -95,6 +95,16 @@ REASONS = (
         lambda _, drawn, written: drawn.surface and written.surface,
     ),
     Reason(
+        "all circuits are counted; a surface of poses is met where one of them is drawn, and rows draw none",
+        frozenset((UNFOLLOWED,)),
+        lambda way, drawn, written: (
+            way.name.startswith("as rows")
+            and _nothing_but(UNFOLLOWED)(way, drawn, written)
+            and _unfollowed(drawn)
+            and _sure(drawn, written) == {"counted"}
+        ),
+    ),
+    Reason(
         "both say that not all was followed: curves that touch or coincide are joined in part",
         COUNTS | OF_CIRCUITS | OF_OPEN | {COMPLETENESS},
         _both_unfollowed,
@@ -112,12 +122,11 @@ REASONS = (
         ),
     ),
     Reason(
-        "all else agrees: about change points the count of branch points balances in some ways only",
+        "all else agrees: about change points, and far out, branch points balance in some ways only",
         frozenset((COMPLETENESS,)),
         lambda way, drawn, written: (
             _nothing_but(COMPLETENESS)(way, drawn, written)
             and _sure(drawn, written) == {"algebraic", "counted"}
-            and drawn.is_change
         ),
     ),
     Reason(
@@ -139,7 +148,7 @@ REASONS = (
     ),
     Reason(
         "beside the ground the turn of a link is a motion of all others as one body",
-        COUNTS | {COMPLETENESS, UNFOLLOWED, "finite", "idle"},
+        COUNTS | {COMPLETENESS, UNFOLLOWED, "finite", "idle", "refused"},
         lambda way, drawn, written: (
             not way.same_ground and {drawn.words.get("idle"), written.words.get("idle")} == {0, 1}
         ),

@@ -13,6 +13,7 @@ __all__ = [
     "Carried",
     "CoreError",
     "Course",
+    "Followed",
     "Loop",
     "LoopBatch",
     "LoopWord",

@@ -43,6 +43,7 @@ FLYWHEEL = 1e10
 Drive = Literal["velocity", "position", "motor", "flywheel"]
 
 #: Gains of the actuators, in those that stop the inertia of a body within a second: of speed, of position.
+#: That of a speed above 1 rad/s is so many times as great: what resists grows with the square of the speed.
 SPEED_GAIN, POSITION_GAIN = 1e3, 1e5
 
 #: Constraints come back with this time constant, in time steps: MuJoCo's least, below which it is unstable.
@@ -137,8 +138,9 @@ def _actuator(root: Element, model: Prototype, drive: Drive) -> str:
     )
     value, speed = (float(rows[number, freedom]) * unit for rows in (model.values, model.rates))
     by_speed, by_place = (gain * _inertia(model) for gain in (SPEED_GAIN, POSITION_GAIN))
+    held = by_speed * (max(1.0, abs(speed)) if model.drive.turns else 1.0)
     how = {
-        "velocity": {"gainprm": [by_speed], "biasprm": [by_speed * speed, 0.0, -by_speed]},
+        "velocity": {"gainprm": [held], "biasprm": [held * speed, 0.0, -held]},
         "position": {"gainprm": [by_place], "biasprm": [0.0, -by_place, -by_speed]},
         "motor": {"gainprm": [1.0]},
     }[drive]
