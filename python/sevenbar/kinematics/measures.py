@@ -18,7 +18,7 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.numbers.gradients import MeasureSlopes, measure_slopes
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import NotFollowedError
-from sevenbar.kinematics.ranges.extent_slopes import extent_slopes, stopped_measures
+from sevenbar.kinematics.ranges.extent_slopes import extent_slopes
 from sevenbar.kinematics.transmission.slopes import transmission_slopes
 
 #: What a measure is a number of: of angles and lengths by the output.
@@ -40,13 +40,19 @@ Quantity = Literal[
     "length",
 ]
 
+#: What the derivatives of a measure come with: those of a family are worked out together.
+Family = Literal["motion", "transmission", "forces", "extents"]
+
+#: Where a number may be that has no bounds, and one that is a size.
+ANY, SIZE = (-math.inf, math.inf), (0.0, math.inf)
+
 
 @dataclass(frozen=True)
 class Measure:
     """A word or number of each linkage, or of each of its circuits.
 
     `value` takes the Motion, or the Circuit; angles come in degrees, as people read them, other numbers as
-    the motion has them. It gives `None` where the measure has no meaning.
+    the motion has them. It gives `None` where the measure has no meaning. No value is outside the `bounds`.
     """
 
     name: str
@@ -54,12 +60,14 @@ class Measure:
     quantity: Quantity
     value: Callable[[Any], float | int | str | None]
     title: str
+    bounds: tuple[float, float] = ANY
+    family: Family = "motion"
 
     def __reduce__(self) -> tuple[Callable[..., Measure], tuple[Any, ...]]:
         """Pickled by its name, since the functions of `MEASURES` have none; a caller's with its function."""
         if _NAMED.get(self.name) is self or self.name.partition(":")[0] in OF_JOINTS:
             return _measure, (self.name,)
-        return Measure, (self.name, self.per, self.quantity, self.value, self.title)
+        return Measure, (self.name, self.per, self.quantity, self.value, self.title, self.bounds, self.family)
 
     def unit(self, linkage: Loop, output: str) -> str:
         """The unit of its numbers, "" where there is none; `output` is the column of the output."""
@@ -104,7 +112,14 @@ def _swing(circuit: Circuit) -> float | None:
     )
 
 
-def _ends(name: str, quantity: Quantity, lowest: str, highest: str) -> list[Measure]:
+def _ends(
+    name: str,
+    quantity: Quantity,
+    lowest: str,
+    highest: str,
+    bounds: tuple[float, float] = ANY,
+    family: Family = "motion",
+) -> list[Measure]:
     """The lowest and the highest of what a circuit has under a name, with their titles."""
 
     def value(end: str, circuit: Circuit) -> float | None:
@@ -114,14 +129,16 @@ def _ends(name: str, quantity: Quantity, lowest: str, highest: str) -> list[Meas
 
     titles = {"lowest": lowest, "highest": highest}
     return [
-        Measure(f"{name}_{end}", "circuit", quantity, partial(value, end), title)
+        Measure(f"{name}_{end}", "circuit", quantity, partial(value, end), title, bounds, family)
         for end, title in titles.items()
     ]
 
 
 def _of_rate(rate: Literal["velocity", "acceleration", "jerk"]) -> list[Measure]:
-    titles = (f"{end} {rate} of the output; none where there is no bound" for end in ("lowest", "highest"))
-    return _ends(rate, rate, *titles)
+    lowest, highest = (
+        f"{end} {rate} of the output; none where there is no bound" for end in ("lowest", "highest")
+    )
+    return _ends(rate, rate, lowest, highest)
 
 
 def _of_sizing(name: str, quantity: Quantity, pick: Callable[[CycleLoads], float], title: str) -> Measure:
@@ -131,7 +148,7 @@ def _of_sizing(name: str, quantity: Quantity, pick: Callable[[CycleLoads], float
         result = sized(circuit)
         return None if result is None else pick(result)
 
-    return Measure(name, "circuit", quantity, value, title)
+    return Measure(name, "circuit", quantity, value, title, SIZE, "forces")
 
 
 def _joint_extent(circuit: Circuit, joint: str) -> float | None:
@@ -186,9 +203,20 @@ MEASURES: dict[str, Measure] = _by_name(
     Measure("limits", "linkage", "count", lambda m: len(m.limits), "number of limits of the input"),
     Measure("circuit_type", "circuit", "word", lambda c: c.motion_type, "the circuit's own motion type"),
     Measure("turns", "circuit", "count", lambda c: c.turns, "turns of the input until the circuit closes"),
-    Measure("swing", "circuit", "output", _swing, "range of a rocking output"),
-    Measure("time_ratio", "circuit", "ratio", lambda c: c.time_ratio, "slower stroke over the quicker"),
-    *_ends("transmission", "angle", "least transmission angle", "greatest transmission angle"),
+    Measure("swing", "circuit", "output", _swing, "range of a rocking output", SIZE),
+    Measure(
+        "time_ratio",
+        "circuit",
+        "ratio",
+        lambda c: c.time_ratio,
+        "slower stroke over the quicker",
+        (1.0, math.inf),
+    ),
+    *_ends(
+        *("transmission", "angle", "least transmission angle", "greatest transmission angle"),
+        bounds=(0.0, 180.0),
+        family="transmission",
+    ),
     *_of_rate("velocity"),
     *_of_rate("acceleration"),
     *_of_rate("jerk"),
@@ -202,13 +230,20 @@ FORCE_MEASURES: dict[str, Measure] = _by_name(
     _of_sizing(
         "energy_fluctuation", "energy", lambda s: s.fluctuation, "fluctuation of energy, for a flywheel"
     ),
-    Measure("peak_shaking", "circuit", "force", peak_shaking, "greatest shaking force"),
+    Measure("peak_shaking", "circuit", "force", peak_shaking, "greatest shaking force", SIZE, "forces"),
 )
 
 #: Measures of how far a circuit takes its joints and links, and of its stops.
 EXTENT_MEASURES: dict[str, Measure] = _by_name(
-    Measure("clearance", "circuit", "length", _least_gap, "least distance of links, less their radii"),
-    Measure("usable", "circuit", "ratio", _usable_share, "part of the circuit within all stops"),
+    Measure(
+        *("clearance", "circuit", "length", _least_gap, "least distance of links, less their radii"),
+        family="extents",
+    ),
+    Measure(
+        *("usable", "circuit", "ratio", _usable_share, "part of the circuit within all stops"),
+        bounds=(0.0, 1.0),
+        family="extents",
+    ),
 )
 
 #: All of these.
@@ -265,14 +300,17 @@ JOINT_MEASURES: dict[str, OfJoint] = {
 OF_JOINTS = JOINT_MEASURES | JOINT_EXTENTS
 
 
+def family_of(name: str) -> Family:
+    """What the derivatives of the measure of a name come with."""
+    kind = name.partition(":")[0]
+    if kind in OF_JOINTS:
+        return "forces" if kind in JOINT_MEASURES else "extents"
+    return _NAMED[name].family if name in _NAMED else "motion"
+
+
 def is_of_forces(name: str) -> bool:
     """Whether a measure is of what acts on the linkage."""
-    return name in FORCE_MEASURES or name.partition(":")[0] in JOINT_MEASURES
-
-
-def is_extent(name: str) -> bool:
-    """Whether a measure is of ranges, balls, distances or stops."""
-    return name in EXTENT_MEASURES or name.partition(":")[0] in JOINT_EXTENTS
+    return family_of(name) == "forces"
 
 
 def _of_joint(name: str) -> Measure | None:
@@ -281,7 +319,10 @@ def _of_joint(name: str) -> Measure | None:
     if kind not in OF_JOINTS or not joint:
         return None
     quantity, value, title = OF_JOINTS[kind]
-    return Measure(name, "circuit", quantity, lambda circuit: value(circuit, joint), title.format(joint))
+    own = family_of(name)
+    return Measure(
+        name, "circuit", quantity, lambda circuit: value(circuit, joint), title.format(joint), SIZE, own
+    )
 
 
 def measures_named(given: Iterable[str | Measure | Callable[[Motion], float]]) -> tuple[Measure, ...]:
@@ -336,6 +377,15 @@ def rows_of(motion: Motion, measures: Sequence[Measure]) -> list[dict[str, float
     return [{"circuit": c.index} | shared | {m.name: m.value(c) for m in own} for c in motion.circuits]
 
 
+#: The derivatives of the measures of each family, or of those that are named; without names the usual ones.
+_SLOPES: dict[Family, Callable[[Numbers, Circuit, float, Sequence[str] | None], Iterable[MeasureSlopes]]] = {
+    "motion": measure_slopes,
+    "transmission": lambda numbers, circuit, _speed, _names: transmission_slopes(numbers, circuit),
+    "forces": force_slopes,
+    "extents": lambda numbers, circuit, _speed, names: extent_slopes(numbers, circuit, names),
+}
+
+
 def gradient(
     motion: Motion, circuit: int = 0, *, only: Sequence[str] | None = None
 ) -> dict[str, MeasureSlopes]:
@@ -364,14 +414,11 @@ def circuit_gradient(
     """`gradient` of a circuit of a linkage that need not be one of a motion."""
     numbers, speed = Numbers(linkage), chosen.speed
     names = None if only is None else [one.name for one in measures_named(only)]
-    extents = stopped_measures(numbers) if names is None else list(filter(is_extent, names))
     result: list[MeasureSlopes] = []
-    if names is None or not all(is_extent(name) or is_of_forces(name) for name in names):
-        result += measure_slopes(numbers, chosen, speed, names)
-        if names is None or any(name.startswith("transmission") for name in names):
-            result += transmission_slopes(numbers, chosen)
-    result += force_slopes(numbers, chosen, speed, names)
-    result += extent_slopes(numbers, chosen, extents)
+    for family, slopes in _SLOPES.items():
+        own = None if names is None else [name for name in names if family_of(name) == family]
+        if own is None or own:
+            result += slopes(numbers, chosen, speed, own)
     return {one.name: one for one in result if names is None or one.name in names}
 
 

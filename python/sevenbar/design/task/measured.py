@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -31,15 +30,6 @@ from sevenbar.kinematics.measures import (
 
 #: Step of the differences that stand in for slopes where a measure has none of its own [of a unit].
 STEP = 1e-5
-
-#: Between which values measures lie, in the unit that they are read in.
-BOUNDS = {
-    "swing": (0.0, 360.0),
-    "time_ratio": (1.0, math.inf),
-    "transmission_lowest": (0.0, 180.0),
-    "peak_torque": (0.0, math.inf),
-    "rms_torque": (0.0, math.inf),
-}
 
 #: Inputs of a turn that show whether a measure has a meaning.
 FEW = 12
@@ -170,7 +160,8 @@ def measure_flaw(linkage: Linkage, name: str) -> str:
         (measure,) = measures_named([name])
     except RequestError:
         numbers = [n for n, m in MEASURES.items() if m.quantity != "word"]
-        known = [*numbers, *FORCE_MEASURES, *EXTENT_MEASURES, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
+        others = [*FORCE_MEASURES, *EXTENT_MEASURES]
+        known = [*numbers, *others, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
         return f"{shown(name)} is not a measure; {suggestion(name, known)}give one of {', '.join(known)}"
     if measure.quantity == "word":
         return f"'{name}' is a word, not a number; give limits.motion_type"
@@ -197,10 +188,11 @@ def measure_flaw(linkage: Linkage, name: str) -> str:
 
 def value_flaw(linkage: Linkage, name: str, value: float, key: str = "value") -> str:
     """Why a measure never has a value, as wanted, or as the `least` or the `most`; empty where it may."""
-    low, high = BOUNDS.get(name, (-math.inf, math.inf))
-    if name == "swing" and linkage.kind not in ("RSSR", "RRRR"):
+    (measure,) = measures_named([name])
+    low, high = measure.bounds
+    if name == "swing" and linkage.kind in ("RSSR", "RRRR"):
         # the output of a longer loop may rock by more than a turn, and a slide by any length
-        high = math.inf
+        high = 360.0
     if value < low and key != "least":
         return f"{value:g} cannot be: {name} is never below {low:g}; give another value"
     if value > high and key != "most":
