@@ -13,9 +13,10 @@ from sevenbar.forces.sizing import Bearing, CycleLoads
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.motion import Motion, Solvable, chosen_circuit
+from sevenbar.kinematics.circuits.table import advantage_unit
 from sevenbar.kinematics.dynamics.force_measures import force_slopes, mass_slopes, peak_shaking, sized
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.numbers.gradients import MeasureSlopes, measure_slopes
+from sevenbar.kinematics.numbers.gradients import MeasureSlopes, advantage_slopes, measure_slopes
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 from sevenbar.kinematics.ranges.extent_slopes import extent_slopes
@@ -38,10 +39,11 @@ Quantity = Literal[
     "energy",
     "joint",
     "length",
+    "advantage",
 ]
 
 #: What the derivatives of a measure come with: those of a family are worked out together.
-Family = Literal["motion", "transmission", "forces", "extents"]
+Family = Literal["motion", "transmission", "advantage", "forces", "extents"]
 
 #: Where a number may be that has no bounds, and one that is a size.
 ANY, SIZE = (-math.inf, math.inf), (0.0, math.inf)
@@ -88,6 +90,7 @@ class Measure:
             "energy": "J",
             "length": length,
             "joint": length if self._slides(linkage) else "deg",
+            "advantage": advantage_unit(linkage.turns(linkage.drive.joint), not slides, length),
         }.get(self.quantity, "")
 
     def _slides(self, linkage: Loop) -> bool:
@@ -246,8 +249,16 @@ EXTENT_MEASURES: dict[str, Measure] = _by_name(
     ),
 )
 
+#: Measures that follow from others of a circuit, and are in no batch of the core.
+DERIVED_MEASURES: dict[str, Measure] = _by_name(
+    *_ends(
+        *("advantage", "advantage", "least mechanical advantage", "greatest mechanical advantage"),
+        family="advantage",
+    ),
+)
+
 #: All of these.
-_NAMED = MEASURES | FORCE_MEASURES | EXTENT_MEASURES
+_NAMED = MEASURES | FORCE_MEASURES | EXTENT_MEASURES | DERIVED_MEASURES
 
 #: A measure of a joint, as in range:rocker: quantity, value, title.
 OfJoint = tuple[Quantity, Callable[[Circuit, str], float | None], str]
@@ -381,6 +392,7 @@ def rows_of(motion: Motion, measures: Sequence[Measure]) -> list[dict[str, float
 _SLOPES: dict[Family, Callable[[Numbers, Circuit, float, Sequence[str] | None], Iterable[MeasureSlopes]]] = {
     "motion": measure_slopes,
     "transmission": lambda numbers, circuit, _speed, _names: transmission_slopes(numbers, circuit),
+    "advantage": advantage_slopes,
     "forces": force_slopes,
     "extents": lambda numbers, circuit, _speed, names: extent_slopes(numbers, circuit, names),
 }

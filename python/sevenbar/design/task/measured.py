@@ -16,6 +16,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import (
+    DERIVED_MEASURES,
     EXTENT_MEASURES,
     FORCE_MEASURES,
     JOINT_EXTENTS,
@@ -160,7 +161,7 @@ def measure_flaw(linkage: Linkage, name: str) -> str:
         (measure,) = measures_named([name])
     except RequestError:
         numbers = [n for n, m in MEASURES.items() if m.quantity != "word"]
-        others = [*FORCE_MEASURES, *EXTENT_MEASURES]
+        others = [*FORCE_MEASURES, *EXTENT_MEASURES, *DERIVED_MEASURES]
         known = [*numbers, *others, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
         return f"{shown(name)} is not a measure; {suggestion(name, known)}give one of {', '.join(known)}"
     if measure.quantity == "word":

@@ -57,15 +57,18 @@ def circuit_columns(circuit: Circuit, linkage: Loop, *, si: bool) -> dict[str, n
     return columns
 
 
+def advantage_unit(input_turns: bool, output_turns: bool, length: str) -> str:
+    """The unit of the mechanical advantage, "" where it has none: torque over force is a length."""
+    if input_turns == output_turns:
+        return ""
+    return length if output_turns else f"per_{length}"
+
+
 def _advantage_column(circuit: Circuit, length: str, scale: float) -> tuple[str, float]:
-    """The column of the mechanical advantage, and a factor: torque over force is a length, and backwards."""
-    match circuit.input_turns, circuit.output_turns:
-        case True, False:
-            return f"mechanical_advantage{PER}_{length}", 1.0 / scale
-        case False, True:
-            return f"mechanical_advantage_{length}", scale
-        case _:
-            return "mechanical_advantage", 1.0
+    """The column of the mechanical advantage, and its factor."""
+    unit = advantage_unit(circuit.input_turns, circuit.output_turns, length)
+    factor = {"": 1.0, length: scale}.get(unit, 1.0 / scale)
+    return "_".join(filter(None, ("mechanical_advantage", unit))), factor
 
 
 def frame_of(columns: Mapping[str, npt.NDArray[Any]], linkage: Loop) -> pd.DataFrame:

@@ -66,6 +66,28 @@ def measure_slopes(
     return tuple(result)
 
 
+def advantage_slopes(
+    numbers: Numbers, circuit: Circuit, speed: float, names: Sequence[str] | None = None
+) -> Iterator[MeasureSlopes]:
+    """Extremes of the mechanical advantage where some are named: the speed over those of the output's rate.
+
+    NaN where they are not: on circuits with dead centres of the input, at which the advantage is 0.
+    """
+    extremes, rates = circuit.advantage, circuit.velocity
+    if names is None or extremes is None:
+        return
+    # the quickest output has the least advantage
+    ends = {"lowest": "velocity_highest", "highest": "velocity_lowest"}
+    known: dict[str, MeasureSlopes] = {}
+    if rates is not None and rates.lowest * rates.highest > 0:
+        known = {one.name: one for one in measure_slopes(numbers, circuit, speed, list(ends.values()))}
+    for end, rate in ends.items():
+        value, slopes = getattr(extremes, end), np.full(len(numbers.names), np.nan)
+        if rate in known:
+            slopes = -value / known[rate].value * known[rate].slopes
+        yield MeasureSlopes(f"advantage_{end}", "", value, slopes)
+
+
 def _apart(values: Floats, turns: bool) -> Floats:
     return short_way(values) if turns else values
 
