@@ -52,9 +52,9 @@ ALLOWED = {
 
 #: Names that the glossary for code in CONTRIBUTING.md rules out, and how often each may still be one in the package.
 NAMES = {
-    "found": 923,
+    "found": 921,
     "own": 1177,
-    "way": 591,
+    "way": 584,
     "given": 415,
     "kept": 99,
     "left": 218,

@@ -94,9 +94,10 @@ def forces(
     if out is None:
         options.refuse_unused({"--joint": joint, "--size": size, "--style": style}, "--out")
     check_law(law, speed)
-    unit = _unit_at_rest(speed)
+    # a motion has no speed of 0, statics do: any other does then, but its unit must be one
+    quantity = None if speed is None else split_quantity(speed)
+    unit = quantity[1] if quantity is not None and float(quantity[0]) == 0 else None
     at_rest = unit is not None
-    # any speed does at rest, but its unit must be one
     rate = f"1 {unit}" if unit else None if at_rest else speed
     loaded = sb.load(linkage)
     if loaded.loading.is_empty:
@@ -150,12 +151,6 @@ def _link(text: str) -> int:
     if not text.isdecimal():
         raise RequestError(f"--counterweights: {shown(text)} is not a link; give their numbers, as in 1,3")
     return int(text)
-
-
-def _unit_at_rest(speed: str | None) -> str | None:
-    """The unit of a speed of 0, which a motion does not have and statics do; `None` for any other."""
-    parts = None if speed is None else split_quantity(speed)
-    return parts[1] if parts is not None and float(parts[0]) == 0 else None
 
 
 def _pass(circuit: Circuit, branch: int | None, *, of_law: bool) -> int | None:

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,6 +41,28 @@ Placed = tuple[int, Floats, Moves]
 
 #: Bodies that move by less than this part of the size for a radian stand still.
 STILL = 1e-9
+
+
+class CoreForces(NamedTuple):
+    """What the core finds on n rows with j joints, in kg, s and the size as the length.
+
+    `torque` (n,) is that of the input, or its force; `spin` (n, idle) what holds each idle freedom;
+    `energies` (n, 3) are kinetic and potential energy and the power of loads and dampers. `wrenches` (n, j,
+    6) are in the frames of the joints, which `seats` (n, j, 12) are: axes, then place. `shaking` (n, 6) is
+    about the report origin, `free` (n, redundant, 6) the wrenches that nothing determines, about the origin.
+    Wrenches have the moment first. Last the derivatives by the numbers, of none where they are not wanted.
+    """
+
+    torque: Floats
+    spin: Floats
+    energies: Floats
+    wrenches: Floats
+    seats: Floats
+    shaking: Floats
+    free: Floats
+    torque_by: Floats
+    wrenches_by: Floats
+    shaking_by: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +188,7 @@ class ForceSolver:
         *,
         by: int | None = None,
         factors: Floats | None = None,
-    ) -> list[Floats]:
+    ) -> CoreForces:
         """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2).
 
         Loads go by the values `inputs` (n,) of the column `by`, the input if it is not given, or act by
@@ -177,7 +200,7 @@ class ForceSolver:
             by_load = [load.factors(inputs, turns=turns) for load in self.loading.loads]
             factors = np.reshape(by_load, (-1, len(inputs))).T
         steps, frames = self.seats
-        return _core.reactions(
+        result = _core.reactions(
             self.loop.core,
             self.acting,
             poses / scales,
@@ -187,6 +210,7 @@ class ForceSolver:
             frames,
             self.by_numbers,
         )
+        return CoreForces(*result)
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,9 +253,9 @@ def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest
     # rows without rates stay without
     speeds = np.where(np.isfinite(rows.rates), 0.0, np.nan) if at_rest else rows.rates
     result = solver.solved(rows.input, rows.poses, speeds)
-    torque, spin, energies, wrenches, seats, shaking, free, *_ = result
+    torque, wrenches, shaking = result.torque, result.wrenches, result.shaking
     size, metre = solver.size, LENGTHS[linkage.length_unit]
-    energies = energies * size**2
+    energies = result.energies * size**2
     if nothing_pulls(solver, speeds, energies[:, 0], shaking[:, 3:] * size):
         # not the rounding of a linkage that takes nothing; rows without values keep none
         torque, wrenches, shaking = 0.0 * torque, 0.0 * wrenches, 0.0 * shaking
@@ -241,7 +265,7 @@ def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest
     wrenches = without_rounding(wrenches, pull / size)
     shaking = without_rounding(shaking, inertia / size)
     speed = speeds[:, 0]
-    reactions = _reactions(solver, wrenches, seats, free)
+    reactions = _reactions(solver, wrenches, result.seats, result.free)
     return Forces(
         input=rows.input,
         time=rows.time,
@@ -255,8 +279,8 @@ def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest
         supplied=energies[:, 2],
         shaking=shaking * np.repeat([size**2, size], 3),
         reactions=reactions,
-        spin=_spins(solver, spin * size**2, reactions),
-        indeterminate=linkage.mobility().redundant if free.shape[1] else (),
+        spin=_spins(solver, result.spin * size**2, reactions),
+        indeterminate=linkage.mobility().redundant if result.free.shape[1] else (),
         slides=slides,
         length_unit=linkage.length_unit,
         periodic=False,
