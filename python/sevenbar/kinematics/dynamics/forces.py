@@ -404,9 +404,8 @@ def _spins(solver: ForceSolver, spin: Floats, reactions: Mapping[str, Reaction])
     third axis of the word.
     """
     linkage = solver.linkage
-    balls, *_ = linkage.held
     result = {}
-    for ball in sorted(balls):
+    for ball in sorted(linkage.held.balls):
         column = linkage.places[ball].stop - 1
         reaction = reactions[linkage.joints[ball].name]
         if column not in solver.numbers.held:
