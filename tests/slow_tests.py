@@ -1,8 +1,8 @@
 """Which tests are slow: those that a run found to be so, not those that somebody took for slow.
 
 `make slow-tests` runs all tests, counts the processor time of each, and writes the names of the slow ones into
-`slow_tests.txt`: all but the cheapest that take `BUDGET` together. A test of a name counts with all its cases and
-with what it shares with others. A test that the list does not have is fast, until the next such run.
+`slow_tests.txt`: all but the cheapest that take `BUDGET` together. All cases of a test count together, with the
+fixtures that it shares with other tests. A test that is not on the list is fast, until the next such run.
 """
 
 import os
@@ -64,6 +64,7 @@ class Recorder:
     def pytest_runtest_teardown(self, item):
         """Adds what the test shares with others, which is what it would take alone."""
         for name in item.fixturenames:
+            # the last definition of a fixture overrides the others
             for fixture in item._fixtureinfo.name2fixturedefs.get(name, ())[-1:]:
                 if (key := self._key(fixture)) in self.fixtures:
                     item.user_properties.append(("shared", (key, self.fixtures[key])))
@@ -77,6 +78,7 @@ class Recorder:
             if key == "spent":
                 self.calls[name] += value
             elif key == "shared":
+                # each worker sets it up anew
                 fixture, took = value
                 self.uses[name].add(fixture)
                 self.shared[fixture] = max(self.shared[fixture], took)

@@ -1,11 +1,11 @@
-//! Poses that are one: at a dead centre two modes are one, which a solver finds twice, apart by the root of its rounding.
+//! Poses that are the same: at a dead centre two modes meet, and a solver finds the pose twice, apart by the root of its rounding.
 
 use std::f64::consts::{PI, TAU};
 
-/// Poses nearer to each other in every joint [rad, or relative to the size] are one.
+/// Poses nearer to each other than this in every joint [rad, or relative to the size] are the same.
 const ONE_POSE: f64 = 1e-6;
 
-/// Poses by their joint values, each with what belongs to it, without those that are one with a pose before.
+/// Poses by their joint values, each with what belongs to it, without those that are the same as an earlier one.
 ///
 /// `size` is that to which the values of a column are relative, `None` for an angle.
 pub(crate) fn each_once<P: AsRef<[f64]>, T>(
@@ -22,7 +22,7 @@ pub(crate) fn each_once<P: AsRef<[f64]>, T>(
                     None => (a - b + PI).rem_euclid(TAU) - PI,
                     Some(size) => (a - b) / size,
                 };
-                // turns without a direction are those of one pose, too
+                // a ball's turns that have no value here do not make two poses differ
                 apart.is_nan() || apart.abs() < ONE_POSE
             })
     };

@@ -8,7 +8,7 @@ use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 
-/// Pieces of work, of some microseconds each, from one question to the caller to the next.
+/// After so many pieces of work, of some microseconds each, the caller is asked whether to go on.
 const PIECES: u32 = 256;
 
 /// Who wants some work, and answers whether to go on from every thread that has a share in it.
@@ -26,7 +26,7 @@ thread_local! {
     static LEFT: Cell<u32> = const { Cell::new(PIECES) };
 }
 
-/// Gives back to the thread who was asked before.
+/// On drop, the thread asks its earlier caller again.
 struct Before(Option<Arc<dyn Caller>>);
 
 impl Drop for Before {
@@ -49,12 +49,12 @@ pub fn stoppable<T>(caller: Arc<dyn Caller>, work: impl FnOnce() -> T) -> Result
     })
 }
 
-/// Who is asked in this thread.
+/// The caller that this thread asks, if any.
 pub(crate) fn asked() -> Option<Arc<dyn Caller>> {
     ASKED.with(|asked| asked.borrow().clone())
 }
 
-/// Does a share of some work in this thread; one that is stopped unwinds.
+/// Does a share of some work in this thread, asking this caller; if it is stopped, it unwinds.
 pub(crate) fn asking<T>(caller: Option<Arc<dyn Caller>>, work: impl FnOnce() -> T) -> T {
     let _before = Before(ASKED.with(|asked| asked.replace(caller)));
     ask();

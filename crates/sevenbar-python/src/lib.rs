@@ -1,4 +1,4 @@
-//! The only crate that knows Python: arrays in, values of arrays out, the interpreter free while the core works.
+//! The only crate that knows Python: arrays in, arrays out, the interpreter free while the core works.
 
 mod along;
 mod batches;
@@ -40,7 +40,8 @@ fn input_named(name: &str) -> PyResult<Input> {
     }
 }
 
-/// The numbers of an array, row by row, whatever their order in memory. (`as_slice` gives them in that order.)
+/// The numbers of an array, row by row, copied only where memory has them in another order, in which `as_slice` of the array
+/// itself would give them.
 fn in_rows<'a, D: Dimension>(array: &'a PyReadonlyArray<'_, f64, D>) -> Cow<'a, [f64]> {
     let view = array.as_array();
     match view.to_slice() {
@@ -52,6 +53,7 @@ fn in_rows<'a, D: Dimension>(array: &'a PyReadonlyArray<'_, f64, D>) -> Cow<'a, 
 /// An input law as rows of value and three derivatives.
 type LawRows = Option<Vec<[f64; 4]>>;
 
+/// Rows of an array as those of a law; derivatives that it does not have are zero.
 pub(crate) fn law_rows(law: Option<PyReadonlyArray2<'_, f64>>) -> LawRows {
     law.map(|rows| {
         rows.as_array()

@@ -94,8 +94,11 @@ def forces(
     if out is None:
         options.refuse_unused({"--joint": joint, "--size": size, "--style": style}, "--out")
     check_law(law, speed)
-    unit = _unit_at_rest(speed)
+    # a motion has no speed of 0, statics do: any other does then, but its unit must be one
+    quantity = None if speed is None else split_quantity(speed)
+    unit = quantity[1] if quantity is not None and float(quantity[0]) == 0 else None
     at_rest = unit is not None
+    rate = f"1 {unit}" if unit else None if at_rest else speed
     loaded = sb.load(linkage)
     if loaded.loading.is_empty:
         raise RequestError(f"{linkage}: {NOTHING_ACTS.format(place='it')}")
@@ -119,9 +122,8 @@ def forces(
     if at is not None:
         unused = {"--law": law, "--unevenness": unevenness, "--counterweights": links, "--out": out}
         refuse_at(unused)
-        rate = f"1 {unit}" if unit else None if at_rest else speed
-        found_at = forces_at(loaded, at, input_joint, rate, circuit, branch, agree=agree, at_rest=at_rest)
-        deliver(found_at, pose_forces_report(), json=json)
+        at_value = forces_at(loaded, at, input_joint, rate, circuit, branch, agree=agree, at_rest=at_rest)
+        deliver(at_value, pose_forces_report(), json=json)
         return
     circuit = circuit or 0
     report = forces_report(formats, look, names)
@@ -129,17 +131,16 @@ def forces(
     motion = loaded.motion(
         samples,
         input=input_joint,
-        # any speed does at rest, but its unit must be one
-        speed=f"1 {unit}" if unit else None if at_rest else speed,
+        speed=rate,
         law=law_of(law, loaded, input_joint, law_joint, law_circuit),
         agree=agreed(agree),
     )
     chosen = chosen_circuit(motion, circuit)
-    found = chosen.forces(at_rest=at_rest)
-    passed = _pass(chosen, branch, one=law is not None)
-    if passed is not None:
-        found = found.on(found.branch == passed)
-    result = CircuitForces.of(motion, chosen, found, unevenness=unevenness)
+    rows = chosen.forces(at_rest=at_rest)
+    chosen_pass = _pass(chosen, branch, of_law=law is not None)
+    if chosen_pass is not None:
+        rows = rows.on(rows.branch == chosen_pass)
+    result = CircuitForces.of(motion, chosen, rows, unevenness=unevenness)
     if links:
         result = replace(result, balance=chosen.counterweights(links, radius=radius))
     deliver(result, report, out, json=json, force=force)
@@ -152,16 +153,10 @@ def _link(text: str) -> int:
     return int(text)
 
 
-def _unit_at_rest(speed: str | None) -> str | None:
-    """The unit of a speed of 0, which a motion does not have and statics do; `None` for any other."""
-    parts = None if speed is None else split_quantity(speed)
-    return parts[1] if parts is not None and float(parts[0]) == 0 else None
-
-
-def _pass(circuit: Circuit, branch: int | None, *, one: bool) -> int | None:
-    """The chosen pass of a circuit; `None` for all rows."""
+def _pass(circuit: Circuit, branch: int | None, *, of_law: bool) -> int | None:
+    """The chosen pass of a circuit; `None` for all rows. By default all, of a law the first."""
     count = int(circuit.branch.max(initial=0)) + 1
     if branch is None:
-        return 0 if one and count > 1 else None
+        return 0 if of_law and count > 1 else None
     whole_number("--branch", branch, 0, count - 1, f"a pass of circuit {circuit.index}")
     return branch if count > 1 else None

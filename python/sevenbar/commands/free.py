@@ -76,10 +76,10 @@ def free(
     if loaded.loading.is_empty:
         raise RequestError(f"{linkage}: {NOTHING_ACTS.format(place='it')}")
     chosen = chosen_circuit(loaded.motion(input=input_joint), circuit)
-    place = None if start is None else input_value("--from", start, loaded, input_joint)
+    start_value = None if start is None else input_value("--from", start, loaded, input_joint)
     result = chosen.free_motion(
         seconds,
-        start=place,
+        start=start_value,
         speed=speed,
         energy=energy,
         branch=branch,
@@ -87,8 +87,8 @@ def free(
         samples=rows,
         restitution=restitution,
     )
-    places = chosen.equilibria(torque=torque or 0.0)
+    equilibria = chosen.equilibria(torque=torque or 0.0)
     also = {}
     if film is not None:
         also[film] = lambda path: animate(result.motion(), path, seconds=seconds)
-    deliver((result, places), report, out, json=json, force=force, also=also)
+    deliver((result, equilibria), report, out, json=json, force=force, also=also)

@@ -5,7 +5,7 @@ On the piece from a to b, with x = (2 s - a - b) / (b - a),
     f(s) = sum c_k T_k(x)                                                                                 (3)
 
 passes through the values at Chebyshev's nodes. Where f is analytic the c_k fall geometrically, so the last of
-them tell what is missing.
+them show what is missing.
 
 Source: docs/theory_free.md, (3).
 """
@@ -77,11 +77,10 @@ class Along:
     def stationary(self, column: int) -> Floats:
         """Places (j,) where one quantity has slope zero, or may turn at an edge, in order."""
         slope = self.slope.series[:, :, column]
-        # no zero where the first terms outweigh all others
-        rest = np.abs(slope[:, 2:]).sum(axis=1)
-        line = np.abs(slope[:, 0]) - np.abs(slope[:, 1]) - rest
+        # |T_k| <= 1 on a piece: there is no zero where the constant outweighs all other terms
+        least_size = np.abs(slope[:, 0]) - np.abs(slope[:, 1]) - np.abs(slope[:, 2:]).sum(axis=1)
         result = []
-        for i in np.flatnonzero(line <= 0):
+        for i in np.flatnonzero(least_size <= 0):
             roots = np.sort(real_roots(Chebyshev(slope[i], domain=[-1, 1])))
             a, b = self.edges[i], self.edges[i + 1]
             result.append((a + b) / 2 + (b - a) / 2 * roots)
@@ -91,29 +90,30 @@ class Along:
     def crossings(self, column: int, value: float, marks: Floats, touch: float = 0.0) -> Floats:
         """Places (j,) where one quantity has a value; `marks` are the edges and all stationary places.
 
-        At a mark where it misses the value by `touch` at most it has it.
+        A mark where it is off the value by `touch` at most is such a place.
         """
-        own = self.part(column)
-        heights = own.at(marks)[:, 0] - value
+        quantity = self.part(column)
+        heights = quantity.at(marks)[:, 0] - value
         heights[np.abs(heights) <= touch] = 0.0
-        # an edge belongs to the piece on its left as well
+        # between two marks it only rises or only falls, so it has the value once at most
         result = [marks[heights == 0.0]]
         for i in np.flatnonzero(heights[:-1] * heights[1:] < 0):
-            result.append(np.array([zero_between(own, value, marks[i], marks[i + 1])]))
+            result.append(np.array([zero_between(quantity, value, marks[i], marks[i + 1])]))
         return np.unique(np.concatenate(result))
 
     @cached_property
     def reach(self) -> Floats:
         """The greatest size (k,) at the middles and ends of the pieces."""
-        waves = self.series
-        return np.asarray(
-            np.max([np.abs(chebyshev.chebval(x, np.moveaxis(waves, 1, 0))).max(axis=0) for x in (-1, 0, 1)],
-                   axis=0)
-        )  # fmt: skip
+        coefficients = np.moveaxis(self.series, 1, 0)
+        sizes = [np.abs(chebyshev.chebval(x, coefficients)).max(axis=0) for x in (-1, 0, 1)]
+        return np.asarray(np.max(sizes, axis=0))
 
 
 def zero_between(one: Along, value: float, low: float, high: float) -> float:
-    """Where a single quantity has a value between two places on whose sides it lies."""
+    """Where a single quantity has a value between two places, at one of which it is above the value.
+
+    By Newton's method, halving the bracket where a step would leave it.
+    """
     rising = one.at(np.array([high]))[0, 0] > value
     at = (low + high) / 2
     for _ in range(HALVINGS):
@@ -123,9 +123,9 @@ def zero_between(one: Along, value: float, low: float, high: float) -> float:
             high = at
         else:
             low = at
-        step = at - height / slope if slope else np.inf
-        after = step if low < step < high else (low + high) / 2
-        if abs(after - at) <= 2 * np.spacing(max(abs(low), abs(high))):
-            return float(after)
-        at = after
+        newton = at - height / slope if slope else np.inf
+        following = newton if low < newton < high else (low + high) / 2
+        if abs(following - at) <= 2 * np.spacing(max(abs(low), abs(high))):
+            return float(following)
+        at = following
     return float(at)

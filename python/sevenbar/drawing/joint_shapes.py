@@ -18,8 +18,9 @@ class JointSolid:
     """A solid of a joint in the studio: a unit mesh of `studio.pictures.shapes` stretched between two places.
 
     `on`: the joint's axis as it turns, its first, last or each drawn axis, its centre, or the link that holds
-    its ball. `radius` and `length` are in units of thickness; a solid that `reaches` is wider by how far the
-    joint slides in its plane. The `colour` is that of the joint or of that link, or one of the studio's.
+    its ball; the middle of the solid is at a `share` of the distance from the first of the two places.
+    `radius` and `length` are in units of thickness; a solid that `reaches` is wider by how far the joint
+    slides in its plane. The `colour` is that of the joint or of that link, or one of the studio's.
     """
 
     mesh: str
@@ -49,8 +50,8 @@ class Seat:
 class Shape:
     """What is drawn and built of a kind of joint.
 
-    In figures: the words of its `marks`, over twice the share `half` of the linkage's extent along its axis,
-    at a point where that is 0; `legend` is its marker, `legend_flat` the one where it is seen along its axis.
+    In figures: the words of its `marks`; `half` their length along the axis, as a share of the linkage's
+    extent, 0 for a mark at a point; its marker `legend`, and `legend_flat` where it is seen along its axis.
     In the studio: its `solids`; where it slides the `slider`, a mesh with its sizes across and along, in
     units of thickness. In exports: the `seats` that its hubs may have, and whether they are `square`.
     """
@@ -70,8 +71,8 @@ _SHAPES: Mapping[ShapeName, Shape] = {
     "cylinder": Shape(
         ("cylinder",), 0.032,
         {"marker": "s", "ms": 7},
-        {"marker": "o", "ms": 7, "mfc": "white", "mew": 2.0, "mec": "#303030"},
-        (JointSolid("cylinder", "spin", 1.05, 3.4), JointSolid("cylinder", "spin", 0.5, 4.1, "steel")),
+        legend_flat={"marker": "o", "ms": 7, "mfc": "white", "mew": 2.0, "mec": "#303030"},
+        solids=(JointSolid("cylinder", "spin", 1.05, 3.4), JointSolid("cylinder", "spin", 0.5, 4.1, "steel")),
         slider=("cylinder", 1.05, 5.0),
     ),
     "block": Shape(
@@ -93,7 +94,7 @@ _SHAPES: Mapping[ShapeName, Shape] = {
         ("arm",), 0.032,
         {"marker": "P", "ms": 8},
         solids=(JointSolid("cylinder", "each", 0.62, 5.0), JointSolid("ball", "centre", 0.95, 0.95)),
-        seats=tuple(Seat(a, d, other=b) for a, b, d in product((1, -1), (1, -1), (0.0, 1.0))),
+        seats=tuple(Seat(a, shift, other=b) for a, b, shift in product((1, -1), (1, -1), (0.0, 1.0))),
     ),
     "ball": Shape(
         ("ball",), 0.0,
@@ -115,7 +116,7 @@ _SHAPES: Mapping[ShapeName, Shape] = {
 }  # fmt: skip
 
 #: Half the height of a hinge, as a share of the linkage's extent.
-CYLINDER = _SHAPES["cylinder"].half
+HINGE_HALF = _SHAPES["cylinder"].half
 
 
 def shape_of(kind: JointKind) -> Shape:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.joint_shapes import CYLINDER, Seat, shape_of
+from sevenbar.drawing.joint_shapes import HINGE_HALF, Seat, shape_of
 from sevenbar.drawing.scene import link_colours
 from sevenbar.drawing.style import GROUND, JOINT
 from sevenbar.export.pose import Pose, extent_of, shortest_link
@@ -128,7 +128,7 @@ class Assembly:
 
 def hub_height(pose: Pose) -> float:
     """The height of a hub [length]: as the figures draw it, less where links are short."""
-    return min(CYLINDER * extent_of(pose), 0.25 * shortest_link(pose))
+    return min(HINGE_HALF * extent_of(pose), 0.25 * shortest_link(pose))
 
 
 def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:

@@ -39,9 +39,10 @@ MOMENT, FORCE = (0, 1, 2), (3, 4, 5)
 class Shaking(Printed):
     """The size of shaking force [N] and moment [N m]: peaks with their inputs, root mean squares.
 
-    `orders` (m, 6) is the amplitude of the wave that goes round k = 0, 1, .. times in the cycle, moment x, y,
-    z, then force x, y, z: 1 is the primary, 2 the secondary order of an input that turns once in it; empty
-    for rows of a law. `tail` is how much may lie between the rows, as a part of the greatest value.
+    Row k = 0, 1, .. of `orders` (m, 6) has the amplitudes of the wave that repeats k times in the cycle:
+    moment x, y, z, then force x, y, z. Where the input turns once in the cycle, row 1 is the primary and row
+    2 the secondary order; there are no rows for a law. `tail` is how much the rows may miss between them, as
+    a part of the greatest value.
     """
 
     force: Peak
@@ -64,44 +65,44 @@ def shaking_of(
 ) -> Shaking:
     """The shaking of rows (n, 6) at `input` (n,) [rad, or length] and `time` (n,) [s].
 
-    `period` is the way of the input round a closed cycle at constant speed; `None` for a law's rows. With
+    `period` is how far the input goes in a closed cycle at constant speed; `None` for a law's rows. With
     `evaluate`, which gives rows (m, 6) at inputs (m,) of such a cycle, rows are added until peaks and mean
-    values do not depend on them; in its place `ends` are the inputs of both stops of a part.
+    values do not depend on them; for a part between two stops, `ends` are the inputs of both.
     """
     sizes = np.array([np.abs(wrench[:, part]).max(initial=0.0) for part in (MOMENT, FORCE)])
     # moments and forces as parts of their greatest, so that rounding is one size in all
     units = np.repeat(np.where(sizes > 0, sizes, 1.0), 3)
-    both: Curve
+    curve: Curve
     orders = np.zeros((0, 6))
-    ask = None if evaluate is None else lambda inputs: np.asarray(evaluate(inputs) / units)
-    if ends is not None and ask is not None:
-        both = pieces(ask, wrench / units, ends[0], ends[1] - ends[0], (ends[0],))
+    relative = None if evaluate is None else lambda inputs: np.asarray(evaluate(inputs) / units)
+    if ends is not None and relative is not None:
+        curve = pieces(relative, wrench / units, ends[0], ends[1] - ends[0], (ends[0],))
     elif period is None:
-        both = TimedRows(wrench / units, input, time)
+        curve = TimedRows(wrench / units, input, time)
     else:
-        both = cycle_curve(ask, wrench / units, float(input[0]), period)
+        curve = cycle_curve(relative, wrench / units, float(input[0]), period)
         waves = (
-            both if isinstance(both, CycleSeries) else CycleSeries(wrench / units, float(input[0]), period)
+            curve if isinstance(curve, CycleSeries) else CycleSeries(wrench / units, float(input[0]), period)
         )
         orders = np.abs(waves.spectrum) * units
     result = []
     for part in (FORCE, MOMENT):
-        squares, unit = both.part(part).squared(), float(units[part[0]])
+        squares, unit = curve.part(part).squared(), float(units[part[0]])
         top = squares.highest()
         result.append((Peak(unit * _root(top.value), top.input), unit * _root(mean(squares))))
     (force, rms_force), (moment, rms_moment) = result
-    return Shaking(force, moment, rms_force, rms_moment, orders, both.tail)
+    return Shaking(force, moment, rms_force, rms_moment, orders, curve.tail)
 
 
 def shaking_along(forces: Forces) -> Shaking | None:
-    """The shaking of the rows of forces, of a cycle between them, too.
+    """The shaking of the rows of forces; of a whole cycle also what lies between its rows.
 
-    Between stops that of the part on which the linkage is used. `None` where a row has none, or too much of
-    it may be missed between the rows.
+    Between stops that of the part on which the linkage is used. `None` where a row has no shaking, or too
+    much of it may be missed between the rows.
     """
-    own = forces.within_stops
-    if own is not forces:
-        return None if own is None else shaking_along(own)
+    used = forces.within_stops
+    if used is not forces:
+        return None if used is None else shaking_along(used)
     if not len(forces.input) or not np.isfinite(forces.shaking).all():
         return None
     between = None if forces.through_change_points else forces.between

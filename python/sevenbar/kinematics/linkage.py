@@ -14,7 +14,7 @@ from sevenbar.errors import NotCoveredError, RequestError, check_kind, check_wor
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.modes import Modes, Output
-from sevenbar.kinematics.circuits.motion import LEAST_AGREE, MOST_AGREE, Motion, Solvable
+from sevenbar.kinematics.circuits.motion import LEAST_AGREE, MOST_AGREE, HeldFreedoms, Motion, Solvable
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
 from sevenbar.kinematics.solvers.closed_form import ClosedForm
 from sevenbar.kinematics.solvers.general import AGREE, GeneralLoop
@@ -306,7 +306,7 @@ class Linkage(Solvable):
         return self._general.idle()
 
     @cached_property
-    def held(self) -> tuple[frozenset[int], list[int], int]:
+    def held(self) -> HeldFreedoms:
         """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise."""
         return self._general.held()
 

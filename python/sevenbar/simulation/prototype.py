@@ -277,8 +277,8 @@ def _spin_rules(
 
 def _without_idle(linkage: Solvable) -> str:
     """How a loop of the same motion is written, without freedoms that no engine holds."""
-    spun, held, chains = linkage.held
-    if chains:
+    held = linkage.held
+    if held.spins:
         return ""
     letters, changes = [], []
     for i, (joint, own) in enumerate(zip(linkage.joints, linkage.places, strict=True)):
@@ -286,10 +286,10 @@ def _without_idle(linkage: Solvable) -> str:
         selected = [
             "R" if freedom == "turn" else "P"
             for column, freedom in enumerate(freedoms, own.start)
-            if column not in held
+            if column not in held.columns
         ]
         # of a link between two balls an engine holds the spin
-        if i in spun or len(selected) == len(freedoms):
+        if i in held.balls or len(selected) == len(freedoms):
             letters.append(joint.kind)
             continue
         letters += selected

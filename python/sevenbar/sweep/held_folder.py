@@ -6,12 +6,13 @@ import json
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from itertools import chain
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
 from sevenbar.errors import OutputError, RequestError, shown
 
-#: How the name of a file ends that is not yet whole; it begins with a dot.
+#: The end of the name of a file that is not yet whole; the name begins with a dot.
 ASIDE = ".aside"
 
 
@@ -32,7 +33,7 @@ class Parted(Protocol):
 class HeldFolder:
     """A folder of parts; held against a second run as long as it is open."""
 
-    #: The description's file, and what the folder is of.
+    #: The name of the description's file, and the word for what the folder holds, for messages.
     description: ClassVar[str]
     what: ClassVar[str]
 
@@ -53,9 +54,10 @@ class HeldFolder:
 
     @contextmanager
     def _opened(self) -> Iterator[bool]:
-        """Makes and holds the folder; whether it has a description. It is let go where what follows fails.
+        """Makes and locks the folder; yields whether it has a description, then clears half-written files.
 
-        Raises `OutputError` for a folder of something else, and where it cannot be written.
+        Unlocks the folder where what follows fails. Raises `OutputError` for a folder of something else, and
+        where it cannot be written.
         """
         try:
             self.path.mkdir(parents=True, exist_ok=True)
@@ -83,7 +85,7 @@ class HeldFolder:
         return name == self.description
 
     def _is_aside(self, name: str) -> bool:
-        """Whether a name is that of a file which a run that was killed left half written."""
+        """Whether a name is that of a half-written file of a run that was killed."""
         return name.startswith(".") and name.endswith(ASIDE) and self._is_file(name[1 : -len(ASIDE)])
 
     def _describe(self, description: Mapping[str, Any]) -> None:
@@ -99,7 +101,7 @@ class HeldFolder:
                 os.fsync(file.fileno())
             aside.replace(self.path / name)
             if self._lock is not None:
-                # the new name itself
+                # brings the new name itself to the disk
                 os.fsync(self._lock)
         except BaseException:
             with suppress(OSError):
@@ -135,13 +137,14 @@ class HeldFolder:
 
 
 def hold_folder(path: Path) -> int | None:
-    """Holds a folder against a second run, until what is given is closed; `None` where a system has no locks.
+    """Locks a folder until the descriptor returned is closed; `None` where a system has no locks.
 
     Raises `OutputError` where another run holds it.
     """
     try:
         import fcntl
-    except ImportError:  # a system without: two runs at once would only do the work twice
+    except ImportError:
+        # a system without locks: two runs at once only do the work twice
         return None
     lock = os.open(path, os.O_RDONLY)
     try:
@@ -158,7 +161,7 @@ def hold_folder(path: Path) -> int | None:
 
 
 def other_maker(first: Mapping[str, str], other: Mapping[str, str]) -> str:
-    """That two makers may differ in the last bits, naming in what they differ."""
+    """The words that parts were made by another program or machine, and in what it differs."""
     what = [f"{key} {first.get(key)} and {value}" for key, value in other.items() if first.get(key) != value]
     return (
         f"its parts were made by {what[0] if what else 'another machine'}, whose last bits may differ; "
@@ -170,11 +173,11 @@ def differences(there: Any, here: Any, place: str = "") -> list[str]:
     """Where two values of JSON differ, in words."""
     if isinstance(there, dict) and isinstance(here, dict):
         keys = [*here, *(key for key in there if key not in here)]
-        result = (differences(there.get(key), here.get(key), f"{place}.{key}".lstrip(".")) for key in keys)
-        return [one for some in result for one in some]
+        by_key = (differences(there.get(key), here.get(key), f"{place}.{key}".lstrip(".")) for key in keys)
+        return list(chain.from_iterable(by_key))
     if isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
         pairs = enumerate(zip(there, here, strict=True), 1)
-        return [one for i, pair in pairs for one in differences(*pair, f"{place}[{i}]")]
+        return list(chain.from_iterable(differences(*pair, f"{place}[{i}]") for i, pair in pairs))
     return [] if there == here else [f"{place} is {shown(there)} there and {shown(here)} here"]
 
 

@@ -247,14 +247,17 @@ def number(cell: str, *, decimal_comma: bool = False) -> float | None:
 def read_text(path: Path, of: str) -> str:
     """The text of a file in UTF-8, UTF-16 with its byte order mark, or Windows-1252.
 
-    Messages call it a table `of`; an Excel workbook gives its first sheet that is not
-    empty, with tabs between the cells.
+    `of` says in messages what the table is of. An Excel workbook gives its first sheet that is not empty,
+    with tabs between the cells.
     """
     return text_of_bytes(read_bytes(path, of), str(path))
 
 
 def read_bytes(path: Path, of: str) -> bytes:
-    """The content of a file, as bytes; `TableError` if it is missing, empty or too large for a table."""
+    """The content of a file, as bytes; `TableError` if it is missing, empty or too large for a table.
+
+    `of` is as for `read_text`.
+    """
     content = read_start(
         path,
         LARGEST_FILE + 1,
@@ -284,18 +287,18 @@ def text_of_bytes(content: bytes, path: str) -> str:
             text = content.decode(encoding)
         except UnicodeDecodeError:
             continue
-        bad = next((c for c in text if c < " " and c not in "\t\n\r\f\x1a"), None)
-        if bad is None:
-            _lines(text, path)
-            return text
-        break
+        if any(c < " " and c not in "\t\n\r\f\x1a" for c in text):
+            break
+        # for its errors alone
+        _lines(text, path)
+        return text
     raise TableError(
         f"{path}: not a table of text (it holds bytes that no text has); export it as CSV or text"
     )
 
 
 def read_table(path: Path, of: str) -> TextTable:
-    """The table in a file; `TableError` with the line where it is not one. Messages call it a table `of`."""
+    """The table in a file; `TableError` with the line where it is not one. `of` is as for `read_text`."""
     source = str(path)
     lines = _lines(read_text(path, of), source)
     first = next((i for i, line in enumerate(lines) if _begins_with_number(line) or _has_gap(line)), None)
@@ -305,7 +308,7 @@ def read_table(path: Path, of: str) -> TextTable:
     delimiter = _delimiter(lines[first])
     width = len(_cells(lines[first], delimiter))
     names, units, header_line = _header(lines[:first], delimiter, width)
-    rows, numbers = [], []
+    rows, line_numbers = [], []
     for i, line in enumerate(lines[first:], first + 1):
         if not line.strip(NOTHING) or _is_remark(line):
             continue
@@ -320,9 +323,9 @@ def read_table(path: Path, of: str) -> TextTable:
                 "mend it"
             )
         rows.append(tuple(cells))
-        numbers.append(i)
+        line_numbers.append(i)
     decimal_comma = delimiter != "," and _decimal_comma(rows)
-    return TextTable(source, names, units, header_line, tuple(numbers), tuple(rows), decimal_comma)
+    return TextTable(source, names, units, header_line, tuple(line_numbers), tuple(rows), decimal_comma)
 
 
 def _lines(text: str, source: str) -> list[str]:
@@ -394,8 +397,9 @@ def _header(
     none = ("",) * width
     units = none
     # a remark is the header only if no plain line is, as in MATLAB's tables
-    for i in sorted(range(len(before), 0, -1), key=lambda i: _is_remark(before[i - 1])):
-        line = before[i - 1].strip().lstrip("#%").strip()
+    from_last = reversed(list(enumerate(before, 1)))
+    for line_number, text in sorted(from_last, key=lambda numbered: _is_remark(numbered[1])):
+        line = text.strip().lstrip("#%").strip()
         cells = _header_cells(line, delimiter, width)
         if cells is None:
             continue
@@ -403,16 +407,17 @@ def _header(
         if units == none and all(is_unit(cell) or cell in ("", "-") for cell in bare) and any(bare):
             units = tuple("" if cell == "-" else cell for cell in bare)
             continue
-        return tuple(cells), units, i
+        return tuple(cells), units, line_number
     return none, units, 0
 
 
 def _header_cells(line: str, delimiter: str, width: int) -> list[str] | None:
+    """The cells of a header, read in the first way that gives as many as there are columns."""
     if not line:
         return None
-    ways = [[cell.strip('" ') for cell in NAME_AND_UNIT.findall(line)], re.split(r"\s{2,}|\t", line)]
+    readings = [[cell.strip('" ') for cell in NAME_AND_UNIT.findall(line)], re.split(r"\s{2,}|\t", line)]
     if delimiter:
         cells = _cells(line, delimiter)
         # some programs end each row with a delimiter, but not the header
-        ways = [cells, [*cells, ""], *ways]
-    return next((cells for cells in ways if len(cells) == width), None)
+        readings = [cells, [*cells, ""], *readings]
+    return next((cells for cells in readings if len(cells) == width), None)

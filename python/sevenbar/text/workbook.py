@@ -60,13 +60,14 @@ def sheets_of(content: bytes, source: str) -> list[WorkbookSheet]:
     """
     _refuse_huge(content, source)
     values = _open(content, source, data_only=True)
-    sheets, formulas = [], None
+    sheets, with_formulas = [], None
     for sheet in values.worksheets:
         place = f"{source}: sheet {shown(sheet.title)}"
         rows, has_empty = _rows(sheet, place)
         if has_empty:
-            formulas = formulas or _open(content, source, data_only=False)
-            _refuse_unknown_values(rows, _rows(formulas[sheet.title], place)[0], place)
+            # the file has no value of a formula that was never computed, so such a cell seems empty
+            with_formulas = with_formulas or _open(content, source, data_only=False)
+            _refuse_unknown_values(rows, _rows(with_formulas[sheet.title], place)[0], place)
         cells = tuple(tuple(map(_text, row)) for row in rows)
         if any(any(row) for row in cells):
             sheets.append(WorkbookSheet(sheet.title, cells))
@@ -152,14 +153,15 @@ def _each_row(sheet: Any, place: str) -> Iterator[Sequence[Any]]:
 
 
 def _refuse_unknown_values(
-    rows: Sequence[Sequence[Any]], written: Sequence[Sequence[Any]], where: str
+    rows: Sequence[Sequence[Any]], written: Sequence[Sequence[Any]], place: str
 ) -> None:
+    """`TableError` for a formula among the cells as `written` that has no value in `rows`."""
     for i, row in enumerate(written):
         for j, cell in enumerate(row):
             known = i < len(rows) and j < len(rows[i]) and rows[i][j] is not None
             if isinstance(cell, str) and cell.startswith("=") and not known:
                 raise TableError(
-                    f"{where}, cell {cell_name(i + 1, j)}: {shown(cell)} is a formula whose value the file "
+                    f"{place}, cell {cell_name(i + 1, j)}: {shown(cell)} is a formula whose value the file "
                     "does not hold; open the file in Excel or LibreOffice and save it"
                 )
 

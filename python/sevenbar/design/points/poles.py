@@ -1,10 +1,10 @@
 """The acceleration pole of a link: the point of it that has no acceleration at an instant.
 
-The acceleration of the point x is `c + G x` with `G = (alpha x + omega x omega x) R`, so the pole is `-G^-1
-c`. Since `det G = -|omega x alpha|^2`, there is one wherever the axis of rotation changes its direction.
-Where it keeps it, as in planar motion, G has rank two: a line of points along the axis has the least
-acceleration, which is the part along the axis. Where the link does not turn at all every point has the same
-acceleration.
+The acceleration of the point x is `c + G x` with `G = (alpha x + omega x omega x) R`, so the pole is
+`-G^-1 c`. Since `det G = -|omega x alpha|^2`, there is one wherever the axis of rotation changes its
+direction. Where the axis keeps its direction, as in planar motion, G has rank two: a line of points along the
+axis has the least acceleration, which is the part along the axis. Where the link does not turn at all every
+point has the same acceleration.
 
 Source: docs/theory_design.md, (21).
 """
@@ -36,9 +36,9 @@ class AccelerationPoles(Printed):
 
     `status` (n,): "pole", one point without acceleration; "line", a line of points with the least, of which
     the one nearest to `near` is given; "none", a link that does not turn, whose points all accelerate alike.
-    `at` (n, 3) are the points as points are written, `place` (n, 3) the same in the report frame [length],
+    `at` (n, 3) are the points in the frame of the link, `place` (n, 3) the same in the report frame [length],
     NaN where there is none. `axis` (n, 3) is the line's direction in the link, NaN where there is none.
-    `remaining` (n,) [length/s^2] is the acceleration that is left, `condition` (n,) by how much an error of
+    `remaining` (n,) [length/s^2] is the acceleration of the point, `condition` (n,) by how much an error of
     the rates is magnified in the pole.
     """
 
@@ -90,12 +90,12 @@ def poles_of(cycle: Cycle, near: Floats) -> AccelerationPoles:
     left, sizes, right = np.linalg.svd(gradient)
     speed = float(np.abs(cycle.circuit.dq[:, cycle.circuit.input_column]).max())
     turns = sizes[:, 0] > STILL * speed**2
-    single = sizes[:, 2] > RANK * sizes[:, 0]
-    inverse = np.where(np.stack([turns, turns, single & turns], axis=1), 1.0, 0.0)
-    inverse /= np.where(inverse > 0, sizes, 1.0)
-    moved = -np.einsum("kji,kj,klj,kl->ki", right, inverse, left, value)
-    at = near + moved
-    status = np.where(single & turns, "pole", np.where(turns, "line", "none"))
+    single = turns & (sizes[:, 2] > RANK * sizes[:, 0])
+    # the pseudo-inverse of G, which gives the point of a line nearest to `near`
+    solvable = np.stack([turns, turns, single], axis=1)
+    inverse = np.divide(1.0, sizes, out=np.zeros_like(sizes), where=solvable)
+    at = near - np.einsum("kji,kj,klj,kl->ki", right, inverse, left, value)
+    status = np.where(single, "pole", np.where(turns, "line", "none"))
     at[~turns] = np.nan
     remaining = np.linalg.norm(value + np.einsum("kij,kj->ki", gradient, np.nan_to_num(at - near)), axis=1)
     place = rates.constant[0] + np.einsum("kij,kj->ki", rates.gradient[0], at)

@@ -1,16 +1,18 @@
 """One design task for any loop: which numbers are free, what is wanted, and what must hold.
 
-Angles [rad] and lengths in the linkage's own unit throughout, but the bounds of free numbers, which are in
-the unit that the description gives each of them in, and figures, which are as people read them (`Measure`).
+Angles [rad] and lengths in the linkage's own unit throughout, except the bounds of free numbers, which are in
+the unit in which the description has each of them, and measures, which are in the unit in which people read
+them.
 
-A want, an objective, leaves residuals, each relative to its own unit: a radian, or for lengths what its
+A want, an objective, has residuals, each relative to its own unit: a radian, or for lengths what its
 docstring says. A must is a constraint. With n residuals r of a want of weight w, the task makes least
 
     sum over wants of  (w^2 / n) sum r^2                     goal "least squares"                          (1)
     the greatest  w |r|  of all                              goal "minimax"                                (2)
     1 - sin^2 of the transmission angle, the greatest of all goal "transmission"                           (3)
 
-(3) is for RSSRs of square axes, over the range that is used; what is wanted must then be met (`Most`).
+(3) is for RSSRs of square axes, over the range that is used; what is wanted must then be met to within
+bounds (`Most`).
 
 Each kind of want or must is one file in `wants` or `musts`; everything else knows the classes of this module
 alone.
@@ -170,13 +172,13 @@ class SampledWant(Want):
         unit = shown_in(linkage, linkage.drive.output) if self.of_output else (linkage.length_unit, 1.0)
         return f"want_{place + 1}_greatest", *unit
 
-    def exact_flaws(self, task: DesignTask, conditions: int, own: int) -> Flaws:
-        """More that must be met exactly than numbers could meet; `own` are the want's own free numbers."""
-        place = [other is self for other in task.wants].index(True)
+    def exact_flaws(self, task: DesignTask, conditions: int, own_free: int) -> Flaws:
+        """More conditions to be met exactly than free numbers; `own_free` are those of the want itself."""
+        place = next(i for i, other in enumerate(task.wants) if other is self)
         bounds = (must for must in task.musts if isinstance(must, ResidualMust))
         if not any(must.want == place and must.most <= EXACT for must in bounds):
             return
-        count = len(task.free) + own
+        count = len(task.free) + own_free
         if conditions > count:
             yield (
                 "exact",
@@ -207,7 +209,7 @@ class MeasureWant(Want):
         return abs(value - self.value)
 
     def ends(self, loss: float) -> tuple[float | None, float | None]:
-        """The least and the most of the measure that lack no more."""
+        """The least and the greatest value of the measure whose loss is no more than this."""
         if isinstance(self.value, str):
             return (-loss, None) if self.value == "great" else (None, loss)
         return self.value - loss, self.value + loss
@@ -272,9 +274,10 @@ class DesignTask:
 
     That all poses of a want lie on one circuit without a dead centre of the input between them, in their
     order, is always required. `limits` hold motion type, size, and the least transmission angle. With a
-    placement that is not "fixed" the linkage may stand anywhere, which paths and poses alone see.
+    placement that is not "fixed" the linkage may be placed anywhere, which only wants of places depend on.
     Dimensions in `follow` (L2 of an RSSR whose file leaves it out) follow from the others. Free lengths of a
-    drawing become dimensions of the draft. Raises `RequestError` for a free number that the draft has not.
+    drawing become dimensions of the draft. Raises `RequestError` for a free number that the draft does not
+    have.
 
     >>> import sevenbar as sb
     >>> linkage = sb.load("rssr")
@@ -299,7 +302,7 @@ class DesignTask:
         draft = self.draft.giving(self.names)
         for name in self.names:
             if not any(name == one.name for one in (*draft.dimensions, *draft.masses)):
-                # says which there are
+                # `dimension` raises for an unknown name, and lists those there are
                 raise RequestError(
                     f"free: {draft.dimension(name).name} is the name of {shown(name)}; give that"
                 )
@@ -327,7 +330,7 @@ class DesignTask:
 
     @property
     def placings(self) -> int:
-        """The freedoms with which the linkage may stand."""
+        """How many numbers place the linkage, and scale it."""
         return {"fixed": 0, "free": 6, "free with scale": 7}[self.placement]
 
 

@@ -14,12 +14,15 @@ from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.placing import Placing
 from sevenbar.kinematics.circuits.circuit import Circuit
 
+#: In place of a distance of 0, whose slopes are then 0.
+TINY = 1e-300
+
 
 @dataclass(frozen=True, eq=False)
 class Stations:
     """The inputs `fixed + by u` (n,) of a want with own unknowns u (m,), whose units are `scales` (m,).
 
-    They follow each other; `round`: the last leads to the first again; `free`: each is an unknown.
+    They are in their order; `round`: the last leads to the first again; `free`: each is an unknown.
     """
 
     fixed: Floats
@@ -57,9 +60,10 @@ class Bound:
 
 @dataclass(frozen=True, eq=False)
 class Used:
-    """What a design does along a want: inputs (n,) and poses (n, columns) of its way, poses at its stations.
+    """What a design does along a want: `inputs` (n,) and their `poses` (n, columns), dense as for a curve.
 
-    `u` (m,) are the want's unknowns, `values` (k,) the free numbers.
+    `u` (m,) are the want's unknowns, `values` (k,) the free numbers; `station_poses` (s, columns) are the
+    poses at its stations.
     """
 
     loop: TaskLoop
@@ -67,8 +71,8 @@ class Used:
     u: Floats
     placing: Placing
     inputs: Floats
-    way: Floats
-    stations: Floats
+    poses: Floats
+    station_poses: Floats
 
     def points(self, numbers: Sequence[int], q: Floats) -> Floats:
         """Where points are at poses (n, points, 3), the linkage as it is described."""
@@ -156,4 +160,4 @@ def distances(residuals: Floats, by: Floats) -> tuple[Floats, Floats]:
     parts = residuals.reshape(-1, 3)
     size = np.linalg.norm(parts, axis=1)
     slopes = np.einsum("ni,nik->nk", parts, by.reshape(*parts.shape, by.shape[-1]))
-    return size, slopes / np.maximum(size, 1e-300)[:, None]
+    return size, slopes / np.maximum(size, TINY)[:, None]

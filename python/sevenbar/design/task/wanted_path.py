@@ -45,22 +45,18 @@ def wanted_places(points: npt.ArrayLike) -> tuple[Floats, bool]:
 def turning_back(values: Floats) -> int | None:
     """The number, from 1, of the first value that goes back; `None` where they rise or fall throughout."""
     steps = np.diff(values)
-    if (steps > 0).all() or (steps < 0).all():
-        return None
-    back = np.flatnonzero(np.sign(steps) != np.sign(steps[0])) if steps[0] else [0]
-    return int(back[0]) + 2
+    back = np.flatnonzero(~(steps * np.sign(steps[:1]) > 0))
+    # the first step leads to the second value
+    return int(back[0]) + 2 if back.size else None
 
 
 def wanted_inputs(timing: npt.ArrayLike | None, wanted: Floats, closed: bool) -> Floats | None:
-    """The inputs of the points, that of the closing one left out."""
+    """The inputs of the points without the closing one, for which an input may be given, too."""
     if timing is None:
         return None
     inputs = finite_array("timing", timing)
-    if inputs.size == len(wanted) - closed and closed:
-        closing = inputs
-    elif inputs.size == len(wanted):
-        closing = inputs[:-1] if closed else inputs
-    else:
+    count = len(wanted) - 1 if closed else len(wanted)
+    if inputs.size not in (count, len(wanted)):
         raise RequestError(
             f"timing: {inputs.size} inputs for {len(wanted)} points; give one for each, in their order"
         )
@@ -68,4 +64,4 @@ def wanted_inputs(timing: npt.ArrayLike | None, wanted: Floats, closed: bool) ->
         raise RequestError(
             f"timing: the input of point {number} turns back; inputs must rise, or fall, from point to point"
         )
-    return closing
+    return inputs[:count]

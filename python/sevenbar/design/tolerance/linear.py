@@ -68,7 +68,7 @@ class Linear:
 
     @property
     def words(self) -> str:
-        """The output as a sentence has it: "angle of rocker", "velocity of slider", "P.x"."""
+        """The output in words: "angle of rocker", "velocity of slider", "P.x"."""
         one = self.found.outputs[self.found.place(self.output, self.quantity)]
         if not one.joint:
             return one.name
@@ -109,8 +109,8 @@ class Linear:
     @property
     def held(self) -> HeldDimensions:
         """The dimensions without a tolerance."""
-        own = zip(self.found.dimensions, self.tolerances.widths, strict=True)
-        return held_of(self.found.draft, [dimension.name for dimension, width in own if width > 0])
+        each = zip(self.found.dimensions, self.tolerances.widths, strict=True)
+        return held_of(self.found.draft, [dimension.name for dimension, width in each if width > 0])
 
     @property
     def greatest(self) -> int:
@@ -124,14 +124,13 @@ class Linear:
         total = float(parts.sum())
         result = []
         for k, dimension in enumerate(self.found.dimensions):
-            if self.tolerances.widths[k] > 0:
-                effect = np.abs(self.slopes[:, k]) * self.tolerances.widths[k]
-                row = int(np.argmax(effect))
-                share = float(parts[:, k].sum()) / total if total > 0 else 0.0
-                width, source = float(self.tolerances.widths[k]), self.tolerances.sources[k]
-                result.append(
-                    Effect(dimension, width, source, float(effect[row]), float(self.input[row]), share)
-                )
+            width, source = float(self.tolerances.widths[k]), self.tolerances.sources[k]
+            if not width > 0:
+                continue
+            effect = np.abs(self.slopes[:, k]) * width
+            row = int(np.argmax(effect))
+            share = float(parts[:, k].sum()) / total if total > 0 else 0.0
+            result.append(Effect(dimension, width, source, float(effect[row]), float(self.input[row]), share))
         return tuple(sorted(result, key=lambda effect: (-effect.share, -effect.greatest)))
 
     def measure(self, name: str) -> tuple[float, float]:
@@ -175,15 +174,16 @@ def linear_estimate(
         >>> bool((found.deviation <= found.worst).all())
         True
     """
-    result = of if isinstance(of, Sensitivities) else sensitivities(of)
+    computed = of if isinstance(of, Sensitivities) else sensitivities(of)
     if not isinstance(given, Tolerances):
-        given = result.tolerances(given)
+        given = computed.tolerances(given)
+    # raises where there is no such distribution
     given.deviations(distribution)
-    status = result.clear(given.widths)
-    place = result.place(output, quantity)
-    slopes = np.where(given.widths > 0, result.slopes[:, place], 0.0)
-    one = result.outputs[place]
-    if np.isnan(result.values[result.rows, place]).all() or np.isnan(slopes[status == "ok"]).any():
+    status = computed.clear(given.widths)
+    place = computed.place(output, quantity)
+    slopes = np.where(given.widths > 0, computed.slopes[:, place], 0.0)
+    one = computed.outputs[place]
+    if np.isnan(computed.values[computed.rows, place]).all() or np.isnan(slopes[status == "ok"]).any():
         raise RequestError(
             f"output: {one.name} takes part in an idle motion, which the input does not tell; give another"
         )
@@ -194,4 +194,4 @@ def linear_estimate(
             "give smaller ones"
         )
     name = one.owner if one.joint else one.name
-    return Linear(result, given, distribution, name, one.quantity, status, rows, slopes[rows])
+    return Linear(computed, given, distribution, name, one.quantity, status, rows, slopes[rows])

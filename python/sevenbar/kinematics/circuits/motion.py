@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -68,6 +68,17 @@ class ChangePoint(ReadOnly):
         return self.ways == 0
 
 
+class HeldFreedoms(NamedTuple):
+    """How idle freedoms are held: `balls` as two turns, `columns` at zero, and how many `spins` otherwise.
+
+    Balls are joints counted from 0; their third turns are among the columns.
+    """
+
+    balls: frozenset[int]
+    columns: list[int]
+    spins: int
+
+
 class Solvable(Loop, ABC):
     """A loop that answers: what results know of the `Linkage` of which they are."""
 
@@ -88,8 +99,8 @@ class Solvable(Loop, ABC):
 
     @cached_property
     @abstractmethod
-    def held(self) -> tuple[frozenset[int], list[int], int]:
-        """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise."""
+    def held(self) -> HeldFreedoms:
+        """How idle freedoms are held."""
 
     @property
     @abstractmethod

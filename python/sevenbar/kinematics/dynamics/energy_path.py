@@ -163,10 +163,10 @@ class EnergyBuilder:
             moving[:, 0] = scale
             energies = []
             for speeds in (still, moving, -moving):
-                torque, _, energy, *_ = solver.solved(inputs[mine], own, speeds, by=self.path.input)
-                energies.append(energy * joule)
+                result = solver.solved(inputs[mine], own, speeds, by=self.path.input)
+                energies.append(result.energies * joule)
                 if speeds is still:
-                    out[mine, 1] = torque * joule * factor
+                    out[mine, 1] = result.torque * joule * factor
             out[mine, 0] = 2 * energies[1][:, 0] * factor**2
             out[mine, 2] = -(energies[1][:, 2] + energies[2][:, 2]) / 2 * factor**2 if damped else 0.0
             by_s = rates * self.scales * factor[:, None]

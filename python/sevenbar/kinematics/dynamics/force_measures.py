@@ -128,17 +128,16 @@ def _are_wanted(circuit: Circuit, only: Sequence[str] | None) -> bool:
 def _solved(solver: ForceSolver, inputs: Floats, q: Floats, speed: float) -> _Slopes:
     """Torque [N m, or N] and forces [N] at constant speed; derivatives where the solver has them."""
     rates = np.broadcast_to([speed, 0.0], (len(q), 2))
-    found = solver.solved(inputs, q, rates)
-    torque, _, _, wrenches, _, shaking, _, torque_by, wrenches_by, shaking_by = found
+    result = solver.solved(inputs, q, rates)
     size = solver.size
     unit = size**2 if solver.linkage.turns(solver.input) else size
     return _Slopes(
-        unit * torque,
-        size * wrenches[..., 3:],
-        size * shaking[:, 3:],
-        unit * torque_by,
-        size * wrenches_by[..., 3:],
-        size * shaking_by[..., 3:],
+        unit * result.torque,
+        size * result.wrenches[..., 3:],
+        size * result.shaking[:, 3:],
+        unit * result.torque_by,
+        size * result.wrenches_by[..., 3:],
+        size * result.shaking_by[..., 3:],
     )
 
 

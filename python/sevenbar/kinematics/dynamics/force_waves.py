@@ -168,17 +168,19 @@ class _Waves:
         Between them energies (n, 2) [J], last shaking (n, 6) [N m, and N].
         """
         solver, count = self.solver, len(inputs)
-        ways = 1 + len(solver.loading.loads)
+        # without loads, and with each by itself
+        cases = 1 + len(solver.loading.loads)
         poses = solver.numbers.poses(self.circuit.q[:: self.stride])
-        factors = np.repeat(np.eye(ways)[:, 1:], count, axis=0)
+        factors = np.repeat(np.eye(cases)[:, 1:], count, axis=0)
         result = solver.solved(
-            np.tile(inputs, ways), np.tile(poses, (ways, 1)), self._speeds(ways * count), factors=factors
+            np.tile(inputs, cases), np.tile(poses, (cases, 1)), self._speeds(cases * count), factors=factors
         )
-        torque, energies = result[0].reshape(ways, count), result[2].reshape(ways, count, 3) * solver.size**2
+        torque = result.torque.reshape(cases, count)
+        energies = result.energies.reshape(cases, count, 3) * solver.size**2
         supplied = energies[:, :, 2]
         torque[1:] -= torque[0]
         supplied[1:] -= supplied[0]
-        shaking = result[5][:count] * np.repeat([solver.size**2, solver.size], 3)
+        shaking = result.shaking[:count] * np.repeat([solver.size**2, solver.size], 3)
         return torque, energies[0, :, :2], supplied, shaking
 
     def _whole(self, parts: Floats, inputs: Floats) -> Floats:

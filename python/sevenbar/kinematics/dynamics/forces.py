@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,13 +34,35 @@ from sevenbar.kinematics.numbers.sensitivity import NumberedLoop, Numbers
 from sevenbar.text.units import LENGTHS
 
 #: How numbers move a place: which steps, and the twists.
-Ways = list[tuple[int, list[float]]]
+Moves = list[tuple[int, list[float]]]
 
 #: A place as the core takes it: the steps before it, where it is among them, and how numbers move it.
-Placed = tuple[int, Floats, Ways]
+Placed = tuple[int, Floats, Moves]
 
 #: Bodies that move by less than this part of the size for a radian stand still.
 STILL = 1e-9
+
+
+class CoreForces(NamedTuple):
+    """What the core finds on n rows with j joints, in kg, s and the size as the length.
+
+    `torque` (n,) is that of the input, or its force; `spin` (n, idle) what holds each idle freedom;
+    `energies` (n, 3) are kinetic and potential energy and the power of loads and dampers. `wrenches` (n, j,
+    6) are in the frames of the joints, which `seats` (n, j, 12) are: axes, then place. `shaking` (n, 6) is
+    about the report origin, `free` (n, redundant, 6) the wrenches that nothing determines, about the origin.
+    Wrenches have the moment first. Last the derivatives by the numbers, of none where they are not wanted.
+    """
+
+    torque: Floats
+    spin: Floats
+    energies: Floats
+    wrenches: Floats
+    seats: Floats
+    shaking: Floats
+    free: Floats
+    torque_by: Floats
+    wrenches_by: Floats
+    shaking_by: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,11 +113,11 @@ class ForceSolver:
         place = placed(self._frame(link), at) / self.numbers.size
         return steps, place, self.loop.core.twists(product) if self.by_numbers else []
 
-    def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, Ways]:
+    def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, Moves]:
         assert body.centre is not None
-        steps, centre, ways = self._place(link, body.centre)
+        steps, centre, moves = self._place(link, body.centre)
         axes = self._frame(link)[:3, :3]
-        return steps, body.mass, centre, axes @ body.tensor @ axes.T / self.size**2, ways
+        return steps, body.mass, centre, axes @ body.tensor @ axes.T / self.size**2, moves
 
     def _load(self, load: Load) -> tuple[Placed, Floats, Floats, bool]:
         assert load.at is not None
@@ -109,11 +132,12 @@ class ForceSolver:
         assert spring.joint is not None
         linkage = self.linkage
         column = linkage.column(spring.joint, "joint")
-        # stiffness and damping, and the slack value
-        unit, value = 1 / self.size**2, 1.0
+        # of stiffness and damping, and of the value at which the spring is slack
+        factor, slack_factor = 1 / self.size**2, 1.0
         if not linkage.turns(column):
-            unit, value = 1 / LENGTHS[linkage.length_unit], 1 / self.numbers.size
-        return column, np.array([unit * spring.stiffness, value * spring.length, unit * spring.damping])
+            factor, slack_factor = 1 / LENGTHS[linkage.length_unit], 1 / self.numbers.size
+        numbers = [factor * spring.stiffness, slack_factor * spring.length, factor * spring.damping]
+        return column, np.array(numbers)
 
     @cached_property
     def acting(self) -> _core.Acting:
@@ -145,10 +169,10 @@ class ForceSolver:
         for i, (joint, inside) in enumerate(zip(linkage.joints, word.inner, strict=True)):
             frame = inverse(inside[0].pose(values)) if inside else np.eye(4)
             if joint.value and not joint.backwards:
-                # a joint is where it is drawn, whatever it reads there
+                # the joint is where it is drawn, whatever value it has there
                 frame = joint.to_drawn @ frame
             if joint.backwards and linkage.form == "drawn":
-                # its axes are those that are written
+                # its axes are those of the drawing
                 frame = frame @ half_turn(joint.row.half_turn)
             frame[:3, 3] /= self.numbers.size
             frames.append(frame)
@@ -164,7 +188,7 @@ class ForceSolver:
         *,
         by: int | None = None,
         factors: Floats | None = None,
-    ) -> list[Floats]:
+    ) -> CoreForces:
         """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2).
 
         Loads go by the values `inputs` (n,) of the column `by`, the input if it is not given, or act by
@@ -173,10 +197,10 @@ class ForceSolver:
         scales = self.numbers.scales
         if factors is None:
             turns = self.linkage.turns(self.input if by is None else by)
-            own = [load.factors(inputs, turns=turns) for load in self.loading.loads]
-            factors = np.reshape(own, (-1, len(inputs))).T
+            by_load = [load.factors(inputs, turns=turns) for load in self.loading.loads]
+            factors = np.reshape(by_load, (-1, len(inputs))).T
         steps, frames = self.seats
-        return _core.reactions(
+        result = _core.reactions(
             self.loop.core,
             self.acting,
             poses / scales,
@@ -186,6 +210,7 @@ class ForceSolver:
             frames,
             self.by_numbers,
         )
+        return CoreForces(*result)
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,19 +253,19 @@ def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest
     # rows without rates stay without
     speeds = np.where(np.isfinite(rows.rates), 0.0, np.nan) if at_rest else rows.rates
     result = solver.solved(rows.input, rows.poses, speeds)
-    torque, spin, energies, wrenches, seats, shaking, free, *_ = result
+    torque, wrenches, shaking = result.torque, result.wrenches, result.shaking
     size, metre = solver.size, LENGTHS[linkage.length_unit]
-    if nothing_pulls(solver, speeds, energies[:, 0] * size**2, shaking[:, 3:] * size):
+    energies = result.energies * size**2
+    if nothing_pulls(solver, speeds, energies[:, 0], shaking[:, 3:] * size):
         # not the rounding of a linkage that takes nothing; rows without values keep none
         torque, wrenches, shaking = 0.0 * torque, 0.0 * wrenches, 0.0 * shaking
     slides = not linkage.turns(circuit.input_column)
-    pull, inertia = acting_forces(solver, energies * size**2, shaking[:, 3:] * size)
+    pull, inertia = acting_forces(solver, energies, shaking[:, 3:] * size)
     torque = without_rounding(torque[:, None], pull / size)[:, 0] * (size if slides else size**2)
     wrenches = without_rounding(wrenches, pull / size)
     shaking = without_rounding(shaking, inertia / size)
     speed = speeds[:, 0]
-    energies = energies * size**2
-    reactions = _reactions(solver, wrenches, seats, free)
+    reactions = _reactions(solver, wrenches, result.seats, result.free)
     return Forces(
         input=rows.input,
         time=rows.time,
@@ -254,8 +279,8 @@ def forces_on(solver: ForceSolver, circuit: Circuit, rows: PosedRows, *, at_rest
         supplied=energies[:, 2],
         shaking=shaking * np.repeat([size**2, size], 3),
         reactions=reactions,
-        spin=_spins(solver, spin * size**2, reactions),
-        indeterminate=linkage.mobility().redundant if free.shape[1] else (),
+        spin=_spins(solver, result.spin * size**2, reactions),
+        indeterminate=linkage.mobility().redundant if result.free.shape[1] else (),
         slides=slides,
         length_unit=linkage.length_unit,
         periodic=False,
@@ -274,9 +299,8 @@ def acting_forces(solver: ForceSolver, energies: Floats, shaking: Floats) -> tup
     From energies (n, 3) [J, and W] and the shaking force (n, 3) [N].
     """
     loading, size = solver.loading, solver.size
-    kinetic, potential = (
-        np.abs(energies[:, i][np.isfinite(energies[:, i])]).max(initial=0.0) for i in (0, 1)
-    )
+    sizes = np.where(np.isfinite(energies), np.abs(energies), 0.0)
+    kinetic, potential = sizes[:, :2].max(axis=0, initial=0.0)
     shaken = np.abs(shaking[np.isfinite(shaking)]).max(initial=0.0)
     inertia = float(2 * kinetic / size + shaken)
     weight = sum(body.mass for body in solver.bodies.values()) * float(np.linalg.norm(loading.gravity))
@@ -358,16 +382,16 @@ def _in_seat(axes: Floats, place: Floats, wrenches: Floats) -> Floats:
     return np.concatenate([moment @ axes, force @ axes], axis=2)
 
 
-def _known(open_ways: Floats) -> tuple[Floats, Booleans]:
-    """What open wrenches (n, k, 6) leave: combinations (n, 6 - k, 6), orthonormal; which components (6,)."""
-    rows, count, _ = open_ways.shape
+def _known(free: Floats) -> tuple[Floats, Booleans]:
+    """What free wrenches (n, k, 6) leave known: orthonormal combinations (n, 6 - k, 6), components (6,)."""
+    rows, count, _ = free.shape
     if not count:
         return np.broadcast_to(np.eye(6), (rows, 6, 6)), np.ones(6, dtype=bool)
-    full = np.isfinite(open_ways).all(axis=(1, 2))
+    full = np.isfinite(free).all(axis=(1, 2))
     known = np.full((rows, 6 - count, 6), np.nan)
     determinate = np.ones(6, dtype=bool)
     if full.any():
-        _, _, right = np.linalg.svd(open_ways[full], full_matrices=True)
+        _, _, right = np.linalg.svd(free[full], full_matrices=True)
         known[full] = right[:, count:]
         determinate = np.linalg.norm(right[:, :count], axis=1).max(axis=0) < OPEN
     return known, determinate
@@ -380,15 +404,14 @@ def _spins(solver: ForceSolver, spin: Floats, reactions: Mapping[str, Reaction])
     third axis of the word.
     """
     linkage = solver.linkage
-    spun, *_ = linkage.held
     result = {}
-    for ball in sorted(spun):
+    for ball in sorted(linkage.held.balls):
         column = linkage.places[ball].stop - 1
         reaction = reactions[linkage.joints[ball].name]
         if column not in solver.numbers.held:
             continue
-        own = np.abs(spin[:, solver.numbers.held.index(column)])
+        about_axis = np.abs(spin[:, solver.numbers.held.index(column)])
         name = "coupler" if linkage.kind == "RSSR" else f"link {linkage.graph.moving_link(ball)}"
         known = bool(reaction.determinate[:3].all())
-        result[name] = np.linalg.norm(reaction.moment, axis=1) if known else own
+        result[name] = np.linalg.norm(reaction.moment, axis=1) if known else about_axis
     return result

@@ -79,7 +79,7 @@ class FreeCourse:
 
     def spin_at(self, places: Floats, rates: Floats) -> dict[str, float]:
         """The greatest moment [N m] of each idle spin at places (n,), with rates (n, 2) of the input."""
-        if not self.linkage.held[0]:
+        if not self.linkage.held.balls:
             return {}
         inside = places % self.path.length if self.path.closed else places
         known = np.isfinite(inside) & np.isfinite(rates).all(axis=1)

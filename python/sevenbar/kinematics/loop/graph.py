@@ -15,8 +15,8 @@ class Graph:
     """Links, counted from 1 with the ground last, and the joints `between` them, counted from 0.
 
     Each joint is between two links, the first of which is "before" it and the second "after" it: its
-    motion is that of the link after against the link before. A link may have any number of joints. Who takes
-    links and joints by this value need not know in which order a loop closes.
+    motion is that of the link after against the link before. A link may have any number of joints. Code that
+    takes links and joints from a graph need not know the order of joints in a loop.
 
         >>> four_bar = loop_graph("RRRR")
         >>> four_bar.ground, four_bar.joints_of(1), four_bar.joints_of(4), four_bar.neighbours(4)
@@ -79,17 +79,18 @@ class Graph:
     @cached_property
     def tree(self) -> tuple[int, ...]:
         """Joints that lead from the ground to each moving link once, in order outwards."""
-        reached, result, waiting = {self.ground}, list[int](), [self.ground]
-        while waiting:
-            for joint in sorted(self.joints_of(waiting[-1])):
-                ahead = set(self.between[joint]) - reached
-                if ahead:
-                    reached |= ahead
+        # depth first, so that the tree of a single loop is its chain; `path` leads to the link reached last
+        reached, result, path = {self.ground}, list[int](), [self.ground]
+        while path:
+            for joint in sorted(self.joints_of(path[-1])):
+                following = set(self.between[joint]) - reached
+                if following:
+                    reached |= following
                     result.append(joint)
-                    waiting += ahead
+                    path += following
                     break
             else:
-                waiting.pop()
+                path.pop()
         return tuple(result)
 
     @property
@@ -98,7 +99,7 @@ class Graph:
         return tuple(joint for joint in self.joints if joint not in self.tree)
 
     def moving_link(self, joint: int) -> int:
-        """The link that a joint moves: that after it, of a joint that leads to the ground that before it."""
+        """The link that a joint moves: the one after it, or before it where the one after is the ground."""
         before, after = self.between[joint]
         return before if after == self.ground else after
 

@@ -48,7 +48,7 @@ def range_of(course: JointCourse, column: int) -> JointRange:
 
 def coned(linkage: Solvable) -> list[str]:
     """The joints whose bend means something: all S and U, but next to links that spin together."""
-    spins = linkage.held[2] if any(joint.row.bends for joint in linkage.joints) else 0
+    spins = linkage.held.spins if any(joint.row.bends for joint in linkage.joints) else 0
     return [] if spins else [joint.name for joint in linkage.joints if joint.row.bends]
 
 

@@ -19,7 +19,7 @@ from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.circuits.from_core import change_points_from, circuit_from, search_from, tally_from
 from sevenbar.kinematics.circuits.long_circuit import LONG, LongCircuit
 from sevenbar.kinematics.circuits.modes import Modes
-from sevenbar.kinematics.circuits.motion import Motion, Solvable
+from sevenbar.kinematics.circuits.motion import HeldFreedoms, Motion, Solvable
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
 from sevenbar.kinematics.loop.once import once_for
@@ -95,23 +95,20 @@ class GeneralLoop:
 
         return tuple(text(*freedom) for freedom in self._idle())
 
-    def held(self) -> tuple[frozenset[int], list[int], int]:
-        """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise.
-
-        Balls are joints counted from 0; their third turns are among the columns.
-        """
+    def held(self) -> HeldFreedoms:
+        """How idle freedoms are held."""
         letters = expanded(self._linkage).letters
         first = np.concatenate([[0], np.cumsum([3 if letter == "S" else 1 for letter in letters])])
-        spun, columns, spins = set(), [], 0
+        balls, columns, spins = set(), [], 0
         for (word, held, _), (_, _, joint, _) in zip(self._core.idle, self._idle(), strict=True):
             if word == "between-balls":
-                spun.add(joint)
+                balls.add(joint)
                 columns.append(int(first[held]) + 2)
             elif word == "chain-between-balls":
                 spins += 1
             else:
                 columns.append(int(first[held]))
-        return frozenset(spun), columns, spins
+        return HeldFreedoms(frozenset(balls), columns, spins)
 
     def idle_links(self) -> frozenset[int]:
         """The links that have such a freedom, counted from 1."""

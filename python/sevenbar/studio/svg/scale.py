@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import chain, count
+from itertools import chain
+from itertools import count as counting
 from typing import Final
 
 from sevenbar.drawing.ticks import DEGREE_STEPS
@@ -13,9 +14,16 @@ from sevenbar.drawing.ticks import DEGREE_STEPS
 #: Numbers outside this range are written by a power of ten at the axis.
 PLAIN: Final = (1e-2, 1e5)
 
-#: From here on a number, far beyond its axis, is written short.
+#: From here on a number is far beyond its axis, and written by three digits and a power of ten.
 LONGEST = 1e6
 
+#: A tick so little beyond an end, as a part of the range, is on the end: rounding takes none off.
+ON_END: Final = 1e-9
+
+#: A number this near to a whole one, as a part of itself, is whole, apart from rounding.
+WHOLE: Final = 1e-6
+
+#: A power of ten as it is written.
 EXPONENTS: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -40,16 +48,15 @@ class Scale:
 
     @property
     def _multiples(self) -> range:
-        # rounding takes no tick off an end
-        room = 1e-9 * (self.high - self.low)
-        return range(math.ceil((self.low - room) / self.step), math.floor((self.high + room) / self.step) + 1)
+        slack = ON_END * (self.high - self.low)
+        first = math.ceil((self.low - slack) / self.step)
+        return range(first, math.floor((self.high + slack) / self.step) + 1)
 
     def word(self, value: float) -> str:
         """A value as it is written at a tick."""
-        fractions = (self.step / 10.0**self.power * 10**digits for digits in count())
-        needed = next(
-            digits for digits, step in enumerate(fractions) if abs(step - round(step)) < 1e-6 * step
-        )
+        # the fewest digits by which the step is written whole
+        shifted = (self.step / 10.0**self.power * 10**digits for digits in counting())
+        needed = next(digits for digits, step in enumerate(shifted) if abs(step - round(step)) < WHOLE * step)
         return self._written(value, needed)
 
     def reading(self, value: float, unit: str) -> str:
@@ -74,9 +81,9 @@ def scale(low: float, high: float, most: int, *, degrees: bool = False) -> Scale
     """The scale of a range (low < high) with at most so many ticks, at round numbers."""
     needed = (high - low) / most
     tens = 10.0 ** math.floor(math.log10(needed))
-    steps: Iterator[float] = (i * tens * 10**k for k in count() for i in (1, 2, 2.5, 5))
+    steps: Iterator[float] = (i * tens * 10**k for k in counting() for i in (1, 2, 2.5, 5))
     if degrees and needed > DEGREE_STEPS[0] / 2:
-        steps = chain(DEGREE_STEPS, (360.0 * i * 10**k for k in count() for i in (2, 5, 10)))
+        steps = chain(DEGREE_STEPS, (360.0 * i * 10**k for k in counting() for i in (2, 5, 10)))
     # counted as they are drawn: rounding may put one more on an end
     step = next(step for step in steps if Scale(low, high, step, 0).count <= most)
     largest = max(abs(low), abs(high))

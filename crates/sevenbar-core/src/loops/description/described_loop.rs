@@ -7,8 +7,8 @@ use crate::outcome::Role;
 use crate::rigid::{Pose, norm};
 use std::f64::consts::TAU;
 
-/// Links whose lengths together are below this share of the way from the origin to the loop have none: what is left of the
-/// differences of coordinates is rounding, of three products for each of seven links.
+/// Links whose lengths together are below this share of the distance from the origin to the loop have no length: such
+/// differences of coordinates are rounding, of three products for each of seven links.
 pub const NO_SIZE: f64 = 64.0 * f64::EPSILON;
 
 /// A column of joint values, in the description and in the chain.
@@ -43,7 +43,7 @@ impl Loop {
             .map(|l| norm(l.translation))
             .chain(pitches)
             .sum();
-        // a spherical linkage has no lengths, drawn in one point
+        // a spherical linkage that is drawn in one point has no lengths
         let reach = norm(base.translation).max(norm(ground.translation));
         let size = if size > NO_SIZE * reach { size } else { 1.0 };
         let small = |p: &Pose| Pose { rotation: p.rotation, translation: p.translation.map(|x| x / size) };

@@ -7,6 +7,12 @@ use crate::vector_math::ROUNDER;
 /// A rotation, row by row.
 pub(crate) type Rotation<N = f64> = [[N; 3]; 3];
 
+/// Below this angle [rad] the sine of half of it, as a share of the angle, is a half to the last digit.
+const SMALL_ANGLE: f64 = 1e-8;
+
+/// Below this sine of its angle a rotation is a small one, whose angle is its sine, or half a turn.
+const SMALL_SINE: f64 = 1e-6;
+
 /// Takes z to x, and x to minus z.
 pub(crate) const Z_TO_X: Rotation = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
 
@@ -24,7 +30,7 @@ pub(crate) fn cross<N: Number>(a: &[N], b: &[N]) -> [N; 3] {
 #[inline(always)]
 pub(crate) fn short_way(angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
-    // rounds without a call
+    // rounds to a whole number without a call, which keeps loops vector code
     let turns = (angle / turn + ROUNDER) - ROUNDER;
     let short = angle - turn * turns;
     if short <= -std::f64::consts::PI {
@@ -34,7 +40,7 @@ pub(crate) fn short_way(angle: f64) -> f64 {
     }
 }
 
-/// The images of the axes after a rotation that acts before them.
+/// The images of the axes by `R by`, for axes that are their images by R.
 #[inline(always)]
 pub(super) fn turned<N: Number>(axes: &[[N; 3]; 3], by: &Rotation<N>) -> [[N; 3]; 3] {
     let mut out = [[N::splat(0.0); 3]; 3];
@@ -48,6 +54,7 @@ pub(super) fn turned<N: Number>(axes: &[[N; 3]; 3], by: &Rotation<N>) -> [[N; 3]
     out
 }
 
+/// The same rotation in each of several numbers side by side.
 #[inline(always)]
 pub(super) fn splatted<N: Number>(r: &Rotation) -> Rotation<N> {
     let mut out = [[N::splat(0.0); 3]; 3];
@@ -87,7 +94,7 @@ pub(crate) fn rotation<N: Number>(v: [N; 3]) -> Rotation<N> {
     let (one, two, half) = (N::splat(1.0), N::splat(2.0), N::splat(0.5));
     let angle = dot3(&v, &v).sqrt();
     let (s, w) = (half * angle).sin_cos();
-    let factor = angle.if_greater(N::splat(1e-8), s / angle, half);
+    let factor = angle.if_greater(N::splat(SMALL_ANGLE), s / angle, half);
     let [x, y, z] = [v[0] * factor, v[1] * factor, v[2] * factor];
     [
         [
@@ -117,7 +124,7 @@ pub(super) fn rotation_vector(r: &Rotation) -> Vec3 {
     ];
     let sine = norm(v);
     let cosine = 0.5 * (r[0][0] + r[1][1] + r[2][2] - 1.0);
-    if sine > 1e-6 {
+    if sine > SMALL_SINE {
         return scale(v, sine.atan2(cosine) / sine);
     }
     if cosine > 0.0 {
@@ -135,7 +142,7 @@ pub(super) fn rotation_vector(r: &Rotation) -> Vec3 {
     scale(axis, std::f64::consts::PI / norm(axis))
 }
 
-/// A rotation freed from the rounding of many products.
+/// A rotation freed from the rounding of many products, its columns made orthonormal in their order.
 #[inline(always)]
 pub(crate) fn squared_up<N: Number>(r: &Rotation<N>) -> Rotation<N> {
     let one = N::splat(1.0);

@@ -34,12 +34,12 @@ pub struct Slopes {
 /// A value for each column, and its rates.
 pub(crate) type Orders = [Vec<f64>; ORDERS + 1];
 
-/// What changes along the loop by one number: where what lies behind each joint (from 1) moves to, the twists before each joint
-/// and behind the last as series, and the series of the screws.
+/// What changes along the loop by one number: `carriers`, of what lies behind so many joints, are its
+/// twist by the number (order 0) and the changes of the series of its twist along the motion; `screws` those of the screws.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Changes {
     pub carriers: [Vec<Twist>; ORDERS + 1],
-    /// Where the frame before each joint moves to.
+    /// The twist by the number of the frame before each joint.
     pub before: Vec<Twist>,
     pub screws: [Vec<Twist>; ORDERS],
     moves: Vec<Twist>,
@@ -77,7 +77,7 @@ pub(crate) struct Moving {
     pub screws: [Vec<Twist>; ORDERS],
 }
 
-/// What a coefficient of a power series is as a derivative.
+/// k factorial: the derivative of order k + 1 is this times coefficient k of the power series of the rates.
 const FACTORIALS: [f64; ORDERS] = [1.0, 1.0, 2.0];
 
 /// Rates by the input and derivatives up to an order (0 to 3) at closed poses (rows, columns); NaN at dead centres.
@@ -131,6 +131,7 @@ pub(crate) fn moving(numbered: &NumberedLoop, around: Around, values: &[f64]) ->
         twists: std::array::from_fn(|_| vec![[0.0; 6]; numbered.joints.len() + 1]),
         screws,
     };
+    // coefficient k of `A u = -S_input`, then those of V and of the screws that follow from it
     for k in 0..ORDERS {
         let mut right = [0.0; 6];
         if k == 0 {
@@ -193,6 +194,7 @@ fn write_row(numbered: &NumberedLoop, moving: &Moving, row: usize, orders: usize
             out.aside[row * numbered.numbers + own] = aside;
         }
         for (order, part) in slopes.iter().enumerate().take(orders) {
+            // order 0 is the value itself; of order k the series of the rates has coefficient k - 1
             let factor = FACTORIALS[order.saturating_sub(1)];
             let to = &mut block[(order * all + number) * width..][..width];
             for (to, slope) in to.iter_mut().zip(part) {
@@ -269,7 +271,7 @@ pub(crate) fn derived(
         plus(&mut right, &screws[0][column], 1.0);
     }
     slopes[0].fill(0.0);
-    // corrected once by what it leaves over, where a dead centre is near
+    // once more for the residual, which counts where a dead centre is near
     for _ in 0..2 {
         let solved = moving.inverse.times(&right);
         for (&c, x) in moving.kept.iter().zip(solved) {
@@ -305,6 +307,7 @@ pub(crate) fn derived(
         }
         changes.carriers[0][i + 1] = carrier;
     }
+    // coefficient k of `Du`, then those of `DV` and `DS`
     for k in 0..orders - 1 {
         let mut right = [0.0; 6];
         for a in 0..=k {

@@ -55,11 +55,11 @@ class FunctionForm(WantForm):
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
     def want(self, linkage: Linkage, folder: Path) -> FunctionWant:
-        given = one_of(self, "y", "pairs", "table")
+        source = one_of(self, "y", "pairs", "table")
         if self.y is None:
             for name in ("input", "output", "points"):
                 if getattr(self, name) is not None:
-                    raise RequestError(f"{name}: belongs to y; {given} says it all, so leave it out")
+                    raise RequestError(f"{name}: belongs to y; {source} says it all, so leave it out")
         columns = linkage.drive.joint, linkage.drive.output
         if self.y is not None:
             x, y = self._of_formula(self.y, linkage)
@@ -80,13 +80,14 @@ class FunctionForm(WantForm):
         return FunctionWant(x, y, zeros, self.weight)
 
     def _of_formula(self, formula: str, linkage: Linkage) -> tuple[Floats, Floats]:
-        """Readings of input and output that y(x) wants, over the ranges of both or as x and y are."""
+        """Readings of input and output that y(x) wants: over the ranges of both, or x and y themselves."""
         drive = linkage.drive
         low, high = self.x
         if not low < high:
             raise RequestError(f"x: {low:g}:{high:g} does not rise; give the lower end first")
-        wish = wish_of_function(formula, self.x, (0.0, 1.0), (0.0, 1.0), title=formula)
-        share = wish.input if self.points is None else chebyshev(0.0, 1.0, self.points)
+        # over ranges from 0 to 1, so readings are shares of the ranges
+        curve = wish_of_function(formula, self.x, (0.0, 1.0), (0.0, 1.0), title=formula)
+        share = curve.input if self.points is None else chebyshev(0.0, 1.0, self.points)
         if self.input is None and self.output is None:
             x = low + (high - low) * share
             if linkage.turns(drive.joint) and high - low >= math.tau:
@@ -110,9 +111,9 @@ class FunctionForm(WantForm):
                     f"{name}: goes over {math.degrees(abs(last - first)):g} deg; give a part of a turn"
                 )
             ranges.append((first, last))
-        assert wish.function is not None
+        assert curve.function is not None
         (a, b), (c, d) = ranges
-        return a + (b - a) * share, c + (d - c) * wish.function(share)
+        return a + (b - a) * share, c + (d - c) * curve.function(share)
 
     def hints(self) -> Iterator[tuple[str, str]]:
         if self.y is not None and (hint := degrees_hint(self.y, self.x)):
@@ -124,8 +125,8 @@ class FunctionWant(SampledWant):
     """The output as a function of the input: readings of the drive's two joints.
 
     At `input` (n,) the output reads `output` (n,), both [rad, or length], rising or falling in the input. The
-    joints stand at `zeros` (input's, output's) plus the readings; a zero that is `None` is free. Residuals:
-    what the output is off [rad, or relative to the linkage's size].
+    values of the joints are the readings plus `zeros` (input's, output's); a zero that is `None` is free.
+    Residuals: what the output is off [rad, or relative to the linkage's size].
     """
 
     form = FunctionForm
@@ -144,7 +145,7 @@ class FunctionWant(SampledWant):
         yield from order_flaws(x, "", "input")
         if over_a_turn(task.draft.linkage, float(np.ptp(x))):
             yield "", f"the inputs go over {math.degrees(float(np.ptp(x))):g} deg; give a turn at most"
-        yield from self.exact_flaws(task, x.size, sum(one is None for one in self.zeros))
+        yield from self.exact_flaws(task, x.size, self.zeros.count(None))
 
     def words(self, linkage: Linkage) -> str:
         drive = linkage.drive
@@ -155,16 +156,15 @@ class FunctionWant(SampledWant):
         )
 
     def input_range(self) -> tuple[float, float] | None:
-        first = self.zeros[0]
-        return None if first is None else (float(self.input.min()) + first, float(self.input.max()) + first)
+        start, _ = self.zeros
+        return None if start is None else (float(self.input.min()) + start, float(self.input.max()) + start)
 
     def readings_of(self, column: str, linkage: Linkage) -> Floats | None:
-        columns = (linkage.drive.joint, linkage.drive.output)
-        if column not in columns:
-            return None
-        which = columns.index(column)
-        first = self.zeros[which]
-        return None if first is None else first + (self.input, self.output)[which]
+        columns = linkage.drive.joint, linkage.drive.output
+        for name, zero_at, readings in zip(columns, self.zeros, (self.input, self.output), strict=True):
+            if name == column:
+                return None if zero_at is None else zero_at + readings
+        return None
 
     def in_loop(self, loop: TaskLoop) -> _FunctionResiduals:
         return _FunctionResiduals(loop, self.input, self.output, self.zeros, self.weight)

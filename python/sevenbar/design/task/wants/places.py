@@ -162,10 +162,11 @@ class PlacesWanted(Wanted):
         return np.asarray(np.linalg.norm(off, axis=2).ravel())
 
     def curve(self, used: Used) -> PlacesCurve:
-        way, taken = (used.placing.put(used.points(self.numbers, q)) for q in (used.way, used.stations))
+        both = used.poses, used.station_poses
+        path, taken = (used.placing.put(used.points(self.numbers, q)) for q in both)
         errors = np.linalg.norm(taken[:, 0] - self.places[:, 0], axis=1)
         frames = (self.places, taken) if len(self._seen) > 1 else None
-        return PlacesCurve(way[:, 0], self.places[:, 0], errors, frames)
+        return PlacesCurve(path[:, 0], self.places[:, 0], errors, frames)
 
 
 def frame_ends(arm: float) -> list[Three]:

@@ -5,7 +5,7 @@ three axes are off, h the half sides of the box and a the angle, a design must k
 
     |d_i| <= h_i,        sum |D_k|^2 <= 8 sin^2(a / 2)                                                  (1)
 
-since a turn by b moves the ends of the axes so that the squares of their ways are 8 sin^2(b / 2) together.
+since a turn by b moves the ends of the three axes by distances whose squares have the sum 8 sin^2(b / 2).
 """
 
 from __future__ import annotations
@@ -154,12 +154,16 @@ class _PoseAtResiduals(PlacesWanted):
     def __init__(self, loop: TaskLoop, want: PoseAtWant) -> None:
         self._want, self._length = want, loop.linkage.length_unit
         unit, turn = max(want.within), want.turn
-        # an end of an axis as long as this goes by the unit when the frame turns by the angle
+        # the end of an axis of this length moves by the unit when the frame turns by the angle
         self._arm = unit if turn is None else unit / (2 * math.sin(turn / 2))
         count = 1 if turn is None else 4
         seen = [(want.link, end) for end in frame_ends(self._arm)[:count]]
         places = frame_places(want.pose[None], self._arm)[:, :count]
         super().__init__(loop, want, seen, places, np.array([want.input]))
+
+    def _axes_off(self, places: Floats) -> Floats:
+        """What the frame's axes (3, 3) are off, from the places of its origin and the ends of its axes."""
+        return np.asarray((places[1:] - places[0] - (self.places[0, 1:] - self.places[0, 0])) / self._arm)
 
     def bound(self, here: Here) -> Bound:
         places, by = here.points[0, self.numbers], here.points_by[0, self.numbers]
@@ -168,11 +172,10 @@ class _PoseAtResiduals(PlacesWanted):
         off, off_by = axes.T @ (places[0] - self.places[0, 0]), axes.T @ by[0]
         slack = np.concatenate([half - off, half + off]) / self.unit
         slack_by = np.concatenate([-off_by, off_by]) / self.unit
-        missed, asked = _in_words(off), _in_words(half)
-        missed, asked = f"{missed} {self._length}", f"{asked} {self._length}"
+        missed, asked = (f"{_in_words(part)} {self._length}" for part in (off, half))
         if self._want.turn is not None:
             # (1)
-            axes_off = (places[1:] - places[0] - (self.places[0, 1:] - self.places[0, 0])) / self._arm
+            axes_off = self._axes_off(places)
             axes_by = (by[1:] - by[0]) / self._arm
             most = 8 * math.sin(self._want.turn / 2) ** 2
             slack = np.append(slack, 1 - float((axes_off**2).sum()) / most)
@@ -182,12 +185,12 @@ class _PoseAtResiduals(PlacesWanted):
         return Bound(slack, slack_by, f"the pose is off by {missed} along its axes, at most {asked} is asked")
 
     def facts(self, used: Used) -> Sequence[Fact]:
-        places = used.points(self.numbers, used.stations)[0]
+        places = used.points(self.numbers, used.station_poses)[0]
         off = float(np.linalg.norm(places[0] - self.places[0, 0]))
         result = [Fact("off", self._length, off, tabled=True)]
         if self._want.turn is not None:
-            axes_off = (places[1:] - places[0] - (self.places[0, 1:] - self.places[0, 0])) / self._arm
-            result.append(Fact("turned", "deg", math.degrees(_turned(axes_off)), tabled=True))
+            angle = math.degrees(_turned(self._axes_off(places)))
+            result.append(Fact("turned", "deg", angle, tabled=True))
         return result
 
 

@@ -91,7 +91,7 @@ class ReadingsWanted(Wanted):
 
     def curve(self, used: Used) -> ReadingsCurve:
         first, second = self.shown_zeros(used)
-        x, y = used.inputs - first, used.way[:, self._column] - second
+        x, y = used.inputs - first, used.poses[:, self._column] - second
         if used.loop.numbers.turns[used.loop.input]:
             # on the turn of the readings
             x = x - math.tau * np.round((x[0] - self.inputs[0]) / math.tau)

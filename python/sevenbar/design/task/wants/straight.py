@@ -158,17 +158,17 @@ class LineWanted(Wanted):
         return used.points(self.numbers, q)[:, 0]
 
     def facts(self, used: Used) -> Sequence[Fact]:
-        p = self._taken(used, used.way)
+        p = self._taken(used, used.poses)
         first, last = farthest(p)
         travel = float(np.linalg.norm(p[last] - p[first]))
         return (Fact("travel", self._length_unit, travel, tabled=True),)
 
     def curve(self, used: Used) -> PlacesCurve:
-        taken = self._taken(used, used.stations)
+        taken = self._taken(used, used.station_poses)
         begin, line = used.u[:3], used.u[3:] - used.u[:3]
         along = (taken - begin) @ line / float(line @ line)
         wanted = begin + along[:, None] * line
-        return PlacesCurve(self._taken(used, used.way), wanted, np.linalg.norm(taken - wanted, axis=1))
+        return PlacesCurve(self._taken(used, used.poses), wanted, np.linalg.norm(taken - wanted, axis=1))
 
 
 def farthest(p: Floats) -> tuple[int, int]:
