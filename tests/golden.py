@@ -134,7 +134,9 @@ def printed(*words):
     """How a command ends, and what it prints."""
     os.environ["COLUMNS"] = "80"
     run = sevenbar(*words, cwd=ROOT)
-    return f"exit {run.returncode}\n{run.stdout}{run.stderr}".replace(sb.__version__, "VERSION")
+    text = f"exit {run.returncode}\n{run.stdout}{run.stderr}".replace(sb.__version__, "VERSION")
+    # parts of sweeps hold the version, so their checksums do
+    return re.sub(r'"checksum": "[0-9a-f]+"', '"checksum": "OF VERSION"', text)
 
 
 def solved(table, words):
