@@ -39,6 +39,7 @@ def test_points_are_pulled_and_a_pull_is_one_step(tmp_path):
     client, tab = visited(server)
     assert handles(client) == []
     client.put("step samples", "+10")
+    client.until(lambda: tab.session.row == 10.0)
     client.put("drag points", True)
     client.until(lambda: handles(client) == ["joint_0", "joint_1", "joint_2", "joint_3"])
     assert tab.session.row == 0.0, "it is shown as drawn"
