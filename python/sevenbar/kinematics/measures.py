@@ -67,7 +67,7 @@ class Measure:
 
     def __reduce__(self) -> tuple[Callable[..., Measure], tuple[Any, ...]]:
         """Pickled by its name, since the functions of `MEASURES` have none; a caller's with its function."""
-        if _NAMED.get(self.name) is self or self.name.partition(":")[0] in OF_JOINTS:
+        if NAMED.get(self.name) is self or self.name.partition(":")[0] in OF_JOINTS:
             return _measure, (self.name,)
         return Measure, (self.name, self.per, self.quantity, self.value, self.title, self.bounds, self.family)
 
@@ -258,7 +258,7 @@ DERIVED_MEASURES: dict[str, Measure] = _by_name(
 )
 
 #: All of these.
-_NAMED = MEASURES | FORCE_MEASURES | EXTENT_MEASURES | DERIVED_MEASURES
+NAMED = MEASURES | FORCE_MEASURES | EXTENT_MEASURES | DERIVED_MEASURES
 
 #: A measure of a joint, as in range:rocker: quantity, value, title.
 OfJoint = tuple[Quantity, Callable[[Circuit, str], float | None], str]
@@ -316,7 +316,7 @@ def family_of(name: str) -> Family:
     kind = name.partition(":")[0]
     if kind in OF_JOINTS:
         return "forces" if kind in JOINT_MEASURES else "extents"
-    return _NAMED[name].family if name in _NAMED else "motion"
+    return NAMED[name].family if name in NAMED else "motion"
 
 
 def is_of_forces(name: str) -> bool:
@@ -354,8 +354,8 @@ def measures_named(given: Iterable[str | Measure | Callable[[Motion], float]]) -
 def _measure(given: object) -> Measure:
     if isinstance(given, Measure):
         return given
-    if isinstance(given, str) and given in _NAMED:
-        return _NAMED[given]
+    if isinstance(given, str) and given in NAMED:
+        return NAMED[given]
     of_joint = _of_joint(given) if isinstance(given, str) else None
     if of_joint is not None:
         return of_joint
@@ -363,7 +363,7 @@ def _measure(given: object) -> Measure:
         name = getattr(given, "__name__", "measure").strip("<>")
         about = (getattr(given, "__doc__", None) or name).splitlines()[0]
         return Measure(name, "linkage", "ratio", given, about)
-    known = [*_NAMED, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
+    known = [*NAMED, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
     raise RequestError(
         f"measure: {shown(given)} is not a measure; {suggestion(given, known)}"
         f"give some of {', '.join(known)}, or a function of the Motion"

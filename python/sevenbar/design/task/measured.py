@@ -16,12 +16,9 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import (
-    DERIVED_MEASURES,
-    EXTENT_MEASURES,
-    FORCE_MEASURES,
     JOINT_EXTENTS,
     JOINT_MEASURES,
-    MEASURES,
+    NAMED,
     OF_JOINTS,
     circuit_gradient,
     circuit_mass_gradient,
@@ -160,9 +157,8 @@ def measure_flaw(linkage: Linkage, name: str) -> str:
     try:
         (measure,) = measures_named([name])
     except RequestError:
-        numbers = [n for n, m in MEASURES.items() if m.quantity != "word"]
-        others = [*FORCE_MEASURES, *EXTENT_MEASURES, *DERIVED_MEASURES]
-        known = [*numbers, *others, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
+        numbers = [n for n, m in NAMED.items() if m.quantity != "word"]
+        known = [*numbers, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
         return f"{shown(name)} is not a measure; {suggestion(name, known)}give one of {', '.join(known)}"
     if measure.quantity == "word":
         return f"'{name}' is a word, not a number; give limits.motion_type"

@@ -317,11 +317,11 @@ class TaskProblem:
         slacks = self._slacks(z, here, list(zip(each, each_by, strict=True))) + bounds
         slacks.append(("figure", *figures[1]))
         least: dict[str, float] = {"figure": math.inf}
-        for fault, own_slack, _ in slacks:
-            least[fault] = min(least.get(fault, math.inf), float(own_slack.min(initial=math.inf)))
+        for fault, fault_slack, _ in slacks:
+            least[fault] = min(least.get(fault, math.inf), float(fault_slack.min(initial=math.inf)))
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
         residuals = np.concatenate([*(w * r for w, r in zip(weights, each, strict=True)), figures[0][0]])
-        slack = np.concatenate([own_slack for _, own_slack, _ in slacks])
+        slack = np.concatenate([fault_slack for _, fault_slack, _ in slacks])
         residuals_by, slack_by = np.empty((len(residuals), 0)), np.empty((len(slack), 0))
         if slopes:
             by_all = (w * r for w, r in zip(weights, each_by, strict=True))

@@ -172,13 +172,13 @@ class SampledWant(Want):
         unit = shown_in(linkage, linkage.drive.output) if self.of_output else (linkage.length_unit, 1.0)
         return f"want_{place + 1}_greatest", *unit
 
-    def exact_flaws(self, task: DesignTask, conditions: int, own_free: int) -> Flaws:
-        """More conditions to be met exactly than free numbers; `own_free` are those of the want itself."""
+    def exact_flaws(self, task: DesignTask, conditions: int, want_free: int) -> Flaws:
+        """More conditions to be met exactly than free numbers; `want_free` are those of the want itself."""
         place = next(i for i, other in enumerate(task.wants) if other is self)
         bounds = (must for must in task.musts if isinstance(must, ResidualMust))
         if not any(must.want == place and must.most <= EXACT for must in bounds):
             return
-        count = len(task.free) + own_free
+        count = len(task.free) + want_free
         if conditions > count:
             yield (
                 "exact",

@@ -104,26 +104,24 @@ def poses(linkage: Loop, q: Floats) -> Floats:
     That of the ground, the last link, is the report frame itself.
     """
     now = np.broadcast_to(linkage.base, (len(q), 4, 4))
-    result = []
-    for joint, own, link in zip(linkage.joints[:-1], linkage.places[:-1], linkage.links, strict=True):
-        result.append(now @ joint.motion(q[:, own]))
-        now = product(result[-1], link)
-    return np.stack([*result, _standing(q)], axis=1)
-
-
-def _standing(q: Floats) -> Floats:
-    return np.broadcast_to(np.eye(4), (len(q), 4, 4))
+    result = np.empty((len(q), len(linkage.joints), 4, 4))
+    for i, link in enumerate(linkage.links):
+        frame = now @ linkage.joints[i].motion(q[:, linkage.places[i]])
+        result[:, i] = frame
+        now = product(frame, link)
+    result[:, -1] = np.eye(4)
+    return result
 
 
 def _poses_back(linkage: Loop, q: Floats) -> Floats:
     """The same by the joints after each link, from the ground back."""
     now = linkage.ground @ inverse(linkage.joints[-1].motion(q[:, linkage.places[-1]]))
-    result = []
-    last = len(linkage.links) - 1
-    for i in range(last, -1, -1):
-        result.append(now @ inverse(linkage.links[i]))
-        now = result[-1] @ inverse(linkage.joints[i].motion(q[:, linkage.places[i]]))
-    return np.stack([*result[::-1], _standing(q)], axis=1)
+    result = np.empty((len(q), len(linkage.joints), 4, 4))
+    result[:, -1] = np.eye(4)
+    for i in reversed(range(len(linkage.links))):
+        result[:, i] = frame = now @ inverse(linkage.links[i])
+        now = frame @ inverse(linkage.joints[i].motion(q[:, linkage.places[i]]))
+    return result
 
 
 def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
