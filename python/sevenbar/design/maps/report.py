@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from rich.console import RenderableType
 
 from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map, NearestChange
@@ -18,8 +17,7 @@ from sevenbar.design.maps.figures import draw
 from sevenbar.design.maps.heights import Heights
 from sevenbar.reporting.files import Report, Write, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
-from sevenbar.reporting.page import Facts, number_table, opening, page
-from sevenbar.text.printing import text_of
+from sevenbar.reporting.page import Facts, Page, number_table, page, prints_its_page
 from sevenbar.text.words import say
 
 
@@ -98,7 +96,7 @@ def _heights_dict(of: Map, heights: Heights) -> dict[str, Any]:
     }
 
 
-def text(findings: MapFindings) -> RenderableType:
+def text(findings: MapFindings) -> Page:
     """What kinds there are, and how far the design is from each change, for people."""
     of, heights = findings.map, findings.heights
     x, y = of.axes
@@ -205,6 +203,4 @@ def _write_lines(
     write_csv(path, head, rows)
 
 
-@text_of.register(Map)
-def _(of: Map) -> str:
-    return opening("Map", text(MapFindings(of)))
+prints_its_page(Map, "Map", lambda of: text(MapFindings(of)))
