@@ -7,13 +7,13 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from rich.console import RenderableType
 
 from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.force_words import free_spin_facts
-from sevenbar.reporting.page import Facts, number_table, page
+from sevenbar.reporting.page import Facts, Page, facts_table, page
+from sevenbar.text.listed import named
 from sevenbar.text.printing import figure_of, lines, text_of
 from sevenbar.text.words import retold, say
 
@@ -139,7 +139,7 @@ def _(found: FreeMotion, **options: Any) -> Any:
     return free_figure(found, **options)
 
 
-def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
+def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> Page:
     fall, places = found
     facts = Facts()
     # of the equilibria, too
@@ -148,26 +148,27 @@ def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
         for link, most in fall.spin.items()
     }
     facts.add_all([*free_spin_facts(spin), *free_facts(fall)])
-    tables = []
-    stops = any(place.stop for place in places)
-    highest = max([abs(place.potential) for place in places], default=0.0)
-    if places:
-        rows = [
-            [
-                say(place.kind),
-                _place_text(place, fall),
-                _vibration(place),
-                f"{0.0 if abs(place.potential) <= ROUNDING * highest else place.potential:.9g}",
-                *([holding_text(place) if place.stop else ""] if stops else []),
-            ]
-            for place in places
-        ]
-        unit = "deg" if fall.input_turns else fall.length_unit
-        name = f"{fall.columns[fall.input_column]} [{unit}]"
-        head = ["equilibrium", name, "vibration [rad/s]", "potential [J]"]
-        head += ["held by its stop"] * stops
-        tables.append(number_table(head, rows, words=[0]))
+    rows = [_equilibrium(place, fall, places) for place in places]
+    tables = [facts_table(rows, words=[0])] if rows else []
     return page(say("free motion of {linkage}", linkage=fall.heading), facts, *tables)
+
+
+def _equilibrium(place: Equilibrium, fall: FreeMotion, places: Sequence[Equilibrium]) -> Facts:
+    """One of the equilibria of a circuit."""
+    row = Facts()
+    row.add("equilibrium", say(place.kind), kind=place.kind)
+    name = f"{fall.columns[fall.input_column]} [{'deg' if fall.input_turns else fall.length_unit}]"
+    row.add(name, _place_text(place, fall), input=place.input)
+    row.add("vibration [rad/s]", _vibration(place), frequency_rad_s=place.frequency)
+    row.also(rate_1_s=place.rate)
+    rounding = ROUNDING * max(abs(other.potential) for other in places)
+    potential = 0.0 if abs(place.potential) <= rounding else place.potential
+    row.add("potential [J]", f"{potential:.9g}", potential_J=place.potential)
+    row.also(until=place.until, idle_spin=dict(place.spin))
+    if any(other.stop for other in places):
+        held = named(place, "stop", "holding", "holding_unit") if place.stop else {}
+        row.add("held by its stop", holding_text(place) if place.stop else "", **held)
+    return row
 
 
 def _place_text(place: Equilibrium, fall: FreeMotion) -> str:
@@ -205,29 +206,13 @@ def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]
         ],
         "rests_from_s": None if fall.rest is None else fall.rests_from,
         "rest": None if fall.rest is None else _rest_dict(fall.rest),
-        "equilibria": [
-            {
-                "kind": place.kind,
-                "input": place.input,
-                "frequency_rad_s": place.frequency,
-                "rate_1_s": place.rate,
-                "potential_J": place.potential,
-                "until": place.until,
-                "idle_spin": dict(place.spin),
-            }
-            | (_held_dict(place) if place.stop else {})
-            for place in places
-        ],
+        "equilibria": [_equilibrium(place, fall, places).as_dict for place in places],
     }
 
 
-def _held_dict(place: Equilibrium) -> dict[str, Any]:
-    """What holds an equilibrium on its stop."""
-    return {"stop": place.stop, "holding": place.holding, "holding_unit": place.holding_unit}
-
-
 def _rest_dict(place: Equilibrium) -> dict[str, Any]:
-    return {"input": place.input, "potential_J": place.potential} | _held_dict(place)
+    held = named(place, "stop", "holding", "holding_unit")
+    return {"input": place.input, "potential_J": place.potential} | held
 
 
 def free_report(formats: Sequence[str]) -> Report[tuple[FreeMotion, Sequence[Equilibrium]]]:

@@ -21,7 +21,7 @@ from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.extents import extents_dict
 from sevenbar.reporting.facts import closure_error, side_lengths
 from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures
-from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
+from sevenbar.reporting.files import Files, LongTable, Report, head_of, json_file, json_text, without_nan
 from sevenbar.reporting.force_peaks import peaks_dict
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.summary import summary
@@ -286,9 +286,7 @@ def _modes_dict(
     rates = [{} if pose is None else pose_dict(pose) for pose in own]
     drive = None if poses is None else {"speed": poses.speed, "acceleration": poses.acceleration}
     return {
-        "format": 1,
-        "linkage": {"name": linkage.name, "kind": linkage.kind},
-        "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
+        **head_of(linkage),
         "input": {"joint": linkage.columns[column], "value": modes.input},
         "drive": drive,
         "completeness": modes.completeness,

@@ -15,7 +15,7 @@ from sevenbar.arrays import Floats, counted
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.kinematics.loop.screw_axes import ScrewAxes
-from sevenbar.reporting.files import Report, columns_file, json_file
+from sevenbar.reporting.files import Report, columns_file, head_of, json_file
 from sevenbar.reporting.page import number_table
 from sevenbar.reporting.shown import drive_text
 
@@ -80,9 +80,7 @@ def _ranges(axes: ScrewAxes) -> dict[str, tuple[float, float] | None]:
 def _as_dict(links: Sequence[int], relative_to: int | None, motion: Motion) -> dict[str, Any]:
     linkage = motion.linkage
     return {
-        "format": 1,
-        "linkage": {"name": linkage.name, "kind": linkage.kind},
-        "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
+        **head_of(linkage),
         "relative_to": linkage.graph.ground if relative_to is None else relative_to,
         "circuits": [
             {
