@@ -302,7 +302,9 @@ def _parameter_table(calibration: Calibration) -> Table:
         follows = p.status == "follows"
         if p.status == "calibrated" or follows:
             reach = _shown(p, (p.high - p.low) / 2)
-            digits = EXACT_DIGITS if calibration.exact else _digits(reach)
+            # two digits of the interval
+            shown = reach > 0 and not calibration.exact
+            digits = min(max(1 - math.floor(math.log10(reach)), 0), 12) if shown else EXACT_DIGITS
             plus_minus = say("exact") if calibration.exact else f"{reach:.{digits}f}"
             change = f"{value - nominal:+.{digits}f}"
             cells = [f"{value:.{digits}f}", plus_minus, change, say("follows") if follows else ""]
@@ -311,13 +313,6 @@ def _parameter_table(calibration: Calibration) -> Table:
             cells = [f"{value:.6g}", "-", "-", say(note)]
         rows.append((label, f"{nominal:.6g}", *cells))
     return number_table(heads, rows, words=[5])
-
-
-def _digits(reach: float) -> int:
-    """Decimals that show two digits of an interval."""
-    if not reach > 0:
-        return EXACT_DIGITS
-    return min(max(1 - math.floor(math.log10(reach)), 0), 12)
 
 
 def _parameter_unit(parameter: Parameter, ends: Ends) -> str:

@@ -49,7 +49,8 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
     name = found.columns[found.input_column]
 
     way = math.tau if found.input_turns else float(np.nanmax(np.abs(found.input)))
-    fastest = _fastest(found)
+    # compared with which others may be rounding
+    fastest = float(np.abs(found.speed[np.isfinite(found.speed)]).max(initial=0.0))
 
     def value(x: float) -> str:
         return _angle(float(x), turns=found.input_turns, unit=found.length_unit, scale=way)
@@ -81,12 +82,6 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
     if found.through_change_points:
         facts.append((say("note"), say("it passes change points along the circuit's smooth continuation")))
     return facts
-
-
-def _fastest(found: FreeMotion) -> float:
-    """The greatest speed of the input on the rows, compared with which others may be rounding."""
-    known = np.abs(found.speed[np.isfinite(found.speed)])
-    return float(known.max()) if known.size else 0.0
 
 
 def _stop_facts(
@@ -189,6 +184,10 @@ def _vibration(place: Equilibrium) -> str:
 def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]:
     """A free motion and the equilibria of its circuit as plain values, in SI units and radians."""
     fall, places = found
+    rest: dict[str, Any] | None = None
+    if fall.rest is not None:
+        rest = {"input": fall.rest.input, "potential_J": fall.rest.potential}
+        rest |= named(fall.rest, "stop", "holding", "holding_unit")
     return {
         "kind": fall.kind,
         "period_s": fall.period,
@@ -205,14 +204,9 @@ def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]
             for one in fall.impacts
         ],
         "rests_from_s": None if fall.rest is None else fall.rests_from,
-        "rest": None if fall.rest is None else _rest_dict(fall.rest),
+        "rest": rest,
         "equilibria": [_equilibrium(place, fall, places).as_dict for place in places],
     }
-
-
-def _rest_dict(place: Equilibrium) -> dict[str, Any]:
-    held = named(place, "stop", "holding", "holding_unit")
-    return {"input": place.input, "potential_J": place.potential} | held
 
 
 def free_report(formats: Sequence[str]) -> Report[tuple[FreeMotion, Sequence[Equilibrium]]]:

@@ -260,11 +260,14 @@ def modes_report(
     With `poses`, which has their rates, also these, printed or not; `limit` is the nearest value of the
     column up to which the loop closes, where it does not close at this one.
     """
-    return Report(
-        partial(_modes_text, linkage, column, poses if rates else None, limit),
-        partial(_modes_dict, linkage, column, poses, limit),
-        spoken=True,
-    )
+
+    def text(modes: Modes) -> RenderableType:
+        # rich takes a while to load, and JSON does without it
+        from sevenbar.reporting.printed import modes_page
+
+        return modes_page(linkage, column, modes, poses if rates else None, limit)
+
+    return Report(text, partial(_modes_dict, linkage, column, poses, limit), spoken=True)
 
 
 def modes_json(linkage: Solvable, modes: Modes, column: int) -> str:
@@ -301,12 +304,3 @@ def _modes_dict(
         ],
         "nearest_limit": limit,
     }
-
-
-def _modes_text(
-    linkage: Solvable, column: int, poses: PosesAt | None, limit: float | None, modes: Modes
-) -> RenderableType:
-    # rich takes a while to load, and JSON does without it
-    from sevenbar.reporting.printed import modes_page
-
-    return modes_page(linkage, column, modes, poses, limit)
