@@ -115,6 +115,15 @@ _SHAPES: Mapping[ShapeName, Shape] = {
             JointSolid("cylinder", "last", 1.5, 1.4),
         ),
     ),
+    "slot": Shape(
+        ("cylinder",), 0.032,
+        {"marker": "s", "ms": 7, "mfc": "white", "mew": 2.2},
+        solids=(
+            JointSolid("cylinder", "first", 1.5, 0.4, "steel", reaches=True),
+            JointSolid("cylinder", "last", 0.7, 1.4),
+        ),
+        margins=(0.4, 0.6),
+    ),
 }  # fmt: skip
 
 #: Half the height of a hinge, as a share of the linkage's extent.

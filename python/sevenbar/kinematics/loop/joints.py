@@ -22,7 +22,7 @@ from typing import Literal
 Freedom = Literal["turn", "slide"]
 
 #: What a joint is drawn and built as; `drawing.joint_shapes` has each.
-ShapeName = Literal["cylinder", "block", "thread", "arm", "ball", "plate"]
+ShapeName = Literal["cylinder", "block", "thread", "arm", "ball", "plate", "slot"]
 
 #: The axes of a frame.
 X, Y, Z = 0, 1, 2
@@ -216,6 +216,16 @@ KINDS: Mapping[str, JointKind] = {
             "E", "slides in a plane", ("planar", "plane", "flat"),
             (Step("slide", X), Step("slide", Y), _TURN), _AXIS, "plate", "planar",
             as_rows="P, P and R, the slides square to each other and to the turn",
+        ),
+        JointKind(
+            "K", "pin in a slot", ("pin in slot", "pin in a slot", "pin slot", "slot", "slotted"),
+            (Step("slide", Y), _TURN), ("axes",), "slot", "planar",
+            as_rows="P and R, the slide square to the turn",
+        ),
+        JointKind(
+            "L", "slot on a pin", ("slot on pin", "slot on a pin"),
+            (_TURN, Step("slide", Y)), ("axes",), "slot", "planar",
+            as_rows="R and P, the slide square to the turn",
         ),
     )
 }  # fmt: skip
