@@ -29,6 +29,8 @@ def drawn(kinds, seed):
             joint["axis"] = rng.normal(size=3)
         if kind in "UKL":
             joint["axes"] = rng.normal(size=(2, 3))
+        if kind in "KL":
+            joint["axes"][0] = np.cross(*joint["axes"])
         if kind == "H":
             joint["pitch"] = PITCH
         joints.append(joint)
