@@ -13,6 +13,7 @@ from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.force_words import free_spin_facts
 from sevenbar.reporting.page import Facts, Page, facts_table, page
+from sevenbar.reporting.shown import REST
 from sevenbar.text.listed import named
 from sevenbar.text.printing import figure_of, lines, text_of
 from sevenbar.text.words import retold, say
@@ -30,17 +31,13 @@ GOES_ON = {
     "on its stop": "ends at rest on a stop",
 }
 
-#: Speeds below this part of the greatest [1], and angles [deg] and lengths below this part of a turn, or of
-#: the way that the rows go, are rounding in words.
-ROUNDING = 1e-12
-
 #: Stops met that are listed.
 MOST_MET = 4
 
 
 def _angle(value: float, *, turns: bool, unit: str, scale: float = 0.0) -> str:
     """A value with its unit; what is rounding compared with a `scale` is 0."""
-    value = 0.0 if abs(value) <= ROUNDING * scale else value
+    value = 0.0 if abs(value) <= REST * scale else value
     return f"{math.degrees(value):.9g} deg" if turns else f"{value:.9g} {unit}"
 
 
@@ -156,7 +153,7 @@ def _equilibrium(place: Equilibrium, fall: FreeMotion, places: Sequence[Equilibr
     row.add(name, _place_text(place, fall), input=place.input)
     row.add("vibration [rad/s]", _vibration(place), frequency_rad_s=place.frequency)
     row.also(rate_1_s=place.rate)
-    rounding = ROUNDING * max(abs(other.potential) for other in places)
+    rounding = REST * max(abs(other.potential) for other in places)
     potential = 0.0 if abs(place.potential) <= rounding else place.potential
     row.add("potential [J]", f"{potential:.9g}", potential_J=place.potential)
     row.also(until=place.until, idle_spin=dict(place.spin))

@@ -17,10 +17,7 @@ from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.kinematics.loop.screw_axes import ScrewAxes
 from sevenbar.reporting.files import Report, columns_file, head_of, json_file
 from sevenbar.reporting.page import number_table
-from sevenbar.reporting.shown import drive_text
-
-#: A pitch or slide rate below this share of the size, or of the fastest turn of the size, is printed as 0.
-ROUNDING = 1e-12
+from sevenbar.reporting.shown import REST, drive_text
 
 #: The file with every row.
 TABLE = "axodes.csv"
@@ -106,7 +103,7 @@ def _text(links: Sequence[int], relative_to: int | None, motion: Motion) -> Rend
             ranges = _ranges(axes)
             fastest = circuit.size * max(ranges["rate"] or (0.0,))
             scale = {"pitch": circuit.size, "rate": 0.0, "slide_rate": fastest}
-            cells = [_range(ranges[name], ROUNDING * size) for name, size in scale.items()]
+            cells = [_range(ranges[name], REST * size) for name, size in scale.items()]
             words = ", ".join(f"{n} {word}" for word, n in counted(axes.status).items())
             rows.append((f"{link}", f"{circuit.index}", words, *cells))
     title = Text(linkage.heading, style="bold underline")

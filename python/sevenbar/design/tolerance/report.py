@@ -116,17 +116,11 @@ def tolerance_report(figures: Sequence[str] = ("png",)) -> Report[Findings]:
 
 def _dimensions(findings: Findings) -> dict[str, Any]:
     linear = findings.linear
-    effects = linear.effects
-    greatest = linear.shown([effect.greatest for effect in effects])
-    return {
-        "dimension": [effect.dimension.name for effect in effects],
-        "unit": [effect.dimension.unit for effect in effects],
-        "value": [effect.dimension.value for effect in effects],
-        "tolerance": [effect.width for effect in effects],
-        "from": [effect.source for effect in effects],
-        f"greatest_effect_{_suffix(linear)}": greatest,
-        "share_of_variance": [effect.share for effect in effects],
-    }
+    greatest = f"greatest_effect_{_suffix(linear)}"
+    heads = {"name": "dimension", "greatest_effect": greatest}
+    rows = [_effect(linear, effect).as_dict for effect in linear.effects]
+    columns = {heads.get(key, key): [row[key] for row in rows] for key in rows[0] if key != "at_input"}
+    return columns | {greatest: linear.shown(columns[greatest])}
 
 
 def _deviation(findings: Findings) -> dict[str, Any]:
