@@ -57,6 +57,8 @@ def test_curves_of_forces_are_the_circuits_forces_read_at_the_ticks() -> None:
     wanted = {
         "input torque": forces.torque,
         "power": forces.power,
+        "kinetic energy": forces.kinetic,
+        "potential energy": forces.potential,
         "shaking force": np.linalg.norm(forces.shaking[:, 3:], axis=1),
         "rocker force": np.linalg.norm(rocker.force_in_report, axis=1),
         "rocker radial force": np.linalg.norm(rocker.force[:, :2], axis=1),
@@ -138,7 +140,7 @@ def test_without_bodies_nothing_is_offered_and_nothing_computed(monkeypatch: pyt
     # and with bodies before a curve of forces is chosen
     loaded = opened("rssr_press")
     assert loaded.view is not None
-    assert len(offered(loaded)) == 9
+    assert len(offered(loaded)) == 11
     loaded.change(("rssr", "M"), 690.0)
     panels(loaded.views, quantities(loaded.view.motion)[:3], 0)
 

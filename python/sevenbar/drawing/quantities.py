@@ -92,6 +92,10 @@ def _is_transmitted(motion: Motion) -> bool:
     return bool(motion.circuits) and coupling_of(motion.linkage, *ends) is not None
 
 
+def _has_mass(loading: Loading) -> bool:
+    return any(loading.bodies.values())
+
+
 def _size(vectors: Floats) -> Floats:
     sizes: Floats = np.linalg.norm(vectors, axis=-1)
     return sizes
@@ -113,14 +117,15 @@ MOTION: Final[tuple[Row[TimedWalk], ...]] = (
     ),
 )  # fmt: skip
 
-#: Of the forces along it. They count as of the second order: like accelerations, they grow without bound at
+#: Of the forces along it. Most count as of the second order: like accelerations, they grow without bound at
 #: dead centres.
 FORCES: Final[tuple[Row[Forces], ...]] = (
     Row(Loading, "input torque", "N m", 2, lambda f, _: f.torque, sliding=("input force", "N")),
     Row(Loading, "power", "W", 2, lambda f, _: f.power, turned=True),
+    Row(Loading, "kinetic energy", "J", 2, lambda f, _: f.kinetic, is_size=True, where=_has_mass),
+    Row(Loading, "potential energy", "J", 0, lambda f, _: f.potential),
     Row(
-        Loading, "shaking force", "N", 2, lambda f, _: _size(f.shaking[:, 3:]), is_size=True,
-        where=lambda loading: any(loading.bodies.values()),
+        Loading, "shaking force", "N", 2, lambda f, _: _size(f.shaking[:, 3:]), is_size=True, where=_has_mass
     ),
     Row(Joint, "force", "N", 2, lambda f, joint: _size(f.reactions[joint.name].force), is_size=True),
     # a ball has no axis
@@ -366,7 +371,7 @@ def _natural_force(forces: Forces, unit: str, size: float) -> float:
     if unit == "W":
         speed = float(np.nanmax(np.abs(forces.speed), initial=0.0))
         return force * arm * speed * (metre if forces.slides else 1.0)
-    return force * (arm if unit == "N m" else 1.0)
+    return force * {"N m": arm, "J": size * metre}.get(unit, 1.0)
 
 
 def _greatest(reaction: Reaction) -> Floats:
