@@ -14,8 +14,8 @@ from sevenbar.errors import RequestError
 
 EXACT = 1e-12
 
-KINDS = "RPHCUSE"
-FREEDOMS = {"R": 1, "P": 1, "H": 1, "C": 2, "U": 2, "S": 3, "E": 3}
+KINDS = "RPHCUSEKL"
+FREEDOMS = {"R": 1, "P": 1, "H": 1, "C": 2, "U": 2, "S": 3, "E": 3, "K": 2, "L": 2}
 PITCH = -0.7
 
 
@@ -27,8 +27,10 @@ def drawn(kinds, seed):
         joint = {"kind": kind, "name": f"j{i + 1}", "at": rng.normal(size=3)}
         if kind in "RPHCE":
             joint["axis"] = rng.normal(size=3)
-        if kind == "U":
+        if kind in "UKL":
             joint["axes"] = rng.normal(size=(2, 3))
+        if kind in "KL":
+            joint["axes"][0] = np.cross(*joint["axes"])
         if kind == "H":
             joint["pitch"] = PITCH
         joints.append(joint)
@@ -74,6 +76,13 @@ def displacement(joints, end, value):
             towards = joints[-2 if last else 1]["at"] - joint["at"]
             x = unit(towards - (towards @ z) * z)
             return turn(z, value(3)), value(1) * x + value(2) * np.cross(z, x)
+        case "K" | "L" as kind:
+            # the first axis is held by the link before, the second by the link after
+            slot, pin = (unit(axis) for axis in joint["axes"][:: 1 if kind == "K" else -1])
+            slide, angle = (value(k) for k in ((1, 2) if kind == "K" else (2, 1)))
+            along, rotation = unit(slot - (slot @ pin) * pin), turn(pin, angle)
+            # a slot of the ground stands still
+            return rotation, slide * (along if (kind == "K") != last else rotation @ along)
 
 
 def placed(joints, end, columns, q, marks):

@@ -155,6 +155,10 @@ class Loop:
                 case "E":
                     rates = [(0.0, 1.0), (0.0, 1.0), (1.0, 0.0)]
                     front, between = _Z_TO_X, [_Z_TO_X.T @ _Z_TO_Y, _Z_TO_Y.T]
+                case "K":
+                    rates, front, between = [(0.0, 1.0), (1.0, 0.0)], _Z_TO_Y, [_Z_TO_Y.T]
+                case "L":
+                    rates, between, back = [(1.0, 0.0), (0.0, 1.0)], [_Z_TO_Y], _Z_TO_Y.T
                 case "S":
                     rates, between = [(1.0, 0.0)] * 3, [_Z_TO_Y, _Z_TO_Y.T @ _Z_TO_X]
                     back = _Z_TO_X.T

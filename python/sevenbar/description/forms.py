@@ -44,6 +44,8 @@ Numbers = Sequence[float | str | None] | npt.NDArray[np.float64] | Any
 
 #: Below this share of the size of a drawn pose a link has no length.
 NO_LENGTH = 1e-12
+#: A slot this far from square to its pin [rad] is refused; of one that is closer the share across it counts.
+ASLANT = 1e-3
 
 
 @ends_here
@@ -441,7 +443,7 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
     names, kinds = zip(*form.joints, strict=True)
     rssr = "".join(kinds) == "RSSR"
     problems = _coincident(drawn, names) if rssr else _coincident_balls(drawn)
-    if problems := problems or _too_short(drawn):
+    if problems := problems or _slots_aslant(drawn) or _too_short(drawn):
         raise DescriptionError(problems, source)
     last = len(drawn) - 1
     joints = tuple(
@@ -476,6 +478,21 @@ def _too_short(drawn: Sequence[JointForm]) -> list[Problem]:
         elif not length + joint.longer > NO_LENGTH * size:
             message = f"{joint.longer:g} leaves nothing of link {i + 1}; give more than {-length:g}"
             problems.append(Problem(place, message))
+    return problems
+
+
+def _slots_aslant(drawn: Sequence[JointForm]) -> list[Problem]:
+    """Slots that do not run across their pins."""
+    problems = []
+    for i, joint in enumerate(drawn, 1):
+        if joint.axes and KINDS[joint.kind].has_slot:
+            apart = _between(*joint.axes)
+            if abs(apart - math.pi / 2) > ASLANT:
+                message = (
+                    f"{shown([list(axis) for axis in joint.axes])} are {math.degrees(apart):.3g} deg apart; "
+                    "a slot is square to its pin"
+                )
+                problems.append(Problem(f"joint[{i}].axes", message))
     return problems
 
 

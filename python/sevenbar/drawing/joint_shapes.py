@@ -53,7 +53,8 @@ class Shape:
     In figures: the words of its `marks`; `half` their length along the axis, as a share of the linkage's
     extent, 0 for a mark at a point; its marker `legend`, and `legend_flat` where it is seen along its axis.
     In the studio: its `solids`; where it slides the `slider`, a mesh with its sizes across and along, in
-    units of thickness. In exports: the `seats` that its hubs may have, and whether they are `square`.
+    units of thickness. A plate or a slot is drawn wider than it slides, by shares `margins` along x and y.
+    In exports: the `seats` that its hubs may have, and whether they are `square`.
     """
 
     marks: tuple[str, ...]
@@ -64,6 +65,7 @@ class Shape:
     slider: tuple[str, float, float] = ("box", 1.9, 5.0)
     seats: tuple[Seat, ...] = tuple(Seat(side, shift) for side, shift in product((1, -1), SHIFTS))
     square: bool = False
+    margins: tuple[float, float] = (1.0, 1.0)
 
 
 #: The shape of each kind, by the word in its row.
@@ -112,6 +114,15 @@ _SHAPES: Mapping[ShapeName, Shape] = {
             JointSolid("cylinder", "first", 1.5, 0.4, "steel", reaches=True),
             JointSolid("cylinder", "last", 1.5, 1.4),
         ),
+    ),
+    "slot": Shape(
+        ("cylinder",), 0.032,
+        {"marker": "s", "ms": 7, "mfc": "white", "mew": 2.2},
+        solids=(
+            JointSolid("cylinder", "first", 1.5, 0.4, "steel", reaches=True),
+            JointSolid("cylinder", "last", 0.7, 1.4),
+        ),
+        margins=(0.4, 0.6),
     ),
 }  # fmt: skip
 

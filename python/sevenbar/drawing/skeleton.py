@@ -91,8 +91,9 @@ class Skeleton:
 
     @property
     def joints(self) -> tuple[int, ...]:
-        """The places of the joints, on the links after them."""
-        return tuple(after for _, after in self.feet)
+        """The places of the joints, on the links after them; of a slot that of its pin."""
+        joints = self.linkage.joints
+        return tuple(pair[not one.row.slot_on_after] for pair, one in zip(self.feet, joints, strict=True))
 
     @property
     def inner(self) -> dict[int, int]:
@@ -188,18 +189,21 @@ def skeleton_of(
 
         shape = shape_of(joint.row)
         if joint.row.has_plane:
-            # as wide as it slides
-            across = before[:, i, :3, :2]
-            slid = np.einsum("nij,ni->nj", across, far - near)
+            # as wide as it slides; a slot on the link after it runs under the pin on that before
+            base, pin, carrier = (far, near, after) if joint.row.slot_on_after else (near, far, before)
+            across = carrier[:, i, :3, :2]
+            slid = np.einsum("nij,ni->nj", across, pin - base)
             low, high = np.nanmin(slid, axis=0, initial=0.0), np.nanmax(slid, axis=0, initial=0.0)
             low, high = reach[i] = like.reach[i] if like else (low, high)
-            ends = np.stack([low - PLATE * span, high + PLATE * span])
+            margins = PLATE * span * np.array(shape.margins)
+            ends = np.stack([low - margins, high + margins])
             corners = [(ends[a, 0], ends[b, 1]) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]
-            marks.append((i, "axis", along(near + across @ ((low + high) / 2), first, AXIS)))
-            marks.append((i, "axis", along(far, second, AXIS)))
-            outline = tuple(add(near + across @ np.array(corner)) for corner in corners)
-            marks.append((i, joint.row.shape, outline))
-            marks += [(i, word, along(far, second, shape.half)) for word in shape.marks]
+            if joint.row.has_plate:
+                marks.append((i, "axis", along(near + across @ ((low + high) / 2), first, AXIS)))
+            marks.append((i, "axis", along(pin, second, AXIS)))
+            outline = tuple(add(base + across @ np.array(corner)) for corner in corners)
+            marks.append((i, "plate", outline))
+            marks += [(i, word, along(pin, second, shape.half)) for word in shape.marks]
             continue
         if joint.row.rides:
             slid = ((far - near) * first).sum(axis=1)
@@ -236,7 +240,7 @@ def skeleton_of(
     named = [""] * solid
     for i, joint in enumerate(linkage.joints):
         rides = graph.between[i][1] == graph.ground and joint.row.rides
-        named[feet[i][0 if rides else 1]] = joint_label(linkage, i)
+        named[feet[i][not (rides or joint.row.slot_on_after)]] = joint_label(linkage, i)
     for point, place in zip(points, carried, strict=True):
         add(place)
         named.append(short(point.name, 24))

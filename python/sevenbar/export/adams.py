@@ -16,8 +16,8 @@ from sevenbar.export.adams_file import AdamsColumn, CommandFile, number, word_of
 from sevenbar.export.adams_forces import add_forces
 from sevenbar.export.mass import MASSLESS, BodyMass, has_masses, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, foot_of, length_of
-from sevenbar.kinematics.loop.joints import KINDS
-from sevenbar.kinematics.loop.rigid import half_turn, inverse, placed
+from sevenbar.kinematics.loop.joints import KINDS, Y
+from sevenbar.kinematics.loop.rigid import about, half_turn, inverse, placed
 from sevenbar.kinematics.loop.rigid import pose as matrix
 from sevenbar.text.progress import Progress, silent
 
@@ -195,13 +195,27 @@ class _LinkageFile(CommandFile):
             # the file counts the link against the ground, so I and J change places and the axis turns round
             row, turned = KINDS[joint.kind], half_turn(joint.row.half_turn)
             j_side, i_side = ((body, frame @ turned) for body, frame in (i_side, j_side))
+        # the one slot of a joint is on its link, whichever of the two that is in the file
+        slot_on_i = row.has_slot and row.slot_on_after != joint.backwards
         result = self._connect(joint.row.adams, word, j_side, i_side)
+        if row.has_slot:
+            # a planar joint slides any way in its plane; a slot along y of its link holds the pin across it
+            (slotted, frame), (pinned, pin) = (i_side, j_side) if slot_on_i else (j_side, i_side)
+            self.say(
+                "constraint create primitive_joint inplane",
+                jprim_name=f"{self.model}.{word}_slot",
+                i_marker_name=self.marker(pinned, f"{word}_pin", pin),
+                j_marker_name=self.marker(slotted, f"{word}_across", frame @ about(Y, math.pi / 2, 4)),
+            )
         if joint.row.is_screw:
             # a screw joint ties the slide to the turn and nothing else; the cylindrical one holds the axis
             pitch = number(self.scale * joint.pitch)
             self._constrain("screw", f"{word}_thread", *result[1:], pitch=pitch)
         if not joint.row.is_ball:
-            self.columns |= {column: AdamsColumn(*result, step) for column, step in row.named(joint.name)}
+            along = result[1 if slot_on_i else 2]
+            self.columns |= {
+                column: AdamsColumn(*result, along, step) for column, step in row.named(joint.name)
+            }
 
     def _universal(self, i: int, word: str, j_side: Side, i_side: Side) -> None:
         joint = self.linkage.joints[i]
@@ -220,7 +234,8 @@ class _LinkageFile(CommandFile):
         for k, (column, step, sides) in enumerate(
             zip(joint.columns, joint.row.steps, sides_of_steps, strict=True), 1
         ):
-            self.columns[column] = AdamsColumn(*self._connect("revolute", f"{word}_{k}", *sides), step)
+            joined = self._connect("revolute", f"{word}_{k}", *sides)
+            self.columns[column] = AdamsColumn(*joined, joined[2], step)
 
     def _connect(self, kind: str, word: str, j_side: Side, i_side: Side) -> tuple[str, str, str]:
         """A joint between markers on two bodies; returns its name and those of the markers I and J."""

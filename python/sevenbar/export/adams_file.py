@@ -15,11 +15,12 @@ from sevenbar.text.units import LENGTHS
 
 @dataclass(frozen=True)
 class AdamsColumn:
-    """A column of a joint in the file: the joint, its markers I and J, and its step."""
+    """A column of a joint in the file: the joint, its markers I and J, that of its axis, and its step."""
 
     joint: str
     i: str
     j: str
+    along: str
     step: Step
 
     @property
@@ -33,7 +34,9 @@ class AdamsColumn:
         if self.turns and order == 0:
             return f"AZ({self.i}, {self.j})"
         word = (("", "W", "WDT") if self.turns else ("D", "V", "ACC"))[order]
-        return f"{word}{axis}({self.i}, {self.j}, {self.j})"
+        # the rate of a slide is seen from its axis
+        seen = [self.along] * (not self.turns and order > 0)
+        return f"{word}{axis}({', '.join([self.i, self.j, self.along, *seen])})"
 
 
 class CommandFile:

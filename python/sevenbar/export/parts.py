@@ -156,8 +156,9 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
             bodies.append(f"cross_{_word(joint.name)}")
             ends[i] = middles
         else:
-            # what is long stands on the ground where it can
-            way = 1 if graph.between[i][1] != graph.ground else -1
+            # what is long stands on the ground where it can, a slot on its link
+            grounded = graph.between[i][1] == graph.ground
+            way = -1 if (joint.row.slot_on_after if joint.row.has_slot else grounded) else 1
             pairs = (before, after)[::way], (pose.near[i], pose.far[i])[::way], feet[i][::way]
             carried = _Carried(*pairs, pose, i, seat, unit, way)
             shafts, middles = carried.plane() if joint.row.has_plane else carried.axial()
@@ -297,7 +298,7 @@ class _Carried(NamedTuple):
         return [square_bar if square else Rod(first, last, SHAFT * unit)], (carrier, sleeve)
 
     def plane(self) -> tuple[list[Solid], tuple[Floats, Floats]]:
-        """Disc and slipper of a joint E, parts of its links; returns no shaft, and where the arms end."""
+        """Disc, or bar of a slot, and slipper, parts of their links; returns no shaft, and the arms' ends."""
         pose, seat, unit, (frame, other) = self.pose, self.seat, self.unit, self.frames
         joint, own = pose.linkage.joints[self.i], pose.linkage.places[self.i]
         q = np.vstack([pose.circuit.q, pose.q])[:, own]
@@ -311,7 +312,15 @@ class _Carried(NamedTuple):
         up = unit * seat.side * other[:3, 2]
         face = slipper + seat.shift * unit * other[:3, 2] + GAP * up
         near, far = self.builds
-        near.add.append(Rod(top - DISC * unit * way, top, float(radius)))
+        if joint.row.has_plate:
+            near.add.append(Rod(top - DISC * unit * way, top, float(radius)))
+        else:
+            under = top - HUB * unit * way
+            near.add.append(
+                Bar(
+                    under - radius * frame[:3, 1], under + radius * frame[:3, 1], 2 * HUB * unit, frame[:3, 0]
+                )
+            )
         far.add.append(Rod(face, face + SLIPPER * up, HUB * unit))
         return [], (top - 0.5 * DISC * unit * way, face + 0.5 * SLIPPER * up)
 

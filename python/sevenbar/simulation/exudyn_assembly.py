@@ -101,7 +101,8 @@ class ExudynAssembly:
 
     def add_joint(self, joint: Connection) -> None:
         """Adds the constraints of a joint's kind; of a screw those of a cylinder, and one of its own."""
-        self._add_constraints(joint, [int(not free) for free in joint.row.free])
+        held = [int(not free) for free in joint.row.free]
+        self._add_constraints(joint, held, from_after=joint.row.slides_on_after)
         if not joint.row.is_screw:
             return
         turn = self.model.values[self.model.connections.index(joint), 5]
@@ -125,7 +126,7 @@ class ExudynAssembly:
         Exudyn slides along axes of its first body, so that the body after is first, and slides the other way.
         """
         joint, drive = self.model.connections[self.model.drive.connection], self.model.drive
-        return joint.row.has_plane and joint.backwards and not drive.turns
+        return joint.row.slides_on_after and not drive.turns
 
     def add_drive(self) -> None:
         """Constrains the driven freedom alone; the joint itself has the other constraints."""

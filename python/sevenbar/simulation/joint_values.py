@@ -77,7 +77,8 @@ def joint_values(linkage: Loop, bodies: BodyStates) -> JointValues:
         turn = np.swapaxes(before.frame[:, :3, :3], 1, 2) @ after.frame[:, :3, :3]
         way = after.frame[:, :3, 3] - before.frame[:, :3, 3]
         own = _columns(joint, turn, way, before, after)
-        local = np.einsum("nji,nj->ni", before.frame[:, :3, :3], way)
+        slider = after if joint.row.slides_on_after else before
+        local = np.einsum("nji,nj->ni", slider.frame[:, :3, :3], way)
         columns += own
         apart.append(_apart(joint, turn, local, own[0][0]))
     q, dq, ddq = (np.stack(part, axis=1) for part in zip(*columns, strict=True))

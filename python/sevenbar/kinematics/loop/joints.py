@@ -22,7 +22,7 @@ from typing import Literal
 Freedom = Literal["turn", "slide"]
 
 #: What a joint is drawn and built as; `drawing.joint_shapes` has each.
-ShapeName = Literal["cylinder", "block", "thread", "arm", "ball", "plate"]
+ShapeName = Literal["cylinder", "block", "thread", "arm", "ball", "plate", "slot"]
 
 #: The axes of a frame.
 X, Y, Z = 0, 1, 2
@@ -56,8 +56,8 @@ class Step:
 class JointKind:
     """All that distinguishes a kind of joint from the others.
 
-    `legend` is what figures call it, `words` are those that people write for it. `steps` stand in loop order,
-    the last of all but a ball about or along z. `drawn_keys` are the keys that it needs as drawn beside its
+    `legend` is what figures call it, `words` are those that people write for it. `steps` stand in loop
+    order. `drawn_keys` are the keys that it needs as drawn beside its
     place, `row_keys` the numbers of a Denavit-Hartenberg row; a kind without them is written `as_rows`.
     `shape` is how it is drawn and built, `adams` what ADAMS calls it. `numbered_back`: the names of its
     columns count from its last step.
@@ -106,6 +106,26 @@ class JointKind:
         return any(step.freedom == "slide" and step.axis != Z for step in self.steps)
 
     @cached_property
+    def has_plate(self) -> bool:
+        """Whether it slides any way in a plane."""
+        return self.has_plane and self.freedoms.count("slide") > 1
+
+    @cached_property
+    def slides_on_after(self) -> bool:
+        """Whether it slides along axes of the link after it: across a turn that comes first."""
+        return self.has_plane and self.steps[0].freedom == "turn"
+
+    @cached_property
+    def has_slot(self) -> bool:
+        """Whether it slides along one line across its axis."""
+        return self.has_plane and not self.has_plate
+
+    @cached_property
+    def slot_on_after(self) -> bool:
+        """Whether the link after it has its slot."""
+        return self.has_slot and self.slides_on_after
+
+    @cached_property
     def has_cross(self) -> bool:
         """Whether a body of its own stands between its steps."""
         return any(step.tilted for step in self.steps)
@@ -124,7 +144,7 @@ class JointKind:
         """
         if self.is_ball:
             return (1, 0, -1)
-        return (1, -1, 0) if self.has_plane else (1, 0, 0)
+        return (1, -1, 0) if self.has_plate else (1, 0, 0)
 
     @cached_property
     def backwards(self) -> JointKind:
@@ -132,9 +152,9 @@ class JointKind:
 
         A ball turns about the same axes of the turned frame, and a joint in a plane turns first; both are
         numbered from the last step. In other kinds the steps are on one axis, or each has a link of its own
-        that holds its axis: the order is that of the kind itself.
+        that holds its axis, as a slot: the order is that of the kind itself.
         """
-        if self.has_plane:
+        if self.has_plate:
             turn, one, other = Step("turn"), Step("slide", X), Step("slide", Y)
             return replace(self, steps=(turn, one, other), numbered_back=True)
         return replace(self, numbered_back=True) if self.is_ball else self
@@ -196,6 +216,16 @@ KINDS: Mapping[str, JointKind] = {
             "E", "slides in a plane", ("planar", "plane", "flat"),
             (Step("slide", X), Step("slide", Y), _TURN), _AXIS, "plate", "planar",
             as_rows="P, P and R, the slides square to each other and to the turn",
+        ),
+        JointKind(
+            "K", "pin in a slot", ("pin in slot", "pin in a slot", "pin slot", "slot", "slotted"),
+            (Step("slide", Y), _TURN), ("axes",), "slot", "planar",
+            as_rows="P and R, the slide square to the turn",
+        ),
+        JointKind(
+            "L", "slot on a pin", ("slot on pin", "slot on a pin"),
+            (_TURN, Step("slide", Y)), ("axes",), "slot", "planar",
+            as_rows="R and P, the slide square to the turn",
         ),
     )
 }  # fmt: skip

@@ -303,8 +303,13 @@ def _drawn_frames(kinds: Sequence[str], slots: Slots, joint: int) -> tuple[Produ
         slots.three(("joint", i, "at")) for i in (joint, joint + 1 if joint + 1 < len(kinds) else joint - 1)
     )
     row, axes = KINDS[kinds[joint]], _axes(kinds, slots, joint)
-    before = Product.drawn(at, axes, 0, towards, row.has_plane)
-    return before, Product.drawn(at, axes, 1, towards, False) if row.has_cross else before
+    if row.has_cross:
+        first, second = (Product.drawn(at, axes, which, towards, False) for which in (0, 1))
+        return first, second
+    # the pin is z, and its slot y
+    axes = axes[::-1] if row.slot_on_after else axes
+    frame = Product.drawn(at, axes, max(len(axes) - 1, 0), towards, row.has_plane)
+    return frame, frame
 
 
 def _drawn(kinds: Sequence[str], slots: Slots) -> _Outer:

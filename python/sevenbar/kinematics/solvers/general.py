@@ -23,7 +23,7 @@ from sevenbar.kinematics.circuits.motion import HeldFreedoms, Motion, Solvable
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
 from sevenbar.kinematics.loop.once import once_for
-from sevenbar.kinematics.loop.rigid import axis_to_z, inverse
+from sevenbar.kinematics.loop.rigid import axis_to_z, inverse, placed
 
 if TYPE_CHECKING:
     from sevenbar.kinematics.loop.law import Law
@@ -51,7 +51,7 @@ class GeneralLoop:
     def __init__(self, linkage: Solvable, agree: float = AGREE) -> None:
         self._linkage, self._agree = linkage, agree
         parts = expanded(linkage)
-        self._base, self._link = parts.base, parts.last
+        self._base, self._link, self._behind = parts.base, parts.last, parts.behind
         self._core = _core.Loop(
             parts.letters, np.array(parts.advances), parts.base, parts.ground, np.array(parts.links), agree,
             linkage.drawn_pose if linkage.drawn_pose.any() else None,
@@ -329,6 +329,8 @@ class GeneralLoop:
             velocity, acceleration, jerk = rest, rest.copy(), rest.copy()
         else:
             assert rows is not None
+            if self._behind[link - 1] is not STILL:
+                at = placed(self._behind[link - 1], at)
             position, velocity, acceleration, jerk = (
                 np.asarray(part)[order] for part in self._core.point(rows, self._link[link - 1], at)
             )
@@ -348,7 +350,7 @@ class Expanded(NamedTuple):
 
     `letters` R P H S, `advances` [length for a radian], `base` (4, 4) the frame of the first, `links` (4, 4)
     between them, `ground` (4, 4) the frame behind the last; `last` the number of the last one of each joint
-    of the linkage, `columns` the column of each, a ball's first.
+    of the linkage, `behind` (4, 4) from its frame to the joint's; `columns` that of each, a ball's first.
     """
 
     letters: str
@@ -357,6 +359,7 @@ class Expanded(NamedTuple):
     links: list[Floats]
     ground: Floats
     last: list[int]
+    behind: list[Floats]
     columns: list[int]
 
     @property
@@ -375,6 +378,7 @@ def expanded(linkage: Loop) -> Expanded:
     """The joints of a loop as the core takes them: screws and balls whole, any other step by step."""
     letters, advances, fixed = "", [], []
     last: list[int] = []
+    behind: list[Floats] = []
     columns: list[int] = []
     ahead = linkage.base
     for i, (joint, own) in enumerate(zip(linkage.joints, linkage.places, strict=True)):
@@ -387,10 +391,11 @@ def expanded(linkage: Loop) -> Expanded:
             fixed.append(ahead if step.axis == Z else ahead @ axis_to_z(step.axis))
             ahead = STILL if step.axis == Z else inverse(axis_to_z(step.axis))
         last.append(len(letters) - 1)
+        behind.append(ahead)
         if i < len(linkage.links):
             ahead = linkage.links[i] if ahead is STILL else ahead @ linkage.links[i]
     ground = linkage.ground if ahead is STILL else linkage.ground @ inverse(ahead)
-    return Expanded(letters, advances, fixed[0], fixed[1:], ground, last, columns)
+    return Expanded(letters, advances, fixed[0], fixed[1:], ground, last, behind, columns)
 
 
 def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
