@@ -14,9 +14,11 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.gallery import names
 from sevenbar.drawing import output_curves
-from sevenbar.drawing.quantities import Over, quantities
+from sevenbar.drawing.quantities import MOTION, Over, Row, quantities
 from sevenbar.drawing.style import CIRCUIT_COLOURS
 from sevenbar.kinematics.circuits.poses import walk
+from sevenbar.kinematics.circuits.timed_walk import TimedWalk
+from sevenbar.kinematics.loop.column import Column
 from sevenbar.studio.state.view import View, views_of
 from sevenbar.studio.svg.curves import panels
 from studio_pictures import (
@@ -181,6 +183,23 @@ def test_quantities_are_the_output_then_every_other_column_then_the_points() -> 
         f"point.{point.name}.{word}" for point in motion.linkage.points for word in ("speed", "acceleration")
     ]
     assert [q.key for q in found[3:]] == ["transmission angle", *keys, *points]
+
+
+@pytest.mark.parametrize("name", ["rssr", "double-rocker", "slide in"])
+def test_a_new_quantity_is_one_row_of_the_list(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    jerk = Row[TimedWalk](
+        Column, "jerk", "{unit}/s³", 3, lambda one, column: one.circuit.dddq[one.path.rows, column.number]
+    )
+    monkeypatch.setattr("sevenbar.drawing.quantities.MOTION", (*MOTION, jerk))
+    motion = motion_of(name)
+    circuit = motion.circuits[0]
+    values = circuit.dddq[walk(circuit).rows, circuit.output_column]
+    # in the studio's menu and pictures, in figures and films
+    found = by_key(motion)["output.jerk"]
+    assert (found.name, found.label()) == (f"{motion.output} jerk (output)", f"{motion.output} jerk [rad/s³]")
+    (panel,) = panels(views_of(motion), [found])
+    np.testing.assert_array_equal(panel.values, values)
+    np.testing.assert_array_equal(output_curves.curves_of_output(motion, circuit)["jerk"].values, values)
 
 
 def test_names_differ_even_where_a_joint_and_a_point_are_called_the_same() -> None:

@@ -53,7 +53,8 @@ class Row(Generic[S]):
     """A row of the list: a quantity of every column, point or joint, or of the whole motion or its loading.
 
     `values` gives it from a source and one of these: of a circuit along its walk, of forces on their rows.
-    `order` is that of its derivative; `unit` may name `shown` and `unit` of a column, or the `length` unit.
+    `order` is that of its derivative, by which endless values are cut; `unit` may name `shown` and `unit` of
+    a column, or the `length` unit.
     """
 
     of: type
@@ -266,7 +267,8 @@ class Curve:
             return None
         if not self.cut:
             return float(finite.min()), float(finite.max())
-        low, high = np.percentile(finite, [CUT[self.quantity.row.order], 100 - CUT[self.quantity.row.order]])
+        share = CUT[min(self.quantity.row.order, 2)]
+        low, high = np.percentile(finite, [share, 100 - share])
         return float(low), float(high)
 
     @property
