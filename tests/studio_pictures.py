@@ -12,10 +12,10 @@ import numpy as np
 
 import sevenbar as sb
 from sevenbar.arrays import Floats
+from sevenbar.drawing.quantities import Quantity, quantities
 from sevenbar.studio.state.view import views_of
 from sevenbar.studio.svg.curves import panels
 from sevenbar.studio.svg.picture import GRID, Panel
-from sevenbar.studio.svg.quantities import Quantity, quantities
 
 SVG = "{http://www.w3.org/2000/svg}"
 HOSTILE = "<script>alert(1)</script> & \"W\" 'm'"

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sevenbar.curves.along import Along
 from sevenbar.curves.curve import greatest, mean
 from sevenbar.curves.cycle_series import ENOUGH, CycleSeries, cycle_series
 from sevenbar.curves.pieces import Pieces, pieces
@@ -115,10 +116,10 @@ def test_constant_pieces_have_their_value_as_highest_and_lowest(value, noise):
 def test_a_piece_that_is_highest_at_its_end_is_not_lost_by_rounding():
     # with positive terms the value there is their sum, which two ways of adding give differently
     rng = np.random.default_rng(4)
-    ends = np.array([0.0]), np.array([1.0])
+    ends = np.array([0.0, 1.0])
     for _ in range(50):
-        terms = rng.uniform(size=(1, 16))
-        top = Pieces(np.zeros(4), *ends, terms, breaks=ends[0]).highest()
+        terms = rng.uniform(size=(1, 16, 1))
+        top = Pieces(np.zeros(4), Along(ends, terms), 0.0, 1.0, breaks=ends[:1]).highest()
         assert (top.value, top.input) == pytest.approx((terms.sum(), 1.0))
 
 

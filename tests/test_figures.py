@@ -159,7 +159,7 @@ def test_circuits_whose_curves_coincide_are_one_line_that_names_both(motions: di
     assert len({(line.style["color"], str(line.style["ls"])) for line in drawn}) == 8
     # the 7R paper's loop: each output belongs to two circuits
     for first, second in ((0, 1), (2, 3), (4, 5), (6, 7)):
-        np.testing.assert_allclose(drawn[first].angle, drawn[second].angle, atol=1e-9)
+        np.testing.assert_allclose(drawn[first].values("angle"), drawn[second].values("angle"), atol=1e-9)
     figure = plot.curves(motion)
     figure.canvas.draw()
     entries = [text.get_text() for text in figure.legends[0].get_texts()]

@@ -262,10 +262,10 @@ def test_a_rocking_velocity_is_the_slope_over_time(name: str) -> None:
     linkage = MOTIONS[name]().linkage
     motion = linkage.motion(samples=3600, input="rocker" if name == "rocker-crank" else None)
     for line in output_curves.passes(motion):
-        slope = np.gradient(np.radians(line.angle), line.time)
+        slope = np.gradient(np.radians(line.values("angle")), line.across("time"))
         inner = slice(len(slope) // 4, -len(slope) // 4)
         np.testing.assert_allclose(
-            line.velocity[inner], slope[inner], rtol=1e-2, atol=1e-3 * abs(motion.speed)
+            line.values("velocity")[inner], slope[inner], rtol=1e-2, atol=1e-3 * abs(motion.speed)
         )
 
 

@@ -11,11 +11,11 @@ import sevenbar as sb
 from commands import sevenbar
 from sevenbar import gallery
 from sevenbar.description.draft import Draft
+from sevenbar.drawing.quantities import quantities
 from sevenbar.errors import DescriptionError
 from sevenbar.reporting.report import as_dict, markdown
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.curves import panels
-from sevenbar.studio.svg.quantities import quantities
 
 RSSR = "format = 1\n[rssr]\nM = 700\nN = 700\nL1 = 250\nL3 = 550\nD = 0\n"
 

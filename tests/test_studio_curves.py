@@ -14,11 +14,13 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.gallery import names
 from sevenbar.drawing import output_curves
+from sevenbar.drawing.quantities import MOTION, Over, Row, quantities
 from sevenbar.drawing.style import CIRCUIT_COLOURS
 from sevenbar.kinematics.circuits.poses import walk
+from sevenbar.kinematics.circuits.timed_walk import TimedWalk
+from sevenbar.kinematics.loop.column import Column
 from sevenbar.studio.state.view import View, views_of
 from sevenbar.studio.svg.curves import panels
-from sevenbar.studio.svg.quantities import quantities
 from studio_pictures import (
     MOTIONS,
     ROCKING,
@@ -62,7 +64,7 @@ def test_every_vertex_is_a_row_of_the_circuit_to_a_tenth_of_a_pixel(name: str) -
 
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("over", ["input", "time"])
-def test_curves_of_the_output_are_those_of_the_figures(name: str, over: str) -> None:
+def test_curves_of_the_output_are_those_of_the_figures(name: str, over: Over) -> None:
     motion = motion_of(name)
     drawn = output_curves.passes(motion)
     for circuit in motion:
@@ -74,16 +76,14 @@ def test_curves_of_the_output_are_those_of_the_figures(name: str, over: str) -> 
             for line, part in zip(
                 [p for p in drawn if p.circuit is circuit], walk(circuit).passes, strict=True
             ):
-                off = panel.values[part] - getattr(line, word)
+                off = panel.values[part] - line.values(word)
                 turns = 360.0 * np.round(off / 360.0) if word == "angle" else 0.0 * off
                 np.testing.assert_allclose(off, turns, atol=1e-9)
                 assert panel.scale is not None
-                scale = {panel.x[part][0]: getattr(line, over)[0], panel.x[part][-2]: getattr(line, over)[-2]}
-                np.testing.assert_allclose(
-                    value_at(scale, panel.x[part]),
-                    getattr(line, over),
-                    atol=1e-9 * np.ptp(getattr(line, over)),
-                )
+                across = line.across(over)
+                scale = {panel.x[part][0]: across[0], panel.x[part][-2]: across[-2]}
+                atol = 1e-9 * np.ptp(across)
+                np.testing.assert_allclose(value_at(scale, panel.x[part]), across, atol=atol)
 
 
 def test_a_power_of_ten_stands_at_the_axis_whose_numbers_it_takes() -> None:
@@ -123,9 +123,9 @@ def test_every_velocity_is_the_slope_of_its_angle_over_the_time_of_the_walk(name
 @pytest.mark.parametrize("name", ["rssr", "seven_r", "mixed"])
 def test_a_points_speed_is_its_way_over_the_time(name: str) -> None:
     motion = motion_of(name)
-    for place, point in enumerate(motion.linkage.points):
+    for point in motion.linkage.points:
         speed = by_key(motion)[f"point.{point.name}.speed"]
-        assert (speed.point, speed.unit) == (place, f"{motion.linkage.length_unit}/s")
+        assert (speed.item, speed.unit) == (point, f"{motion.linkage.length_unit}/s")
         for circuit in motion:
             view = View(motion, circuit)
             part = view.path.passes[0]
@@ -145,14 +145,14 @@ def test_every_angle_starts_within_half_a_turn_and_runs_on_without_a_leap(name: 
     for circuit in motion:
         view = View(motion, circuit)
         for quantity in quantities(motion):
-            if quantity.unit != "deg" or quantity.column is None:
+            if quantity.unit != "deg" or quantity.key == "transmission angle":
                 continue
             values = quantity.values(view)
             known = values[np.isfinite(values)]
             if known.size:
                 assert -180.0 < known[0] <= 180.0 + 1e-6
             if np.isfinite(values).all():
-                off = (values[:-1] - np.degrees(circuit.q[view.path.rows[:-1], quantity.column])) / 360.0
+                off = (values[:-1] - np.degrees(circuit.q[view.path.rows[:-1], quantity.item.number])) / 360.0
                 np.testing.assert_allclose(off, round(off[0]), atol=1e-9)
                 assert np.abs(np.diff(values)).max() < 60
 
@@ -182,7 +182,24 @@ def test_quantities_are_the_output_then_every_other_column_then_the_points() -> 
     points = [
         f"point.{point.name}.{word}" for point in motion.linkage.points for word in ("speed", "acceleration")
     ]
-    assert [q.key for q in found[3:]] == ["transmission", *keys, *points]
+    assert [q.key for q in found[3:]] == ["transmission angle", *keys, *points]
+
+
+@pytest.mark.parametrize("name", ["rssr", "double-rocker", "slide in"])
+def test_a_new_quantity_is_one_row_of_the_list(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    jerk = Row[TimedWalk](
+        Column, "jerk", "{unit}/s³", 3, lambda one, column: one.circuit.dddq[one.path.rows, column.number]
+    )
+    monkeypatch.setattr("sevenbar.drawing.quantities.MOTION", (*MOTION, jerk))
+    motion = motion_of(name)
+    circuit = motion.circuits[0]
+    values = circuit.dddq[walk(circuit).rows, circuit.output_column]
+    # in the studio's menu and pictures, in figures and films
+    found = by_key(motion)["output.jerk"]
+    assert (found.name, found.label()) == (f"{motion.output} jerk (output)", f"{motion.output} jerk [rad/s³]")
+    (panel,) = panels(views_of(motion), [found])
+    np.testing.assert_array_equal(panel.values, values)
+    np.testing.assert_array_equal(output_curves.curves_of_output(motion, circuit)["jerk"].values, values)
 
 
 def test_names_differ_even_where_a_joint_and_a_point_are_called_the_same() -> None:
@@ -266,7 +283,7 @@ def test_endless_rates_leave_room_for_the_rest_and_the_picture_says_so() -> None
 @pytest.mark.parametrize("name", ["seven_r", "mixed", "slide out", "rssr"])
 def test_the_chosen_circuit_has_a_third_of_the_height_in_every_rate(name: str) -> None:
     motion = motion_of(name)
-    rates = [quantity for quantity in quantities(motion) if quantity.order and quantity.point is None]
+    rates = [quantity for quantity in quantities(motion) if quantity.row.order and not quantity.row.is_size]
     for circuit in motion:
         for panel in panels(views_of(motion), rates, circuit.index):
             _, top, _, bottom = panel.frame.box
@@ -318,7 +335,9 @@ def test_the_transmission_angle_of_a_four_bar_is_that_of_its_triangle() -> None:
     wanted = [np.minimum(angle, 180 - angle) for angle in angles]
     assert min(np.abs(values - each).max() for each in wanted) < 1e-9
     assert values.min() == pytest.approx(29.686295, abs=1e-4)
-    assert not any(quantity.key == "transmission" for quantity in quantities(sb.load("seven_r").motion()))
+    assert not any(
+        quantity.key == "transmission angle" for quantity in quantities(sb.load("seven_r").motion())
+    )
 
 
 def test_axodes_are_the_axes_of_the_joints_at_their_moments() -> None:

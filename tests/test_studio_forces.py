@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from unittest.mock import MagicMock
@@ -18,13 +17,13 @@ from browser import keep, settled
 from controls import choose, open_tab, options, shown, toggle
 from sevenbar.arrays import Floats
 from sevenbar.description.gallery import text
+from sevenbar.drawing.quantities import Quantity, quantities
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.studio.panels.forces import ForcesPanel
-from sevenbar.studio.state.acting import ALL_OFF, drive_sizing, known_force
+from sevenbar.studio.state.acting import ALL_OFF, SwitchedLoading, drive_sizing, known_force
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.svg.curves import panels
 from sevenbar.studio.svg.picture import Panel
-from sevenbar.studio.svg.quantities import ForceQuantity, force_quantities, quantities
 from sevenbar.studio.worker import Worker
 from studio_pictures import texts, ticks, value_at
 from studio_sessions import DOUBLE_ROCKER, opened
@@ -35,10 +34,10 @@ SPRING = "[[spring]]\njoint = 'rocker'\nstiffness = '3 N m/rad'\n"
 WORK = "\n[[load]]\nname = 'work'\nlink = 3\nat = [0, 0, 0]\nforce = [0, 0, 5]\n"
 
 
-def offered(session: Session) -> dict[str, ForceQuantity]:
+def offered(session: Session) -> dict[str, Quantity]:
     assert session.view is not None
-    found = force_quantities(session.view, session.acting, ())
-    return {quantity.name: quantity for quantity in found}
+    found = quantities(session.view.motion, session.acting)
+    return {quantity.name: quantity for quantity in found if quantity.acting}
 
 
 def panel_of(session: Session, name: str) -> Panel:
@@ -58,6 +57,8 @@ def test_curves_of_forces_are_the_circuits_forces_read_at_the_ticks() -> None:
     wanted = {
         "input torque": forces.torque,
         "power": forces.power,
+        "kinetic energy": forces.kinetic,
+        "potential energy": forces.potential,
         "shaking force": np.linalg.norm(forces.shaking[:, 3:], axis=1),
         "rocker force": np.linalg.norm(rocker.force_in_report, axis=1),
         "rocker radial force": np.linalg.norm(rocker.force[:, :2], axis=1),
@@ -78,18 +79,21 @@ def test_a_ball_has_no_radial_force_and_a_slide_is_pushed_by_a_force() -> None:
     assert "ball_a radial force" not in offered(opened("rssr_press"))
     slider = sb.load("rssp").loaded(bodies={1: sb.Body(1.0, solid="rod")})
     motion = slider.motion(input="slider")
-    session = opened("rssr_press")
-    view = replace(session.view, motion=motion, circuit=motion.circuits[0])
-    first, *_ = force_quantities(view, replace(session.acting, linkage=slider), ())
+    offers = quantities(motion, SwitchedLoading(slider))
+    (first,) = (one for one in offers if one.row.word == "input torque")
     assert (first.name, first.unit) == ("input force", "N")
 
 
 def test_names_that_are_taken_are_told_apart() -> None:
-    session = opened("rssr_press")
-    assert session.view is not None
-    found = force_quantities(session.view, session.acting, ("power", "crank force"))
-    names = [quantity.name for quantity in found]
-    assert {"power (joint)", "crank force (joint)"} <= set(names)
+    joints = [
+        {"kind": "R", "at": (0, 0, 0), "axis": (0, 0, 1), "name": "shaking"},
+        {"kind": "S", "at": (0, 100, 0)},
+        {"kind": "S", "at": (220, 130, 0)},
+        {"kind": "R", "at": (200, 0, 0), "axis": (0, 0, 1)},
+    ]
+    linkage = sb.from_axes(joints).loaded(bodies={1: sb.Body(1.0, solid="rod")})
+    names = [one.name for one in quantities(linkage.motion(samples=36), SwitchedLoading(linkage))]
+    assert {"shaking force", "shaking force (joint)"} <= set(names)
     assert len(set(names)) == len(names)
 
 
@@ -136,7 +140,7 @@ def test_without_bodies_nothing_is_offered_and_nothing_computed(monkeypatch: pyt
     # and with bodies before a curve of forces is chosen
     loaded = opened("rssr_press")
     assert loaded.view is not None
-    assert len(offered(loaded)) == 9
+    assert len(offered(loaded)) == 11
     loaded.change(("rssr", "M"), 690.0)
     panels(loaded.views, quantities(loaded.view.motion)[:3], 0)
 

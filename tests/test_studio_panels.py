@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from PIL import ImageFont
 
 import sevenbar as sb
+from sevenbar.drawing.quantities import quantities
 from sevenbar.studio.state.view import views_of
 from sevenbar.studio.svg.curves import panels
 from sevenbar.studio.svg.picture import Panel
-from sevenbar.studio.svg.quantities import quantities
 from sevenbar.studio.svg.scale import scale
 from studio_pictures import (
     HOSTILE,

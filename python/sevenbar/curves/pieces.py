@@ -18,7 +18,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Chebyshev, chebyshev, legendre
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
+from sevenbar.curves.along import Along
 from sevenbar.curves.curve import Peak, highest_of
 from sevenbar.curves.cycle_series import ENOUGH, CycleSeries, cycle_series
 from sevenbar.curves.stationary import AT_END, nodes, nodes_between, real_roots, series_through
@@ -46,118 +47,107 @@ SAME = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """A quantity along a cycle in m pieces: from `starts` to `ends` (m,) [rad, or length], along the cycle.
+    """A quantity along a cycle from the input `first` by `period` [rad, or length], in polynomials.
 
-    `series` (m, terms) or (m, terms, k) are the Chebyshev coefficients of each piece, `breaks` those of the
-    starts at which the quantity may jump; `rows` as the caller has them, `off` how far the pieces are from
-    these, as a part of the greatest value.
+    `along` has them between shares of the cycle, a column for each number of a vector; `breaks` are the edges
+    at which the quantity may jump; `rows` (n,) or (n, k) as the caller has them, `off` how far the pieces are
+    from these, as a part of the greatest value.
     """
 
     rows: Floats
-    starts: Floats
-    ends: Floats
-    series: Floats
+    along: Along
+    first: float
+    period: float
     breaks: Floats
     off: float = 0.0
 
     @cached_property
     def scale(self) -> float:
         """The greatest size at the middles and ends of the pieces."""
-        return max(
-            float(np.abs(chebyshev.chebval(x, np.moveaxis(self.series, 1, 0))).max()) for x in (-1, 0, 1)
-        )
+        return float(self.along.reach.max())
 
     @property
     def tail(self) -> float:
         """The greatest of the last two terms of a piece, or `off`, as a part of the greatest value."""
-        last = float(np.abs(self.series[:, -2:]).max() / self.scale) if self.scale else 0.0
+        last = float(np.abs(self.along.series[:, -2:]).max() / self.scale) if self.scale else 0.0
         return max(last, self.off)
 
     def at(self, inputs: Floats) -> Floats:
         """The quantity at inputs (j,) of the cycle: (j,) or (j, k)."""
-        period = float(self.ends[-1] - self.starts[0])
-        share = (np.asarray(inputs, dtype=np.float64) - self.starts[0]) / period % 1.0
-        edges = (self.starts - self.starts[0]) / period
-        own = np.searchsorted(edges, share, "right") - 1
-        ends = (self.ends[own] - self.starts[0]) / period
-        u = (2 * share - edges[own] - ends) / (ends - edges[own])
-        terms = np.cos(np.arange(self.series.shape[1]) * np.arccos(np.clip(u, -1.0, 1.0))[:, None])
-        return np.asarray(np.einsum("jt,jt...->j...", terms, self.series[own]))
+        values = self.along.at((np.asarray(inputs, dtype=np.float64) - self.first) / self.period % 1.0)
+        return values[:, 0] if self.rows.ndim == 1 else values
 
     def part(self, columns: int | tuple[int, ...]) -> Pieces:
         """One column of a vector as a number, or some as a vector."""
-        series = self.series[:, :, columns]
-        return Pieces(self.rows[:, columns], self.starts, self.ends, series, self.breaks, self.off)
+        return replace(self, rows=self.rows[:, columns], along=self.along.part(*np.atleast_1d(columns)))
 
     def extremes(self) -> tuple[Floats, Floats]:
         """Inputs and values (j,) of the local extremes, along the cycle; at a break those of both sides.
 
         Where the slope is zero without a change of its sign is among them, too.
         """
+        return self._extremes(np.arange(len(self.along.series)), self.breaks)
+
+    def _extremes(self, pieces: Integers, breaks: Floats) -> tuple[Floats, Floats]:
+        """Those of some pieces, with such breaks."""
+        edges = self.first + self.period * self.along.edges
         inputs, values = [], []
         joined = False
-        for start, end, own in zip(self.starts, self.ends, self.series, strict=True):
-            curve = Chebyshev(own, domain=[-1, 1])
+        for i in pieces:
+            curve = Chebyshev(self.along.series[i, :, 0], domain=[-1, 1])
             inside = np.sort(real_roots(curve.deriv()))
             if joined and inside.size and inside[0] < -1 + 2 * AT_END:
                 # the piece before has it
                 inside = inside[1:]
-            jumps, ends = bool((self.breaks == start).any()), self._breaks(end)
+            # that after the last is the first
+            after = (i + 1) % len(self.along.series)
+            jumps, ends = (bool((breaks == self.along.edges[edge]).any()) for edge in (i, after))
             joined = not ends and bool(inside.size) and inside[-1] > 1 - 2 * AT_END
             at = np.concatenate([[-1.0] * jumps, inside, [1.0] * ends])
+            start, end = edges[i : i + 2]
             inputs.append((start + end) / 2 + (end - start) / 2 * at)
             values.append(curve(at))
         places, heights = np.concatenate(inputs), np.concatenate(values)
         if not places.size:
             # a constant
-            return self.starts[:1], chebyshev.chebval(-1.0, self.series[0])[None]
+            return edges[:1], chebyshev.chebval(-1.0, self.along.series[0])
         return places, heights
 
     def highest(self) -> Peak:
         """The highest value."""
+        series = self.along.series[:, :, 0]
         # no piece reaches higher than the sum of the sizes of its terms
-        ends = chebyshev.chebval(np.array([-1.0, 0.0, 1.0]), self.series.T)
-        reach = self.series[:, 0] + np.abs(self.series[:, 1:]).sum(axis=1)
-        selected = reach >= ends.max() - SAME * self.scale
-        some = Pieces(
-            self.rows, self.starts[selected], self.ends[selected], self.series[selected], self.starts
-        )
-        return highest_of(*some.extremes())
+        ends = chebyshev.chebval(np.array([-1.0, 0.0, 1.0]), series.T)
+        reach = series[:, 0] + np.abs(series[:, 1:]).sum(axis=1)
+        selected = np.flatnonzero(reach >= ends.max() - SAME * self.scale)
+        return highest_of(*self._extremes(selected, self.along.edges))
 
     def lowest(self) -> Peak:
         """The lowest value."""
-        top = Pieces(self.rows, self.starts, self.ends, -self.series, self.breaks).highest()
+        top = replace(self, along=Along(self.along.edges, -self.along.series)).highest()
         return Peak(-top.value, top.input)
-
-    def _breaks(self, end: float) -> bool:
-        """Whether a piece ends where the next may begin with a jump; that after the last is the first."""
-        after = self.starts[0] if end == self.ends[-1] else end
-        return bool((self.breaks == after).any())
 
     def mean_of(self, function: Callable[[Floats], Floats]) -> float:
         """The mean of a function of the values, by Gauss's rule on every piece."""
         at, weights = _gauss()
-        values = function(np.asarray(chebyshev.chebval(at, np.moveaxis(self.series, 1, 0))))
-        shares = (self.ends - self.starts) / (self.ends[-1] - self.starts[0])
-        return float(shares @ values @ weights / 2)
+        values = function(np.asarray(chebyshev.chebval(at, self.along.series[:, :, 0].T)))
+        return float(np.diff(self.along.edges) @ values @ weights / 2)
 
     def running(self) -> Pieces:
         """The integral by the input of the quantity less its mean, 0 at the first piece's start."""
-        centred = self.series.copy()
-        centred[:, 0] -= self.mean_of(lambda values: values)
-        half = (self.ends - self.starts) / 2
-        sums = np.stack([h * chebyshev.chebint(own, lbnd=-1) for h, own in zip(half, centred, strict=True)])
-        gains = chebyshev.chebval(1.0, sums.T)
-        sums[:, 0] += np.concatenate([[0.0], np.cumsum(gains)[:-1]])
-        return Pieces(self.rows, self.starts, self.ends, sums, self.breaks)
+        series = self.along.series.copy()
+        series[:, 0] -= self.mean_of(lambda values: values)
+        sums = Along(self.along.edges, series).integral.series
+        return replace(self, along=Along(self.along.edges, self.period * sums), off=0.0)
 
     def squared(self) -> Pieces:
         """The squared size: twice the degree."""
-        terms = self.series.shape[1]
-        values = chebyshev.chebval(nodes(2 * terms), np.moveaxis(self.series, 1, 0))
-        sizes = (values**2).reshape(len(self.starts), -1, 2 * terms).sum(axis=1)
+        values = chebyshev.chebval(
+            nodes(2 * self.along.series.shape[1]), np.moveaxis(self.along.series, 1, 0)
+        )
+        series = series_through((values**2).sum(axis=1)[:, :, None])
         rows = (self.rows**2).reshape(len(self.rows), -1).sum(axis=1)
-        return Pieces(rows, self.starts, self.ends, series_through(sizes), self.breaks)
+        return replace(self, rows=rows, along=Along(self.along.edges, series), off=0.0)
 
 
 @cache
@@ -212,9 +202,10 @@ def pieces(
         if not len(todo):
             break
     found.sort(key=lambda piece: piece[0])
-    starts, ends = (origin + period * np.array([piece[i] for piece in found]) for i in (0, 1))
-    jumps = starts[np.isin([piece[0] for piece in found], marks[:-1])] if shares.size else np.empty(0)
-    return Pieces(rows, starts, ends, np.stack([piece[2] for piece in found]), jumps)
+    edges = np.array([piece[0] for piece in found] + [found[-1][1]])
+    series = np.stack([piece[2] for piece in found]).reshape(len(found), len(found[0][2]), -1)
+    jumps = edges[np.isin(edges[:-1], marks[:-1]).nonzero()] if shares.size else np.empty(0)
+    return Pieces(rows, Along(edges, series), origin, period, jumps)
 
 
 def smooth_pieces(evaluate: Callable[[Floats], Floats], rows: Floats, first: float, period: float) -> Pieces:

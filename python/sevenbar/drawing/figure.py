@@ -22,7 +22,6 @@ from sevenbar.drawing.space import measuring
 from sevenbar.drawing.style import STYLE, letters, page_size
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.errors import OutputError, RequestError, shown
-from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.text.aside import aside_prefix, clear_left
 from sevenbar.text.paths import is_folder
@@ -47,8 +46,8 @@ LEAST_ROOM = 0.8, 0.3
 TITLE_SHARE = 0.97
 
 
-#: Rates that grow without bound are cut at these percentiles (low end; the high end mirrors it).
-CUT = {"velocity": 4.0, "acceleration": 9.0}
+#: Rates that grow without bound are cut at these percentiles (low end; the high end mirrors it), by order.
+CUT = {1: 4.0, 2: 9.0}
 
 
 def slides(motion: Motion, column: str) -> bool:
@@ -192,17 +191,6 @@ def tidy(figure: Figure) -> None:
                 if head:
                     label.set_text(f"{head}\n{mark.strip()}{tail}")
     figure.align_ylabels()
-
-
-def range_drawn(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, float] | None:
-    """The ends of drawn values (n,), of rates that grow without bound those of `CUT`; `None` without any."""
-    finite = values[np.isfinite(values)]
-    if not finite.size:
-        return None
-    if quantity not in CUT or not circuit.turns_back:
-        return float(finite.min()), float(finite.max())
-    low, high = np.percentile(finite, [CUT[quantity], 100 - CUT[quantity]])
-    return float(low), float(high)
 
 
 def note(motion: Motion, cut: bool) -> str:

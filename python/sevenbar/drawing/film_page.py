@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import column_label, shown_value
+from sevenbar.drawing.figure import column_label
 from sevenbar.drawing.names import named_together
-from sevenbar.drawing.output_curves import QUANTITIES, output_label, passes
+from sevenbar.drawing.output_curves import curves_of_output
 from sevenbar.drawing.scene import SAME, link_colours, paths, stays
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import GROUND, PATH, circuit_colour
@@ -126,29 +126,23 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
 
 def _curves(motion: Motion, circuit: Circuit, rows: Floats) -> list[dict[str, Any]]:
     """The output's curves over the input, and where the film is on them in each picture."""
-    own = [line for line in passes(motion) if line.circuit is circuit]
-    path = walk(circuit)
-    made = []
-    for order, quantity in enumerate(QUANTITIES):
-        lines = [{"x": _plain(line.input), "y": _plain(getattr(line, quantity))} for line in own]
-        values = np.full(len(path.time), np.nan)
-        for line, part in zip(own, path.passes, strict=True):
-            values[part] = getattr(line, quantity)
-        count = np.arange(len(path.time))
-        made.append(
-            {
-                "name": output_label(motion, quantity, motion.linkage.length_unit),
-                "lines": lines,
-                "turns": bool(circuit.output_turns and not order),
-                "across": column_label(motion, motion.input),
-                "acrossTurns": bool(circuit.input_turns),
-                "x": _plain(np.interp(rows, count, shown_value(motion, motion.input, path.input))),
-                "y": _plain(np.interp(rows, count, values)),
-                "colour": circuit_colour(circuit.index),
-                "cut": bool(order and circuit.turns_back),
-            }
-        )
-    return made
+    count = np.arange(len(walk(circuit).time))
+    return [
+        {
+            "name": curve.quantity.label(),
+            "lines": [
+                {"x": _plain(curve.input[part]), "y": _plain(curve.values[part])} for part in curve.passes
+            ],
+            "turns": curve.quantity.unit == "deg",
+            "across": column_label(motion, motion.input),
+            "acrossTurns": bool(circuit.input_turns),
+            "x": _plain(np.interp(rows, count, curve.input)),
+            "y": _plain(np.interp(rows, count, curve.values)),
+            "colour": circuit_colour(circuit.index),
+            "cut": curve.cut,
+        }
+        for curve in curves_of_output(motion, circuit).values()
+    ]
 
 
 def _plain(values: Floats) -> Any:

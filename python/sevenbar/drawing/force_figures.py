@@ -20,6 +20,7 @@ from sevenbar.drawing.force_panels import (
     chosen_reactions,
     curve,
     digits,
+    drawn_quantity,
     first_dot,
     force_unit,
     greatest_of,
@@ -66,9 +67,7 @@ def torque(
         what = "torque, then power" if count > 1 else "or none"
         page = panels_of(count, ax, what, (6.4, 2.3 * count + 1.0), figsize=figsize, style=style)
         panels, handles = page.axes, []
-        word = say("input force") if forces.slides else say("input torque")
-        curve(panels[0], forces, forces.torque, WHOLE, shade=True)
-        panels[0].set_ylabel(f"{word} [{forces.unit}]")
+        word = drawn_quantity(panels[0], forces, "input torque", WHOLE, shade=True)
         if result is not None:
             # on the side of the peak
             rms = math.copysign(result.rms_torque, result.peak_torque.value)
@@ -76,8 +75,7 @@ def torque(
             value = f"{digits(result.rms_torque)} {forces.unit}"
             handles = [panels[0].axhline(rms, label=say("rms {value}", value=value), **look)]
         if count > 1:
-            curve(panels[1], forces, forces.power, OTHER, shade=True)
-            panels[1].set_ylabel(say("power [W]"))
+            drawn_quantity(panels[1], forces, "power", OTHER, shade=True)
         input_axis(panels, forces)
         whole = say("{torque} and power", torque=word) if count > 1 else word
         page.finish(title, title_of_forces(forces, whole), handles if legend else [])
@@ -229,8 +227,7 @@ def shaking(
             axes.set_xlabel(f"F{'xyz'[i]} [N]")
             axes.set_ylabel(f"F{'xyz'[j]} [N]")
         size = panels[len(views)]
-        curve(size, forces, np.linalg.norm(force, axis=1), INK, zero=False)
-        size.set_ylabel(say("shaking force [N]"))
+        drawn_quantity(size, forces, "shaking force", INK, zero=False)
         input_axis([size], forces, most=5)
         size.set_ylim(bottom=0)
         heading = title_of_forces(forces, say("shaking force on the ground"))
@@ -291,9 +288,7 @@ def small(forces: Forces) -> Figure | None:
     with styled():
         figure = new_figure(4.6, 2.8, pads=(0.05, 0.06))
         axes = figure.subplots()
-        curve(axes, forces, forces.torque, WHOLE, shade=True)
-        word = say("input force") if forces.slides else say("input torque")
-        axes.set_ylabel(f"{word} [{forces.unit}]")
+        drawn_quantity(axes, forces, "input torque", WHOLE, shade=True)
         input_axis([axes], forces, most=6)
     return figure
 

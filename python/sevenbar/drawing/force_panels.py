@@ -15,6 +15,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import gridded, input_scale
 from sevenbar.drawing.names import quantity_label, short, shown_name
 from sevenbar.drawing.panels import Panels, panels_across, panels_of
+from sevenbar.drawing.quantities import FORCES
 from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, QUIET, letters, stroke
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.result import Forces, Reaction
@@ -93,6 +94,15 @@ def curve(
             room = max(0.15 * (high - low), 0.1 * abs(high + low) / 2) or 1.0
             axes.set_ylim(low - room, high + room)
     axes.ticklabel_format(axis="y", useOffset=False)
+
+
+def drawn_quantity(axes: Axes, forces: Forces, quantity: str, colour: str, **style: Any) -> str:
+    """A quantity of the list over the input, with its label; returns its word."""
+    row = next(row for row in FORCES if row.word == quantity)
+    word, unit = row.named(slides=forces.slides)
+    curve(axes, forces, row.values(forces, forces.loading), colour, **style)
+    axes.set_ylabel(quantity_label("", word, unit))
+    return say(word)
 
 
 def mark_peak(axes: Axes, forces: Forces, input: float, value: float, unit: str, colour: str) -> None:

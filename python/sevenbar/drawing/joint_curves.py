@@ -12,15 +12,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import column_label, gridded, input_axis, shown_value, slides, title_of
+from sevenbar.drawing.figure import gridded, input_axis, title_of
 from sevenbar.drawing.panels import panels_across, panels_of
+from sevenbar.drawing.quantities import curve_of, place_of_column
 from sevenbar.drawing.style import circuit_colour, line_style, stroke, styled
-from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
+from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, widen
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
-from sevenbar.kinematics.circuits.poses import along, walk
+from sevenbar.kinematics.circuits.timed_walk import TimedWalk
 from sevenbar.text.words import say
 
 #: Circuits whose curves lie on each other: how much wider each is than the one on it.
@@ -70,29 +70,24 @@ def joints(
 def _panel(axes: Axes, motion: Motion, name: str) -> None:
     """The curves of one column of all circuits."""
     gridded(axes)
-    turns = not slides(motion, name)
-    natural = NATURAL_ANGLE if turns else motion.circuits[0].size
-    index = motion.linkage.columns.index(name)
-    lines: list[tuple[Circuit, Floats, Floats]] = []
-    for circuit in motion:
-        across = shown_value(motion, motion.input, walk(circuit).input)
-        values = shown_value(motion, name, along(motion.linkage, circuit, index))
-        lines.append((circuit, across, settle(values, natural)))
-    for place, (circuit, across, values) in enumerate(lines):
+    quantity = place_of_column(motion, name)
+    lines = [curve_of(quantity, TimedWalk(motion, circuit)) for circuit in motion]
+    natural = lines[0].natural
+    for place, line in enumerate(lines):
         above = sum(
-            other.shape == values.shape
-            and np.allclose(other, values, rtol=0, atol=TOGETHER * natural, equal_nan=True)
-            and np.allclose(places, across, rtol=0, atol=TOGETHER * NATURAL_ANGLE, equal_nan=True)
-            for _, places, other in lines[place + 1 :]
+            other.values.shape == line.values.shape
+            and np.allclose(other.values, line.values, rtol=0, atol=TOGETHER * natural, equal_nan=True)
+            and np.allclose(other.input, line.input, rtol=0, atol=TOGETHER * NATURAL_ANGLE, equal_nan=True)
+            for other in lines[place + 1 :]
         )
-        axes.plot(across, values, **_look(circuit, above))
-    if turns:
+        axes.plot(line.input, line.values, **_look(line.circuit, above))
+    if quantity.unit == "deg":
         axes.yaxis.set_major_locator(DegreeLocator(6))
     else:
         axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     widen(axes.yaxis, natural)
-    input_axis(axes, motion, np.concatenate([across for _, across, _ in lines]), 6)
-    axes.set_ylabel(column_label(motion, name))
+    input_axis(axes, motion, np.concatenate([line.input for line in lines]), 6)
+    axes.set_ylabel(quantity.label())
 
 
 def _look(circuit: Circuit, above: int) -> dict[str, Any]:

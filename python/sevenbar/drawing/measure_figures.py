@@ -15,12 +15,12 @@ from sevenbar.drawing.figure import (
     given_axes,
     gridded,
     input_axis,
-    shown_value,
     title_of,
     title_text,
 )
 from sevenbar.drawing.page import page_of_one, prepare_box
 from sevenbar.drawing.panels import coinciding, panels_of
+from sevenbar.drawing.quantities import TRANSMISSION, Curve, curve_of, quantities
 from sevenbar.drawing.scene import bars, put, shown_places, stage
 from sevenbar.drawing.skeleton import skeleton
 from sevenbar.drawing.space import box_round
@@ -31,6 +31,7 @@ from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
 from sevenbar.kinematics.circuits.poses import walk
+from sevenbar.kinematics.circuits.timed_walk import TimedWalk
 from sevenbar.text.words import say
 
 #: The least transmission angle [deg] that textbooks recommend.
@@ -64,13 +65,9 @@ def transmission(
         'transmission angle [deg]'
     """
     chosen_circuit(motion, 0)
-    lines: list[tuple[int, Floats, Floats]] = []
-    for circuit in motion:
-        angles = circuit.transmission_angle
-        if angles is not None:
-            path = walk(circuit)
-            across = shown_value(motion, motion.input, path.input)
-            lines.append((circuit.index, across, np.degrees(angles[path.rows])))
+    own = [one for one in quantities(motion) if one.key == TRANSMISSION]
+    lines = [curve_of(one, TimedWalk(motion, circuit)) for one in own for circuit in motion]
+    lines = [line for line in lines if np.isfinite(line.values).any()]
     if not lines:
         raise RequestError(
             "transmission: no circuit of this linkage has a transmission angle; nothing to draw"
@@ -80,28 +77,28 @@ def transmission(
         (axes,) = page.axes
         gridded(axes)
         for place, group in enumerate(coinciding(lines, _alike)):
-            numbers, (first, across, values) = [number for number, *_ in group], group[0]
             look: dict[str, Any] = {
-                "color": circuit_colour(first),
+                "color": circuit_colour(group[0].circuit.index),
                 "ls": LINE_STYLES[place % len(LINE_STYLES)],
+                "label": circuits_text([line.circuit.index for line in group]),
             }
-            axes.plot(across, values, lw=1.6 * stroke(), label=circuits_text(numbers), **look)
+            axes.plot(group[0].input, group[0].values, lw=1.6 * stroke(), **look)
         axes.axhline(
             RECOMMENDED, color=QUIET, lw=0.9 * stroke(), ls=":", label=say("{angle:g}°", angle=RECOMMENDED)
         )
-        input_axis(axes, motion, np.concatenate([across for _, across, _ in lines]), 9)
+        input_axis(axes, motion, np.concatenate([line.input for line in lines]), 9)
         axes.set_ylim(0, 90)
         axes.yaxis.set_major_locator(DegreeLocator(7))
-        axes.set_ylabel(say("transmission angle [deg]"))
+        axes.set_ylabel(lines[0].quantity.label())
         page.finish(title, title_of(motion), axes.get_legend_handles_labels()[0] if legend else [])
     return page.figure
 
 
-def _alike(first: tuple[int, Floats, Floats], second: tuple[int, Floats, Floats]) -> bool:
+def _alike(first: Curve, second: Curve) -> bool:
     """Whether the curves of two circuits are one line."""
     return all(
         one.shape == other.shape and np.allclose(one, other, rtol=0, atol=SAME_ANGLE, equal_nan=True)
-        for one, other in zip(first[1:], second[1:], strict=True)
+        for one, other in ((first.input, second.input), (first.values, second.values))
     )
 
 

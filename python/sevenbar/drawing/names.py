@@ -68,11 +68,13 @@ def named_together(
 
 
 def quantity_label(name: str, quantity: str, unit: str) -> str:
-    """What is written along an axis: a column's name, the quantity unless its letter says it, the unit.
+    """What is written along an axis: a name or none, the quantity unless its letter says it, the unit.
 
     >>> quantity_label("rocker", "angle", "deg"), quantity_label("theta_7", "angle", "deg")
     ('rocker angle [deg]', 'θ₇ [deg]')
     """
+    if not name:
+        return f"{say(quantity)} [{unit}]"
     said = shown_name(name)
     if _UNNAMED.fullmatch(name) and quantity in ("angle", "position"):
         return f"{said} [{unit}]"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -19,33 +19,26 @@ from sevenbar.drawing.figure import (
     gridded,
     input_label,
     note,
-    range_drawn,
-    shown_value,
     slides,
     title_of,
 )
-from sevenbar.drawing.names import handy_unit, quantity_label
+from sevenbar.drawing.names import handy_unit
 from sevenbar.drawing.panels import coinciding, panels_of
+from sevenbar.drawing.quantities import QUANTITIES, Curve, Over, Span, curve_of, quantities
 from sevenbar.drawing.style import QUIET, circuit_colour, line_style, stroke, styled
-from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
+from sevenbar.drawing.ticks import DegreeLocator, widen
 from sevenbar.errors import check_word
 from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.motion import Motion, chosen_circuit
 from sevenbar.kinematics.circuits.poses import walk
+from sevenbar.kinematics.circuits.timed_walk import TimedWalk
 from sevenbar.text.words import say
 
 #: Marks in the curves' legend.
 EXTREME, LIMIT, CHANGE_POINT = "extreme", "input limit", "change point"
 
-#: The rows of the output's curves.
-QUANTITIES = ("angle", "velocity", "acceleration")
-
 #: Times its own width at which a range that other circuits share makes a curve flat.
 FLATTEST = 5.0
-
-#: The ends of a range.
-Span = tuple[float, float]
 
 #: Curves nearer than this [deg, or share of the size] on all rows are one.
 SAME_CURVE = 1e-6
@@ -53,34 +46,46 @@ SAME_CURVE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class DrawnPass:
-    """A pass of a circuit as drawn: `input`, `angle` [deg, or length], `time` [s], the two rates; (n,)."""
+    """A pass of a circuit as a line: the rows `part` of the curve of each quantity, and its style."""
 
     circuit: Circuit
+    curves: Mapping[str, Curve]
+    part: slice
     label: str
     #: The branch and how the input goes on it, where the circuit has several.
     way: str
     style: dict[str, Any]
-    input: Floats
-    time: Floats
-    angle: Floats
-    velocity: Floats
-    acceleration: Floats
+
+    def across(self, over: Over) -> Floats:
+        """What is along the axis below, (n,)."""
+        return self.curves["angle"].across(over)[self.part]
+
+    def values(self, quantity: str) -> Floats:
+        """Its values of a quantity, (n,)."""
+        return self.curves[quantity].values[self.part]
+
+    @property
+    def placed(self) -> tuple[Floats, ...]:
+        """Input, time and angle."""
+        return self.across("input"), self.across("time"), self.values("angle")
+
+    def span(self, quantity: str) -> Span | None:
+        """The range worth showing."""
+        return self.curves[quantity].span(self.part)
+
+
+def curves_of_output(motion: Motion, circuit: Circuit) -> dict[str, Curve]:
+    """The curves of the output along a circuit, by their words."""
+    walked = TimedWalk(motion, circuit)
+    output = [one for one in quantities(motion) if one.key.startswith("output.")]
+    return {one.row.word: curve_of(one, walked) for one in output}
 
 
 def passes(motion: Motion) -> list[DrawnPass]:
     """Every pass of every circuit; where the input goes back, the velocity is turned as it is in time."""
     made: list[DrawnPass] = []
-    rate = abs(motion.speed) if motion.law is None else float(np.abs(motion.law.dq).max(initial=0.0))
     for circuit in motion.circuits:
-        path = walk(circuit)
-        size = circuit.size or 1.0
-        quick = rate if circuit.input_turns else rate / size
-        natural = 1.0 if circuit.output_turns else size
-        velocity = settle(path.velocities(circuit.dq[:, circuit.output_column]), natural * quick)
-        acceleration = settle(circuit.ddq[path.rows, circuit.output_column], natural * quick**2)
-        angle = settle(
-            shown_value(motion, motion.output, path.output), NATURAL_ANGLE if circuit.output_turns else size
-        )
+        path, own = walk(circuit), curves_of_output(motion, circuit)
         for branch, part in enumerate(path.passes):
             label, way = say("circuit {number}", number=circuit.index), ""
             inputs = path.input[part]
@@ -93,9 +98,7 @@ def passes(motion: Motion) -> list[DrawnPass]:
                 label = say("{circuits}, {branch}", circuits=label, branch=way)
             colour, dashes = circuit_colour(circuit.index), line_style(len(made))
             style = {"color": colour, "ls": dashes, "lw": 1.6 * stroke()}
-            places = shown_value(motion, motion.input, inputs), path.time[part]
-            rates = velocity[part], acceleration[part]
-            made.append(DrawnPass(circuit, label, way, style, *places, angle[part], *rates))
+            made.append(DrawnPass(circuit, own, part, label, way, style))
     return made
 
 
@@ -106,10 +109,10 @@ def drawn_once(motion: Motion, drawn: Sequence[DrawnPass]) -> list[DrawnPass]:
     def alike(first: DrawnPass, line: DrawnPass) -> bool:
         return (
             first.circuit is not line.circuit
-            and first.angle.shape == line.angle.shape
+            and first.values("angle").shape == line.values("angle").shape
             and all(
-                np.allclose(getattr(first, name), getattr(line, name), rtol=0, atol=near, equal_nan=True)
-                for name in ("input", "time", "angle")
+                np.allclose(one, other, rtol=0, atol=near, equal_nan=True)
+                for one, other in zip(first.placed, line.placed, strict=True)
             )
         )
 
@@ -159,7 +162,7 @@ def curves(
     for quantity in quantities:
         check_word("quantities", quantity, QUANTITIES, "drawn")
     turning = motion.law is None and all(circuit.goes_round for circuit in motion)
-    columns = [against]
+    columns: list[Over] = ["time" if against == "time" else "input"]
     if against == "both":
         columns = ["input"] if turning or ax is not None else ["input", "time"]
     with styled(style):
@@ -186,30 +189,21 @@ def curves(
     return page.figure
 
 
-def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str, over: str) -> None:
+def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str, over: Over) -> None:
     """Draws one quantity of the passes over "input" or "time", with the input limits and the extremes."""
     gridded(axes)
-    factor, length = _unit_of(motion, drawn, quantity)
+    factor, unit = _unit_of(motion, drawn, quantity)
     for line in drawn:
-        axes.plot(getattr(line, over), factor * getattr(line, quantity), label=line.label, **line.style)
+        axes.plot(line.across(over), factor * line.values(quantity), label=line.label, **line.style)
     for circuit in motion.circuits:
         own = [line for line in drawn if line.circuit is circuit]
-        extremes: Extremes | None = getattr(circuit, quantity)
-        if own and extremes is not None:
-            sides = ((extremes.lowest, extremes.lowest_at), (extremes.highest, extremes.highest_at))
-            values = np.array([value for value, _ in sides])
-            values = shown_value(motion, motion.output, values) if quantity == "angle" else values
-            if np.ptp(np.concatenate([getattr(line, quantity) for line in own])) == 0:
-                continue
-            period = math.inf if slides(motion, motion.input) else 360.0
-            lines = [(line.input, getattr(line, over), getattr(line, quantity)) for line in own]
-            places = [
-                place_of(lines, v, shown_value(motion, motion.input, at), period)
-                for v, (_, at) in zip(values, sides, strict=True)
-            ]
+        curve = own[0].curves[quantity] if own else None
+        if curve and curve.marks and np.ptp(curve.values) != 0:
+            places = [curve.place(mark, over) for mark in curve.marks]
+            values = np.array([mark.value for mark in curve.marks])
             ring = {"ms": 4.5 * stroke(), "mfc": "white", "mec": own[0].style["color"], "mew": 1.2 * stroke()}
             axes.plot(places, factor * values, "o", ls="", label=say(EXTREME), zorder=4, **ring)
-    ends = np.concatenate([getattr(line, over) for line in drawn])
+    ends = np.concatenate([line.across(over) for line in drawn])
     room = 0.02 * np.ptp(ends) if over == "input" and motion.limits.size else 0.0
     if np.ptp(ends) > 0:
         axes.set_xlim(ends.min() - room, ends.max() + room)
@@ -226,9 +220,10 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
         axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
     if quantity == "angle":
         _on_view(axes, motion, drawn, factor)
-    widen(axes.yaxis, factor * _natural(motion, quantity))
+    shown = drawn[0].curves[quantity]
+    widen(axes.yaxis, factor * shown.natural)
     axes.set_xlabel(input_label(motion) if over == "input" else say("time [s]"))
-    axes.set_ylabel(output_label(motion, quantity, length))
+    axes.set_ylabel(shown.quantity.label(unit))
 
 
 def home_circuit(motion: Motion) -> Circuit:
@@ -251,7 +246,7 @@ def _on_view(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], factor: flo
     home = home_circuit(motion)
     spans: dict[int, Span] = {}
     for line in drawn:
-        if (span := range_drawn(line.circuit, line.angle, "angle")) is not None:
+        if (span := line.span("angle")) is not None:
             low, high = spans.get(line.circuit.index, span)
             spans[line.circuit.index] = min(low, span[0]), max(high, span[1])
     own = spans.get(home.index)
@@ -279,32 +274,16 @@ def _on_view(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], factor: flo
     axes.annotate(values, (0.01, 0.98), xycoords="axes fraction", va="top", fontsize="x-small", color=QUIET)
 
 
-def _natural(motion: Motion, quantity: str) -> float:
-    """The size of a large value of a quantity of the output, as it is drawn."""
-    circuit = motion.circuits[0]
-    rate = abs(motion.speed) if motion.law is None else float(np.abs(motion.law.dq).max(initial=0.0))
-    rate = rate if circuit.input_turns else rate / (circuit.size or 1.0)
-    if quantity == "angle":
-        return NATURAL_ANGLE if circuit.output_turns else circuit.size
-    return (1.0 if circuit.output_turns else circuit.size) * rate ** QUANTITIES.index(quantity)
-
-
 def _unit_of(motion: Motion, drawn: Sequence[DrawnPass], quantity: str) -> tuple[float, str]:
-    """The factor and the length unit in which a slide's rate is drawn: metres for many millimetres."""
-    unit = motion.linkage.length_unit
+    """The factor and the unit in which the output is drawn: rates of a slide in metres for many mm."""
+    unit = drawn[0].curves[quantity].quantity.unit
     if quantity == "angle" or not slides(motion, motion.output):
         return 1.0, unit
-    ranges = [range_drawn(line.circuit, getattr(line, quantity), quantity) for line in drawn]
-    return handy_unit(unit, max((abs(end) for ends in ranges if ends for end in ends), default=0.0))
-
-
-def output_label(motion: Motion, quantity: str, length: str) -> str:
-    """What is written along an axis of the output: its name, the quantity, the unit."""
-    suffix = {"angle": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
-    if slides(motion, motion.output):
-        word = "position" if quantity == "angle" else quantity
-        return quantity_label(motion.output, word, f"{length}{suffix}")
-    return quantity_label(motion.output, quantity, f"rad{suffix}" if suffix else "deg")
+    ranges = [line.span(quantity) for line in drawn]
+    length, _, per = unit.partition("/")
+    most = max((abs(end) for ends in ranges if ends for end in ends), default=0.0)
+    factor, length = handy_unit(length, most)
+    return factor, f"{length}/{per}"
 
 
 def inputs_between(motion: Motion, inputs: Floats, low: float, high: float) -> Floats:
@@ -316,29 +295,12 @@ def inputs_between(motion: Motion, inputs: Floats, low: float, high: float) -> F
     return between
 
 
-def place_of(lines: Iterable[tuple[Floats, Floats, Floats]], value: float, at: float, period: float) -> float:
-    """Where a panel's lines take a value at an input, known to whole periods; NaN where they do not.
-
-    Each line has its inputs, its places along the panel and its values, (n,).
-    """
-    result = [(math.inf, math.nan)]
-    for inputs, across, values in lines:
-        off = inputs - at
-        if math.isfinite(period):
-            off = (off + period / 2) % period - period / 2
-        for i in np.flatnonzero((off[:-1] * off[1:] <= 0) & (np.abs(off[:-1] - off[1:]) < period / 2)):
-            share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.0
-            x, y = (v[i] + share * (v[i + 1] - v[i]) for v in (across, values))
-            result.append((abs(y - value), x))
-    return min(result)[1]
-
-
 def _cut(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str) -> bool:
     """Cuts the range of rates that grow without bound at input dead centres; returns whether it did."""
-    ranges = [(line, range_drawn(line.circuit, getattr(line, quantity), quantity)) for line in drawn]
-    spans = [span for _, span in ranges if span is not None]
-    if quantity == "angle" or not any(span is not None and line.circuit.turns_back for line, span in ranges):
+    ranges = [(line, span) for line in drawn if (span := line.span(quantity)) is not None]
+    if not any(line.curves[quantity].cut for line, _ in ranges):
         return False
+    spans = [span for _, span in ranges]
     factor, _ = _unit_of(motion, drawn, quantity)
     low, high = factor * np.min(spans), factor * np.max(spans)
     axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
@@ -346,7 +308,7 @@ def _cut(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str) 
 
 
 def _time_above(axes: Axes, motion: Motion, line: DrawnPass) -> None:
-    rate, start = math.degrees(motion.speed), line.input[0]
+    rate, start = math.degrees(motion.speed), line.across("input")[0]
     there_and_back = (lambda angle: (angle - start) / rate), (lambda time: start + time * rate)
     above = axes.secondary_xaxis("top", functions=there_and_back)
     above.set_xlabel(say("time [s]"))

@@ -223,7 +223,7 @@ def _speed(axes: Axes, motion: Motion, circuit: Circuit, trace: Trace) -> None:
     bounded = speed[np.isfinite(speed)]
     most = float(bounded.max(initial=0.0))
     if circuit.turns_back and bounded.size:
-        most = float(np.percentile(bounded, 100 - CUT["velocity"]))
+        most = float(np.percentile(bounded, 100 - CUT[1]))
     factor, unit = handy_unit(motion.linkage.length_unit, most)
     for number, part in enumerate(path.passes):
         dashes = LINE_STYLES[number % len(LINE_STYLES)]

@@ -66,9 +66,8 @@ def closing(
     own = smooth_pieces(between, both / units, first, period)
     if own.tail > result.power:
         return result
-    half = (own.ends - own.starts) / 2
-    slopes = chebyshev.chebder(own.series[:, :, 0], axis=1) / half[:, None]
-    given = units[1] * _values(own.series[:, :, 1])
+    slopes = own.along.slope.series[:, :, 0] / period
+    given = units[1] * _values(own.along.series[:, :, 1])
     finer = _closing(units[0] * _values(slopes), given, drive, units[1] * mean(own.part(1)))
     return Closing(min(result.power, finer.power), min(result.work, finer.work))
 

@@ -96,6 +96,10 @@ class TimedWalk:
         """The time [s] of one cycle."""
         return float(self.path.time[-1])
 
+    def whole_turns(self, _column: int, /) -> float:
+        """The whole turns [rad] by which a column is drawn elsewhere than the walk has it."""
+        return 0.0
+
     def row_at(self, time: float) -> float:
         """The row of the path at a time [s], which runs on over the cycle of a closed circuit."""
         times = self.path.time

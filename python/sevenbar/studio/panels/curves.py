@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import viser
 
+from sevenbar.drawing.quantities import Over, Quantity, quantities
 from sevenbar.studio.panels.controls import put, settle
 from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
-from sevenbar.studio.svg.curves import Over, panels
+from sevenbar.studio.svg.curves import panels
 from sevenbar.studio.svg.picture import Panel
-from sevenbar.studio.svg.quantities import Quantity, force_quantities, quantities
 from sevenbar.studio.worker import Worker
 
 #: How many curves there are, and the size of each [px].
@@ -78,9 +78,7 @@ class CurvesPanel:
     def _offer(self, view: View, acting: SwitchedLoading) -> None:
         """What can be chosen; a choice that there is no more goes back to the output's curves."""
         before = {name: quantity.key for name, quantity in self._offered.items()}
-        usual = quantities(view.motion)
-        result = (*usual, *force_quantities(view, acting, [quantity.name for quantity in usual]))
-        self._offered = {quantity.name: quantity for quantity in result}
+        self._offered = {quantity.name: quantity for quantity in quantities(view.motion, acting)}
         names = tuple(self._offered)
         by_key = {quantity.key: name for name, quantity in self._offered.items()}
         for choice, first in zip(self._choices, names, strict=False):

@@ -6,6 +6,7 @@ from html import escape
 
 import numpy as np
 
+from sevenbar.drawing.quantities import quantities
 from sevenbar.drawing.view import upright
 from sevenbar.kinematics.ranges.reach import Reach, within
 from sevenbar.studio.local_server import LocalServer
@@ -14,7 +15,6 @@ from sevenbar.studio.pictures.stage import FIELD, Stage
 from sevenbar.studio.state.verdict import facts_html
 from sevenbar.studio.state.view import View, views_of
 from sevenbar.studio.svg.curves import panels
-from sevenbar.studio.svg.quantities import quantities
 
 #: Pictures in a cycle.
 PICTURES = 180

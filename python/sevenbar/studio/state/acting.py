@@ -16,10 +16,10 @@ from sevenbar.forces.result import Forces, Reaction
 from sevenbar.forces.sizing import Sizing
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.timed_walk import TimedWalk
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.reporting.force_words import load_text, spring_text, triple_text
 from sevenbar.reporting.shown import Shown
-from sevenbar.studio.state.view import View
 
 #: The switch of gravity.
 GRAVITY = "gravity"
@@ -74,12 +74,12 @@ class SwitchedLoading:
         """The same with one of the switches on or off."""
         return SwitchedLoading(self.linkage, self.off - {key} if on else self.off | {key})
 
-    def forces(self, view: View) -> Forces | None:
+    def forces(self, view: TimedWalk) -> Forces | None:
         """The forces on the rows of a view's circuit; `None` where there are none."""
         result = self._forces(view.circuit)
         return None if isinstance(result, str) else result
 
-    def reason(self, view: View) -> str:
+    def reason(self, view: TimedWalk) -> str:
         """Why there are no forces on a view's circuit; empty where there are."""
         result = self._forces(view.circuit)
         return result if isinstance(result, str) else ""

@@ -10,7 +10,6 @@ from functools import cached_property
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.drawing.figure import shown_value
 from sevenbar.drawing.skeleton import Skeleton, skeleton
 from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.circuits.motion import Motion
@@ -39,12 +38,6 @@ class View(TimedWalk):
     def frame(self) -> Skeleton:
         """The places of joints and points along the path."""
         return skeleton(self.motion, self.circuit)
-
-    @property
-    def shown_input(self) -> Floats:
-        """The input along the path [deg, or length], (n,)."""
-        values: Floats = shown_value(self.motion, self.motion.input, self.path.input)
-        return values
 
     def input_between(self, row: float, other: float) -> float:
         """How far the input runs [rad, or length] from row to row of one pass; infinite between two passes.

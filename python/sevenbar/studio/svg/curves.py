@@ -4,81 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from html import escape
-from typing import Literal
 
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import input_label, range_drawn, shown_value, slides
-from sevenbar.drawing.output_curves import inputs_between, place_of
+from sevenbar.drawing.figure import input_label, shown_value
+from sevenbar.drawing.output_curves import inputs_between
+from sevenbar.drawing.quantities import LARGEST, Curve, Over, Quantity, Span, curve_of
 from sevenbar.drawing.style import circuit_colour
 from sevenbar.drawing.ticks import FLAT
-from sevenbar.kinematics.circuits.circuit_values import Extremes
-from sevenbar.kinematics.circuits.extents import Flags
 from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.circuits.timed_walk import TimedWalk
 from sevenbar.kinematics.ranges.reach import within
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg import picture
-from sevenbar.studio.svg.quantities import Quantity
 from sevenbar.studio.svg.scale import Scale, scale
-
-#: What stands along the axis below.
-Over = Literal["input", "time"]
-
-#: Larger values [any unit] count as none, lest the scale overflow.
-LARGEST = 1e200
 
 #: Circuits in the background are drawn with about so many rows.
 FAINT_ROWS = 180
-
-#: The ends of a range.
-Span = tuple[float, float]
-
-
-@dataclass(frozen=True, eq=False)
-class ShownCurve:
-    """The `values` of a circuit over what is `across`, along its walk, in the units shown, (n,)."""
-
-    view: View
-    across: Floats
-    values: Floats
-
-    @property
-    def colour(self) -> str:
-        """The circuit's colour, as in all figures."""
-        return circuit_colour(self.view.circuit.index)
-
-    @property
-    def passes(self) -> tuple[slice, ...]:
-        """The rows of each pass between input dead centres."""
-        return self.view.path.passes
-
-    @property
-    def within(self) -> Flags:
-        """Whether its rows are within the stops of the linkage (n,)."""
-        return within(self.view)
-
-    def span(self, kind: str) -> Span | None:
-        """The range worth showing, without endless rates at input dead centres; `None` without values."""
-        spans = (range_drawn(self.view.circuit, self.values[part], kind) for part in self.passes)
-        return _union([span for span in spans if span is not None])
-
-    def lines(self, frame: picture.Frame, x: Floats, y: Floats, most: int) -> str:
-        """The passes as SVG, in tenths of px from the plot area's corner, with at most about `most` rows."""
-        left, top, _, _ = frame.box
-        step = max(1, round(len(x) / most))
-        drawn = []
-        for part in self.passes:
-            rows = np.arange(part.start, part.stop)
-            if step > 1:
-                rows = np.append(rows[:-1:step], rows[-1:])
-            inputs = self.view.path.input[part]
-            falls = len(self.passes) > 1 and inputs[-1] < inputs[0]
-            look = ' stroke-dasharray="50 30"' if falls else ""
-            drawn.append(f'<path d="{picture.stroke(x[rows] - left, y[rows] - top)}"{look}/>')
-        return "".join(drawn)
 
 
 def panels(
@@ -98,15 +42,15 @@ def panels(
     motion = views[circuit].motion
     labelled = over == "input" and motion.limits.size > 0
     frame = picture.Frame(width, height, picture.LABELLED if labelled else picture.MARGINS[1])
-    across = [each.shown_input if over == "input" else each.path.time for each in views]
+    across = [
+        shown_value(motion, motion.input, each.path.input) if over == "input" else each.path.time
+        for each in views
+    ]
     reach = _reach(motion, across if over == "input" else [across[circuit]], over)
     made = []
     for quantity in picked:
-        curves = [
-            ShownCurve(each, places, _bounded(quantity.values(each)))
-            for each, places in zip(views, across, strict=True)
-        ]
-        own_span = curves[circuit].span(quantity.kind)
+        curves = [curve_of(quantity, each) for each in views]
+        own_span = curves[circuit].span()
         if own_span is None or reach is None:
             made.append(_empty(frame, quantity, quantity.absence(views[circuit])))
         else:
@@ -117,57 +61,72 @@ def panels(
 def _panel(
     frame: picture.Frame,
     quantity: Quantity,
-    curves: Sequence[ShownCurve],
+    curves: Sequence[Curve],
     circuit: int,
     reach: Span,
     own_span: Span,
     over: Over,
 ) -> picture.Panel:
     own = curves[circuit]
-    motion = own.view.motion
+    motion, colour = own.walked.motion, circuit_colour(circuit)
     left, top, right, bottom = frame.box
     wide, tall = right - left, bottom - top
     label = input_label(motion) if over == "input" else "time [s]"
     name, _, unit = label.removesuffix("]").rpartition(" [")
     below = scale(*reach, max(2, wide // 50), degrees=unit == "deg")
-    spans = [each.span(quantity.kind) for each in curves if each is not own]
-    others = [span for span in spans if span is not None]
-    least = max(FLAT * quantity.natural(own.view), 1e-9 * max(map(abs, own_span)))
+    others = [span for each in curves if each is not own and (span := each.span()) is not None]
+    least = max(FLAT * own.natural, 1e-9 * max(map(abs, own_span)))
     low, high = _shown_range(quantity, own_span, others, least)
     beside = scale(low, high, max(2, tall // 18), degrees=quantity.unit == "deg")
-    places = [(frame.x(below, each.across), frame.y(beside, each.values)) for each in curves]
+    places = [(frame.x(below, each.across(over)), frame.y(beside, each.values)) for each in curves]
     x, y = places[circuit]
     faint = [
-        f'<g stroke="{_pale(each.colour)}">{each.lines(frame, *place, FAINT_ROWS)}</g>'
-        for each, place in zip(curves, places, strict=True)
+        f'<g stroke="{_pale(circuit_colour(i))}">{_lines(each, frame, *place, FAINT_ROWS)}</g>'
+        for i, (each, place) in enumerate(zip(curves, places, strict=True))
         if each is not own
     ]
     content = [
         f'<rect width="{frame.width}" height="{frame.height}" fill="{picture.GROUND}"/>',
-        picture.head(frame, quantity.heading, beside.unit(quantity.unit), _keys(quantity, own), own.colour),
+        picture.head(frame, quantity.heading, beside.unit(quantity.unit), _keys(own), colour),
         picture.grid(frame, below, beside, name, unit),
-        _limits(own.view, frame, below, unit) if over == "input" else "",
+        _limits(own.walked, frame, below, unit) if over == "input" else "",
         f'<svg x="{left}" y="{top}" width="{wide}" height="{tall}" viewBox="0 0 {wide}0 {tall}0" '
         'fill="none" stroke-linejoin="round">',
         f'<g stroke-width="12">{"".join(faint)}</g>',
-        _strong(own, frame, x, y),
+        _strong(own, frame, x, y, colour),
         "</svg>",
-        _marks(quantity, own, frame, below, beside) if own_span[1] - own_span[0] > least else "",
+        _marks(own, frame, below, beside, over, colour) if own_span[1] - own_span[0] > least else "",
     ]
     svg = frame.svg("".join(content), name=f"{quantity.name}, circuit {circuit}")
-    return picture.Panel(frame, svg, x, y, own.values, beside, quantity.unit, own.colour)
+    return picture.Panel(frame, svg, x, y, own.values, beside, quantity.unit, colour)
 
 
-def _strong(own: ShownCurve, frame: picture.Frame, x: Floats, y: Floats) -> str:
+def _strong(own: Curve, frame: picture.Frame, x: Floats, y: Floats, colour: str) -> str:
     """The chosen circuit's line, pale where a stop of the linkage keeps it from going."""
-    whole = own.lines(frame, x, y, len(x))
-    if not own.view.motion.linkage.stops.stops:
-        return f'<g stroke-width="20" stroke="{own.colour}">{whole}</g>'
-    usable = own.lines(frame, x, np.where(own.within, y, np.nan), len(x))
+    whole = _lines(own, frame, x, y, len(x))
+    if not own.walked.linkage.stops.stops:
+        return f'<g stroke-width="20" stroke="{colour}">{whole}</g>'
+    usable = _lines(own, frame, x, np.where(within(own.walked), y, np.nan), len(x))
     return (
-        f'<g stroke-width="20" stroke="{_pale(own.colour)}">{whole}</g>'
-        f'<g stroke-width="20" stroke="{own.colour}">{usable}</g>'
+        f'<g stroke-width="20" stroke="{_pale(colour)}">{whole}</g>'
+        f'<g stroke-width="20" stroke="{colour}">{usable}</g>'
     )
+
+
+def _lines(curve: Curve, frame: picture.Frame, x: Floats, y: Floats, most: int) -> str:
+    """The passes as SVG, in tenths of px from the plot area's corner, with at most about `most` rows."""
+    left, top, _, _ = frame.box
+    step = max(1, round(len(x) / most))
+    drawn = []
+    for part in curve.passes:
+        rows = np.arange(part.start, part.stop)
+        if step > 1:
+            rows = np.append(rows[:-1:step], rows[-1:])
+        inputs = curve.input[part]
+        falls = len(curve.passes) > 1 and inputs[-1] < inputs[0]
+        look = ' stroke-dasharray="50 30"' if falls else ""
+        drawn.append(f'<path d="{picture.stroke(x[rows] - left, y[rows] - top)}"{look}/>')
+    return "".join(drawn)
 
 
 def _empty(frame: picture.Frame, quantity: Quantity, reason: str) -> picture.Panel:
@@ -182,14 +141,6 @@ def _empty(frame: picture.Frame, quantity: Quantity, reason: str) -> picture.Pan
     nothing = np.empty(0)
     svg = frame.svg("".join(content), name=f"{quantity.name}: {reason}")
     return picture.Panel(frame, svg, nothing, nothing, nothing)
-
-
-def _bounded(values: Floats) -> Floats:
-    return np.where(np.abs(values) < LARGEST, values, np.nan)
-
-
-def _union(spans: Sequence[Span]) -> Span | None:
-    return (min(low for low, _ in spans), max(high for _, high in spans)) if spans else None
 
 
 def _reach(motion: Motion, places: Sequence[Floats], over: Over) -> Span | None:
@@ -215,31 +166,31 @@ def _shown_range(quantity: Quantity, own: Span, others: Sequence[Span], least: f
         elif other[0] < own[1] + span and other[1] > own[0] - span:
             # at least a third of the height is left to the chosen circuit
             low, high = min(low, max(other[0], own[0] - span)), max(high, min(other[1], own[1] + span))
-    if quantity.is_size:
+    if quantity.row.is_size:
         low = 0.0
     if high - low <= least:
         half = 0.1 * max(abs(low + high) / 2, least / FLAT) or 1.0
         return (low + high) / 2 - half, (low + high) / 2 + half
     room = 0.07 * (high - low)
-    return low - (0.2 * room if quantity.is_size else room), high + room
+    return low - (0.2 * room if quantity.row.is_size else room), high + room
 
 
-def _keys(quantity: Quantity, own: ShownCurve) -> tuple[tuple[str, str], ...]:
+def _keys(own: Curve) -> tuple[tuple[str, str], ...]:
     """Short words, with their dashes, that tell the passes apart and that rates are cut."""
-    keys = [("axis cut", "")] if quantity.order and own.view.circuit.turns_back else []
-    if len(own.passes) > 1 and own.view.motion.law is None:
+    keys = [("axis cut", "")] if own.cut else []
+    if len(own.passes) > 1 and own.walked.motion.law is None:
         keys += [("rising", "20 0"), ("falling", "5 3")]
-    if own.view.motion.linkage.stops.stops and not own.within.all():
+    if own.walked.linkage.stops.stops and not within(own.walked).all():
         keys.append(("pale: beyond a stop", ""))
     return tuple(keys)
 
 
-def _limits(view: View, frame: picture.Frame, below: Scale, unit: str) -> str:
+def _limits(walked: TimedWalk, frame: picture.Frame, below: Scale, unit: str) -> str:
     """Dashed lines with values at input limits, paler for other circuits; dotted ones at change points."""
-    motion = view.motion
+    motion = walked.motion
     left, top, _, bottom = frame.box
     own = shown_value(
-        motion, motion.input, np.array([d.input for d in view.circuit.dead_centres if d.kind == "input"])
+        motion, motion.input, np.array([d.input for d in walked.circuit.dead_centres if d.kind == "input"])
     )
     parts: list[str] = []
     free = 0.0
@@ -267,25 +218,15 @@ def _pale(colour: str) -> str:
     return "#" + "".join(f"{round(255 - 0.4 * (255 - int(colour[i : i + 2], 16))):02x}" for i in (1, 3, 5))
 
 
-def _marks(quantity: Quantity, own: ShownCurve, frame: picture.Frame, below: Scale, beside: Scale) -> str:
+def _marks(own: Curve, frame: picture.Frame, below: Scale, beside: Scale, over: Over, colour: str) -> str:
     """Small circles at the extremes of the output's angle or rates, each with its value as a tooltip."""
-    motion, circuit = own.view.motion, own.view.circuit
-    extremes: Extremes | None = getattr(circuit, quantity.kind)
-    if quantity.column != circuit.output_column or extremes is None:
-        return ""
-    period = math.inf if slides(motion, motion.input) else 360.0
-    inputs = own.view.shown_input
-    lines = [(inputs[part], own.across[part], own.values[part]) for part in own.passes]
     parts: list[str] = []
-    for word in ("lowest", "highest"):
-        value, at = getattr(extremes, word), getattr(extremes, f"{word}_at")
-        if quantity.order == 0:
-            value = shown_value(motion, motion.output, value) + quantity.shift(own.view)
-        across = place_of(lines, value, shown_value(motion, motion.input, at), period)
-        x, y = float(frame.x(below, np.array(across))), float(frame.y(beside, np.array(value)))
-        _, top, _, bottom = frame.box
+    _, top, _, bottom = frame.box
+    for mark in own.marks:
+        across = own.place(mark, over)
+        x, y = float(frame.x(below, np.array(across))), float(frame.y(beside, np.array(mark.value)))
         if math.isfinite(x) and top <= y <= bottom:
-            label = escape(f"{word} {beside.reading(value, quantity.unit)}")
-            look = f'fill="{picture.GROUND}" stroke="{own.colour}" stroke-width="1.5"'
+            label = escape(f"{mark.word} {beside.reading(mark.value, own.quantity.unit)}")
+            look = f'fill="{picture.GROUND}" stroke="{colour}" stroke-width="1.5"'
             parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.2" {look}><title>{label}</title></circle>')
     return "".join(parts)
