@@ -13,6 +13,10 @@ SAMPLE = (
 )
 
 
-def sampled():
+#: Of these one of each kind of joint, where a test takes seconds for each.
+FEW = ("rssr", "planar_4r", "rsur", "rssp", "swash_plate", "screw_drill")
+
+
+def sampled(sample=SAMPLE):
     """The names of the gallery; those outside the sample are proofs."""
-    return [pytest.param(name, marks=() if name in SAMPLE else pytest.mark.proof) for name in names()]
+    return [pytest.param(name, marks=() if name in sample else pytest.mark.proof) for name in names()]

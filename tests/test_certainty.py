@@ -34,7 +34,7 @@ def test_a_small_sample_holds_and_the_page_has_every_family(tmp_path, monkeypatc
 @pytest.mark.parametrize("name", command.FAMILIES)
 def test_a_few_of_each_family_hold(name):
     family = command.FAMILIES[name]
-    count = math.ceil(family.quick / 3)
+    count = math.ceil(family.quick / 8)
     row = judged(family, 2, 0, count)
     # a change point is reported some 1e-5 rad off, too, as docs/not-covered.md says
     others = [what for _, what in row.differences if not what.startswith("change-point with limits")]

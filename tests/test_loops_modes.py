@@ -42,8 +42,8 @@ from evidence.fuzz.random_loops import (
 REFERENCES = Path(__file__).parent / "references"
 
 #: Loops of each family, and starts of the search for each loop.
-GENERAL_LOOPS = {"few": 40, "many": 200, "all": 10_000}
-SPECIAL_LOOPS = {"few": 4, "many": 24, "all": 1_000}
+GENERAL_LOOPS = {"few": 100, "all": 10_000}
+SPECIAL_LOOPS = {"few": 12, "all": 1_000}
 STARTS = 300
 #: Slides are unbounded, and joints of several freedoms make more unknowns: both take more starts.
 SPECIAL_STARTS = 500
@@ -57,7 +57,6 @@ CLOSURE = 1e-10
     scope="module",
     params=[
         "few",
-        "many",
         pytest.param("all", marks=pytest.mark.proof),
     ],
 )

@@ -32,7 +32,7 @@ WELL = 1e4
 #: The cosine of a ball's second turn below which its first and third have no direction.
 TURNS_DEFINED = 0.2
 
-LINKAGES = {"two": 2, "few": 3, "many": 60}
+LINKAGES = {"few": 3, "many": 60}
 ROWS = 3
 
 FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {
@@ -61,7 +61,6 @@ def many_digits() -> Iterator[None]:
 
 @pytest.fixture(
     params=[
-        "two",
         "few",
         pytest.param("many", marks=pytest.mark.proof),
     ]
