@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 
 import numpy as np
@@ -21,6 +22,7 @@ from sevenbar.kinematics.loop.rigid import rotation_of
 from sevenbar.measuring.calibrate import calibrate
 from sevenbar.measuring.measured import Measured
 from sevenbar.sweep.space import Space
+from test_tolerance_sensitivities import compare_all
 
 #: A planar four-bar of 40, 100, 80 on a ground of 90, the input link along y; joints at two heights, as CAD has them.
 AS_DRAWN = np.eye(3)
@@ -343,3 +345,12 @@ def test_a_path_varies_the_lengths_of_a_drawing(tmp_path) -> None:
     best = json.loads(output[output.index("{") :])["designs"][0]
     assert best["input_link_mm"] == pytest.approx(44.0, abs=1e-4)
     assert best["coupler_mm"] == pytest.approx(103.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("link", [0, 1, 2])
+@pytest.mark.parametrize("drawing", [planar, rssr])
+def test_derivatives_by_places_of_a_longer_link_count_that_its_direction_turns(drawing, link) -> None:
+    raw = copy.deepcopy(dict(drawing().description))
+    raw["joint"][link]["longer"] = 15.0
+    _, compared = compare_all(from_description({"format": 1} | raw))
+    assert compared > 400

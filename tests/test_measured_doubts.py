@@ -23,7 +23,7 @@ from sevenbar.measuring.compare import compare, ends_of
 from sevenbar.measuring.figures import calibration_figure
 from sevenbar.measuring.measured import Measured
 from sevenbar.measuring.passes import stretches_of, ways_through
-from sevenbar.measuring.report import calibration_dict, calibration_text
+from sevenbar.measuring.report import calibration_page
 from sevenbar.measuring.rewrite import calibrated_toml
 
 PAPER = Dimensions(700.0, 700.0, 250.0, 550.0, 0.0, math.sqrt(450**2 + 550**2 + 700**2))
@@ -63,7 +63,7 @@ def rocking(dims=REAL, count=90, noise=1e-4, cycles=1):
 
 def page(found):
     out = io.StringIO()
-    Console(width=200, file=out).print(calibration_text(found))
+    Console(width=200, file=out).print(calibration_page(found))
     return out.getvalue()
 
 
@@ -363,7 +363,7 @@ def test_a_coupler_that_the_file_leaves_out_is_a_rod_of_its_own_unless_it_is_to_
     assert held.parameter("L2").status == "fixed"
     assert held.parameter("L2").value == linkage.dimensions["L2"]
     assert "held              M, N, D, L2 (997.497 mm in the design)" in page(held)
-    assert calibration_dict(held)["left_out"] == ["L2"]
+    assert calibration_page(held).facts.as_dict["left_out"] == ["L2"]
     found = calibrate(linkage, table(input=inputs, angle=angle), free=["L1", "L2", "L3"], hold=["D"])
     assert found.parameter("L2").status == "calibrated"
     real = replace(REAL, L2=float(following_coupler(700.0, 700.0, 251.0, 548.0)))

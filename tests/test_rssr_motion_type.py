@@ -401,3 +401,27 @@ def test_a_change_point_is_never_without_its_place() -> None:
         motion = sb.rssr(M=M, N=N, L1=L1, L3=L3, D=D, L2=L2).motion(input=driver)
         assert motion.motion_type == "change-point"
         assert motion.change_points
+
+
+def drawn_rssr(crank, a, b, rocker):
+    """An RSSR by the places of its joints and the axes of its ends, (place, axis) each."""
+    ends = [{"kind": "R", "at": at, "axis": axis} for at, axis in (crank, rocker)]
+    return sb.from_axes([ends[0], {"kind": "S", "at": a}, {"kind": "S", "at": b}, ends[1]])
+
+
+def test_the_swing_of_a_circuit_through_a_change_point_is_that_between_its_dead_centres_whatever_the_rows():
+    linkage = drawn_rssr(((-2, -1, 2), (0, -1, -1)), (0, 2, 0), (0, 0, -2), ((0, -1, 2), (0, 1, 0)))
+    for samples in (24, 360):
+        motion = linkage.motion(samples)
+        assert motion.motion_type == "change-point"
+        (circuit,) = motion.circuits
+        # as the solver of any loop has it, which follows the circuit
+        assert circuit.swing == pytest.approx(5.03768324158, abs=1e-10)
+        assert circuit.angle.highest - circuit.angle.lowest == pytest.approx(circuit.swing, abs=1e-12)
+
+
+def test_an_rssr_that_closes_at_one_input_only_is_rigid():
+    linkage = drawn_rssr(((2, 0, 1), (0, 1, 0)), (-2, 0, -1), (-2, -2, -1), ((-2, 2, 1), (0, 1, -1)))
+    motion = linkage.motion(24)
+    assert (motion.motion_type, len(motion.circuits)) == ("rigid", 0)
+    assert len(linkage.assembly_modes(0.0).q) == 1

@@ -89,8 +89,8 @@ impl Product {
         Ok(Self(loops::Product::of(Factor::Drawn(own))))
     }
 
-    /// The frame of an axis (0), of one square to it and to the line between places (1), of one square to both (2), about which a
-    /// drawn ball turns; the axis is that `written` by numbers, or the one given.
+    /// The frame of an axis (0), of one square to it and to the line between places (1), of one square to both (2; 3 to slide along
+    /// it), about which a drawn ball turns; the axis is that `written` by numbers, or the one given.
     #[staticmethod]
     fn held(line: [Three; 2], which: usize, written: Option<Three>, given: [f64; 3]) -> Self {
         let axis = written.map_or(Axis::Given(given), Axis::Written);

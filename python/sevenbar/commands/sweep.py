@@ -98,9 +98,8 @@ def sweep(
     deliver(result, Report(partial(_text, plan.held), _as_dict, spoken=True), json=json)
     if out is not None and not json:
         parts = result.description["parts"]
-        typer.echo(
-            f"\n{'there already' if finished else 'written'}: {out} (sweep.json, {_counted(parts, 'part')})"
-        )
+        state = "there already" if finished else "written"
+        typer.echo(f"\n{state}: {out} (sweep.json, {parts} part{'s' * (parts != 1)})")
 
 
 def _as_dict(found: Sweep) -> dict[str, Any]:
@@ -148,7 +147,3 @@ def _text(held: HeldDimensions, found: Sweep) -> RenderableType:
             table.add_row(name, low, str(extent.lowest_at), high, str(extent.highest_at), str(extent.rows))
         parts += [Text(), table]
     return Group(*parts)
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}" if count == 1 else f"{count} {what}s"

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import RenderableType
 from rich.table import Table
 
 from sevenbar.kinematics.loop.columns import unit_in_column
@@ -17,11 +16,10 @@ from sevenbar.measuring.compare import Comparison, alike, name_of, per_cent
 from sevenbar.measuring.extremes import Extent, ExtremesComparison
 from sevenbar.measuring.measured import Ends
 from sevenbar.measuring.passes import PassFit
-from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
+from sevenbar.reporting.files import Report, columns_file, figure_files, text_file
 from sevenbar.reporting.folder import write_columns, write_csv
-from sevenbar.reporting.page import Facts, number_table, opening, page
+from sevenbar.reporting.page import Facts, Page, number_table, page, page_report, prints_its_page
 from sevenbar.reporting.shown import drive_text
-from sevenbar.text.printing import text_of
 from sevenbar.text.words import retold, say
 
 if TYPE_CHECKING:
@@ -34,23 +32,32 @@ EXACT_DIGITS = 6
 MOST_CANDIDATES = 4
 
 
-def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableType:
-    """The comparison for people: what explains the data, the paper's Table 1, the differences."""
+def comparison_page(comparison: Comparison | ExtremesComparison) -> Page:
+    """What explains the data, the paper's Table 1, the differences; plain values in radians."""
     heading, table = comparison.linkage.heading, _extents_table(comparison.table, comparison.ends)
+    sides = ("computed", "measured", "error", "per_cent")
+    extents = [
+        {"quantity": extent.quantity}
+        | {name: dict(zip(sides, values, strict=True)) for name, *values in extent.rows()}
+        for extent in comparison.table
+    ]
     if isinstance(comparison, ExtremesComparison):
         measured = say("{source}, lowest and highest values", source=comparison.source)
-        facts = _facts(comparison.ends, comparison.speed, measured)
+        facts = _facts(comparison, comparison.speed, measured)
         first, *others = (
             _with_residual(say("circuit {number}", number=i), m) for i, m in comparison.residuals
         )
-        facts.add("explained by", first, style="bold")
+        facts.add("explained by", first, style="bold", circuit=comparison.circuit)
         _add_others(facts, others)
-        facts.add("", say("residual: root mean square of the errors relative to the measured range"))
+        residuals = [{"circuit": i, "residual": m} for i, m in comparison.residuals]
+        how = say("residual: root mean square of the errors relative to the measured range")
+        facts.add("", how, candidates=residuals, table=extents)
         return page(heading, facts, table)
     chosen = comparison.chosen
     rows = say("{count} rows", count=np.isfinite(next(iter(comparison.computed.values()))).sum())
-    facts = _facts(comparison.ends, comparison.speed, _measured(comparison, rows))
-    facts.add("explained by", _candidate(chosen), style="bold")
+    facts = _facts(comparison, comparison.speed, _measured(comparison, rows))
+    facts.also(rows=len(comparison.line))
+    facts.add("explained by", _candidate(chosen), style="bold", **_chosen(comparison))
     others, named = [], [chosen]
     for candidate in comparison.candidates[1:]:
         if not any(alike(candidate, other) for other in named):
@@ -58,57 +65,71 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
             others.append(_candidate(candidate))
     _add_others(facts, others)
     facts.add("", say("residual: root mean square of the differences relative to the measured range"))
-    if "phase" in comparison.aligned:
-        phase = _value(comparison.ends, "input", chosen.phase)
-        facts.add("phase", say("{value} added to the measured input", value=phase))
-    if "offset" in comparison.aligned:
-        offset = _value(comparison.ends, "angle", chosen.offset)
-        facts.add("offset", say("{value} subtracted from the measured output", value=offset))
+    aligned = comparison.aligned
+    phase = say("{value} added to the measured input", value=_value(comparison.ends, "input", chosen.phase))
+    offset = say(
+        "{value} subtracted from the measured output", value=_value(comparison.ends, "angle", chosen.offset)
+    )
+    facts.also(aligned=list(aligned))
+    facts.add("phase", phase if "phase" in aligned else "", phase=chosen.phase)
+    facts.add("offset", offset if "offset" in aligned else "", offset=chosen.offset)
+    facts.also(
+        candidates=[{**vars(fit), "branches": list(fit.branches)} for fit in comparison.candidates],
+        table=extents,
+        differences={q: vars(comparison.spread(q)) for q in comparison.outputs},
+        notes=list(comparison.notes),
+    )
     facts.add_all(("note", retold(note)) for note in comparison.notes)
     return page(heading, facts, table, _spread_table(comparison))
 
 
-def calibration_text(calibration: Calibration) -> RenderableType:
-    """The calibration for people: each dimension with its interval, or why it has none."""
+def calibration_page(calibration: Calibration) -> Page:
+    """Each dimension with its interval, or why it has none; plain values in radians, NaN for no interval."""
     ends, before = calibration.ends, calibration.before
     count, places = len(calibration.line), calibration.places
     rows = say("{count} rows", count=count)
     if places < count:
         rows = say("{count} rows at {places} places", count=count, places=places)
-    facts = _facts(ends, before.speed, _measured(calibration, rows))
-    facts.add("explained by", _named(before.chosen))
-    for quantity in calibration.outputs:
-        nominal, calibrated = _rms(calibration, quantity)
-        word, unit = say(ends.word(quantity)), ends.unit(quantity)
-        facts.add(
-            say("rms of the {quantity}", quantity=word),
-            say(
-                "{before:.4g} before, {after:.4g} after [{unit}]", before=nominal, after=calibrated, unit=unit
-            ),
-        )
-    count = len(calibration.calibrated)
-    facts.add(
-        "fitted",
-        say("{count} parameters, {freedom} degrees of freedom", count=count, freedom=calibration.freedom),
-    )
-    if held := calibration.held.text:
-        facts.add("held", held)
+    facts = _facts(calibration, before.speed, _measured(calibration, rows))
+    facts.also(rows=count)
+    facts.add("explained by", _named(before.chosen), **_chosen(before), confidence=calibration.confidence)
+    rms = {quantity: _rms(calibration, quantity) for quantity in calibration.outputs}
+    for quantity, (nominal, calibrated) in rms.items():
+        text = say(
+            "{before:.4g} before, {after:.4g} after [{unit}]",
+            before=nominal, after=calibrated, unit=ends.unit(quantity),
+        )  # fmt: skip
+        facts.add(say("rms of the {quantity}", quantity=say(ends.word(quantity))), text)
+    names, freedom = [p.name for p in calibration.calibrated], calibration.freedom
+    fitted = say("{count} parameters, {freedom} degrees of freedom", count=len(names), freedom=freedom)
+    facts.add("fitted", fitted, degrees_of_freedom=freedom, places=places, exact=calibration.exact)
+    facts.add("held", calibration.held.text, **calibration.held.as_dict)
     for parameter in calibration.parameters:
         if parameter.status == "unidentified":
             facts.add("not identifiable", _unidentified(parameter, ends))
-    if names := ", ".join(p.name for p in calibration.parameters if p.status == "opens the loop"):
+    if opening := ", ".join(p.name for p in calibration.parameters if p.status == "opens the loop"):
         facts.add(
-            "held", say("{names}: a change of one alone would open this overconstrained loop", names=names)
+            "held", say("{names}: a change of one alone would open this overconstrained loop", names=opening)
         )
+    facts.also(
+        parameters=[{**vars(p), "undone_by": list(p.undone_by)} for p in calibration.parameters],
+        covariance={"parameters": names, "values": calibration.covariance.tolist()},
+        noise=dict(calibration.noise),
+        rms={q: dict(zip(("nominal", "calibrated"), sides, strict=True)) for q, sides in rms.items()},
+        notes=list(calibration.notes),
+    )
     facts.add_all(("note", retold(note)) for note in calibration.notes)
     return page(calibration.linkage.heading, facts, _parameter_table(calibration))
 
 
-def _facts(ends: Ends, speed: float, measured: str) -> Facts:
+def _facts(found: Comparison | ExtremesComparison | Calibration, speed: float, measured: str) -> Facts:
     """What every page begins with."""
-    facts = Facts()
-    facts.add("measured", measured)
-    facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output))
+    ends, facts = found.ends, Facts()
+    facts.also(format=1, linkage=found.linkage.name)
+    facts.add("measured", measured, measured=found.source)
+    facts.also(units={"length": ends.length_unit, "angle": "rad", "time": "s"})
+    drive = {"input": ends.input, "output": ends.output, "speed": speed}
+    facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output), drive=drive)
     return facts
 
 
@@ -137,81 +158,16 @@ def _unidentified(parameter: Parameter, ends: Ends) -> str:
     )  # fmt: skip
 
 
-def _head(found: Comparison | ExtremesComparison | Calibration, speed: float) -> dict[str, Any]:
-    """What every object of a result begins with."""
-    ends = found.ends
-    return {
-        "format": 1,
-        "linkage": found.linkage.name,
-        "measured": found.source,
-        "units": {"length": ends.length_unit, "angle": "rad", "time": "s"},
-        "drive": {"input": ends.input, "output": ends.output, "speed": speed},
-    }
-
-
 def _chosen(before: Comparison) -> dict[str, Any]:
     fit = before.chosen
     return {"circuit": fit.circuit, "branch": fit.branch, "branches": list(fit.branches)}
 
 
-def comparison_dict(comparison: Comparison | ExtremesComparison) -> dict[str, Any]:
-    """The comparison as plain values; angles in radians."""
-    common = _head(comparison, comparison.speed)
-    heads = ("computed", "measured", "error", "per_cent")
-    table = [
-        {"quantity": extent.quantity}
-        | {name: dict(zip(heads, values, strict=True)) for name, *values in extent.rows()}
-        for extent in comparison.table
-    ]
-    if isinstance(comparison, ExtremesComparison):
-        residuals = [{"circuit": i, "residual": m} for i, m in comparison.residuals]
-        return common | {"circuit": comparison.circuit, "candidates": residuals, "table": table}
-    return common | {
-        "rows": len(comparison.line),
-        **_chosen(comparison),
-        "aligned": list(comparison.aligned),
-        "phase": comparison.chosen.phase,
-        "offset": comparison.chosen.offset,
-        "candidates": [{**vars(fit), "branches": list(fit.branches)} for fit in comparison.candidates],
-        "table": table,
-        "differences": {q: vars(comparison.spread(q)) for q in comparison.outputs},
-        "notes": list(comparison.notes),
-    }
-
-
-def calibration_dict(calibration: Calibration) -> dict[str, Any]:
-    """The calibration as plain values; angles in radians, NaN where there is no interval."""
-    names, sides = [p.name for p in calibration.calibrated], ("nominal", "calibrated")
-    return {
-        **_head(calibration, calibration.before.speed),
-        "rows": len(calibration.line),
-        **_chosen(calibration.before),
-        "confidence": calibration.confidence,
-        "degrees_of_freedom": calibration.freedom,
-        "places": calibration.places,
-        "exact": calibration.exact,
-        **calibration.held.as_dict,
-        "parameters": [{**vars(p), "undone_by": list(p.undone_by)} for p in calibration.parameters],
-        "covariance": {"parameters": names, "values": calibration.covariance.tolist()},
-        "noise": dict(calibration.noise),
-        "rms": {q: dict(zip(sides, _rms(calibration, q), strict=True)) for q in calibration.outputs},
-        "notes": list(calibration.notes),
-    }
-
-
 def comparison_report(figures: Sequence[str] = ("png",)) -> Report[Comparison | ExtremesComparison]:
     """How a comparison is reported; rows.csv and the figure are of measured rows only."""
-    return Report(
-        comparison_text,
-        comparison_dict,
-        {
-            "comparison.json": json_file(comparison_dict),
-            "table.csv": _write_extents,
-            "rows.csv": _write_compared,
-            **figure_files("comparison", figures, _comparison_figure),
-        },
-        spoken=True,
-    )
+    files = {"table.csv": _write_extents, "rows.csv": _write_compared}
+    drawn = figure_files("comparison", figures, _comparison_figure)
+    return page_report(comparison_page, "comparison", {**files, **drawn})
 
 
 def _write_extents(comparison: Comparison | ExtremesComparison, path: Path) -> None:
@@ -247,17 +203,15 @@ def calibration_report(
     toml: Callable[[Calibration], str], figures: Sequence[str] = ("png",)
 ) -> Report[Calibration]:
     """How a calibration is reported; `toml` makes the text of the calibrated linkage's file."""
-    return Report(
-        calibration_text,
-        calibration_dict,
+    return page_report(
+        calibration_page,
+        "calibration",
         {
             "calibrated.toml": text_file(toml),
-            "calibration.json": json_file(calibration_dict),
             "parameters.csv": _write_parameters,
             "rows.csv": columns_file(_calibrated_rows),
             **figure_files("calibration", figures, _calibration_figure),
         },
-        spoken=True,
     )
 
 
@@ -348,7 +302,9 @@ def _parameter_table(calibration: Calibration) -> Table:
         follows = p.status == "follows"
         if p.status == "calibrated" or follows:
             reach = _shown(p, (p.high - p.low) / 2)
-            digits = EXACT_DIGITS if calibration.exact else _digits(reach)
+            # two digits of the interval
+            shown = reach > 0 and not calibration.exact
+            digits = min(max(1 - math.floor(math.log10(reach)), 0), 12) if shown else EXACT_DIGITS
             plus_minus = say("exact") if calibration.exact else f"{reach:.{digits}f}"
             change = f"{value - nominal:+.{digits}f}"
             cells = [f"{value:.{digits}f}", plus_minus, change, say("follows") if follows else ""]
@@ -357,13 +313,6 @@ def _parameter_table(calibration: Calibration) -> Table:
             cells = [f"{value:.6g}", "-", "-", say(note)]
         rows.append((label, f"{nominal:.6g}", *cells))
     return number_table(heads, rows, words=[5])
-
-
-def _digits(reach: float) -> int:
-    """Decimals that show two digits of an interval."""
-    if not reach > 0:
-        return EXACT_DIGITS
-    return min(max(1 - math.floor(math.log10(reach)), 0), 12)
 
 
 def _parameter_unit(parameter: Parameter, ends: Ends) -> str:
@@ -395,12 +344,6 @@ def _rows(ends: Ends, line: Any, inputs: Any, sides: Mapping[str, Mapping[str, A
     return columns
 
 
-@text_of.register(Comparison)
-@text_of.register(ExtremesComparison)
-def _(comparison: Comparison | ExtremesComparison) -> str:
-    return opening("Comparison", comparison_text(comparison))
-
-
-@text_of.register(Calibration)
-def _(calibration: Calibration) -> str:
-    return opening("Calibration", calibration_text(calibration))
+prints_its_page(Comparison, "Comparison", comparison_page)
+prints_its_page(ExtremesComparison, "Comparison", comparison_page)
+prints_its_page(Calibration, "Calibration", calibration_page)

@@ -159,8 +159,10 @@ def _limits_text(motion: Motion) -> str:
     """The input's limits; of many no more than their number, since the tables have them by circuit."""
     if motion.limits.size > MOST_LIMITS:
         return say("{count}, by circuit in the table below", count=motion.limits.size)
-    show = Shown(motion.linkage.unit_of(motion.input))
-    return "  ".join(show(x) for x in motion.limits) or _no_limits(motion)
+    if motion.limits.size:
+        return "  ".join(map(Shown(motion.linkage.unit_of(motion.input)), motion.limits))
+    turns = all(circuit.input_range is None for circuit in motion)
+    return say("none: the input turns fully") if turns else say("none found")
 
 
 def joints_text(linkage: Loop) -> str:
@@ -278,11 +280,6 @@ def _mobility(mobility: Mobility) -> str:
         parts.append(say("{count} redundant constraint{s}", count=number, s="s" * (number > 1)))
     start = say("not known, as no pose was found") if mobility.finite is None else f"{mobility.finite}"
     return say("{mobility} ({parts})", mobility=start, parts=say(", ").join(parts))
-
-
-def _no_limits(motion: Motion) -> str:
-    turns = all(circuit.input_range is None for circuit in motion)
-    return say("none: the input turns fully") if turns else say("none found")
 
 
 def _circuit_count(motion: Motion) -> str:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import Console, RenderableType
 
+    from sevenbar.kinematics.loop.geometry import Loop
+
 T = TypeVar("T")
 
 #: Writes one file of a result to a path; a file that the result does not have is not written.
@@ -177,3 +179,12 @@ def without_nan(value: Any) -> Any:
 def json_text(value: Any) -> str:
     """Plain values as JSON text, null in place of each number that is not finite."""
     return json.dumps(without_nan(value), indent=2, allow_nan=False)
+
+
+def head_of(linkage: Loop, **units: str) -> dict[str, Any]:
+    """What objects for programs begin with: the version of their form, the linkage, the units."""
+    return {
+        "format": 1,
+        "linkage": {"name": linkage.name, "kind": linkage.kind},
+        "units": {"length": linkage.length_unit, "angle": "rad", "time": "s", **units},
+    }

@@ -25,7 +25,7 @@ from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.reporting import force_words
 from sevenbar.reporting.extents import known
 from sevenbar.reporting.figures import FigureLook
-from sevenbar.reporting.files import Files, Report, Write, columns_file, figure_files, json_file
+from sevenbar.reporting.files import Files, Report, Write, columns_file, figure_files, head_of, json_file
 from sevenbar.reporting.page import Facts, number_table, page
 from sevenbar.reporting.shown import drive_text, number, rows_text
 from sevenbar.text.words import retold, say
@@ -193,6 +193,9 @@ def text(found: CircuitForces) -> RenderableType:
     return page(found.motion.linkage.heading, facts, *tables)
 
 
+#: Units in the JSON besides those of every result.
+UNITS = {"mass": "kg", "force": "N", "moment": "N m", "power": "W", "energy": "J", "inertia": "kg m^2"}
+
 #: What a sizing has that the JSON has elsewhere.
 IN_UNITS = ("bearings", "unit", "input_unit")
 
@@ -295,20 +298,7 @@ def as_dict(found: CircuitForces) -> dict[str, Any]:
     motion, forces = found.motion, found.forces
     linkage = motion.linkage
     return {
-        "format": 1,
-        "linkage": {"name": linkage.name, "kind": linkage.kind},
-        "units": {
-            "length": linkage.length_unit,
-            "angle": "rad",
-            "time": "s",
-            "mass": "kg",
-            "force": "N",
-            "moment": "N m",
-            "power": "W",
-            "energy": "J",
-            "inertia": "kg m^2",
-            "torque": forces.unit,
-        },
+        **head_of(linkage, **UNITS, torque=forces.unit),
         "drive": {
             "input": forces.driver,
             "speed": None if motion.law is not None or forces.at_rest else motion.speed,

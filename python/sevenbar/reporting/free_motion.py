@@ -7,13 +7,14 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from rich.console import RenderableType
 
 from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.force_words import free_spin_facts
-from sevenbar.reporting.page import Facts, number_table, page
+from sevenbar.reporting.page import Facts, Page, facts_table, page
+from sevenbar.reporting.shown import REST
+from sevenbar.text.listed import named
 from sevenbar.text.printing import figure_of, lines, text_of
 from sevenbar.text.words import retold, say
 
@@ -30,17 +31,13 @@ GOES_ON = {
     "on its stop": "ends at rest on a stop",
 }
 
-#: Speeds below this part of the greatest [1], and angles [deg] and lengths below this part of a turn, or of
-#: the way that the rows go, are rounding in words.
-ROUNDING = 1e-12
-
 #: Stops met that are listed.
 MOST_MET = 4
 
 
 def _angle(value: float, *, turns: bool, unit: str, scale: float = 0.0) -> str:
     """A value with its unit; what is rounding compared with a `scale` is 0."""
-    value = 0.0 if abs(value) <= ROUNDING * scale else value
+    value = 0.0 if abs(value) <= REST * scale else value
     return f"{math.degrees(value):.9g} deg" if turns else f"{value:.9g} {unit}"
 
 
@@ -49,7 +46,8 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
     name = found.columns[found.input_column]
 
     way = math.tau if found.input_turns else float(np.nanmax(np.abs(found.input)))
-    fastest = _fastest(found)
+    # compared with which others may be rounding
+    fastest = float(np.abs(found.speed[np.isfinite(found.speed)]).max(initial=0.0))
 
     def value(x: float) -> str:
         return _angle(float(x), turns=found.input_turns, unit=found.length_unit, scale=way)
@@ -81,12 +79,6 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
     if found.through_change_points:
         facts.append((say("note"), say("it passes change points along the circuit's smooth continuation")))
     return facts
-
-
-def _fastest(found: FreeMotion) -> float:
-    """The greatest speed of the input on the rows, compared with which others may be rounding."""
-    known = np.abs(found.speed[np.isfinite(found.speed)])
-    return float(known.max()) if known.size else 0.0
 
 
 def _stop_facts(
@@ -139,7 +131,7 @@ def _(found: FreeMotion, **options: Any) -> Any:
     return free_figure(found, **options)
 
 
-def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
+def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> Page:
     fall, places = found
     facts = Facts()
     # of the equilibria, too
@@ -148,26 +140,27 @@ def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
         for link, most in fall.spin.items()
     }
     facts.add_all([*free_spin_facts(spin), *free_facts(fall)])
-    tables = []
-    stops = any(place.stop for place in places)
-    highest = max([abs(place.potential) for place in places], default=0.0)
-    if places:
-        rows = [
-            [
-                say(place.kind),
-                _place_text(place, fall),
-                _vibration(place),
-                f"{0.0 if abs(place.potential) <= ROUNDING * highest else place.potential:.9g}",
-                *([holding_text(place) if place.stop else ""] if stops else []),
-            ]
-            for place in places
-        ]
-        unit = "deg" if fall.input_turns else fall.length_unit
-        name = f"{fall.columns[fall.input_column]} [{unit}]"
-        head = ["equilibrium", name, "vibration [rad/s]", "potential [J]"]
-        head += ["held by its stop"] * stops
-        tables.append(number_table(head, rows, words=[0]))
+    rows = [_equilibrium(place, fall, places) for place in places]
+    tables = [facts_table(rows, words=[0])] if rows else []
     return page(say("free motion of {linkage}", linkage=fall.heading), facts, *tables)
+
+
+def _equilibrium(place: Equilibrium, fall: FreeMotion, places: Sequence[Equilibrium]) -> Facts:
+    """One of the equilibria of a circuit."""
+    row = Facts()
+    row.add("equilibrium", say(place.kind), kind=place.kind)
+    name = f"{fall.columns[fall.input_column]} [{'deg' if fall.input_turns else fall.length_unit}]"
+    row.add(name, _place_text(place, fall), input=place.input)
+    row.add("vibration [rad/s]", _vibration(place), frequency_rad_s=place.frequency)
+    row.also(rate_1_s=place.rate)
+    rounding = REST * max(abs(other.potential) for other in places)
+    potential = 0.0 if abs(place.potential) <= rounding else place.potential
+    row.add("potential [J]", f"{potential:.9g}", potential_J=place.potential)
+    row.also(until=place.until, idle_spin=dict(place.spin))
+    if any(other.stop for other in places):
+        held = named(place, "stop", "holding", "holding_unit") if place.stop else {}
+        row.add("held by its stop", holding_text(place) if place.stop else "", **held)
+    return row
 
 
 def _place_text(place: Equilibrium, fall: FreeMotion) -> str:
@@ -188,6 +181,10 @@ def _vibration(place: Equilibrium) -> str:
 def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]:
     """A free motion and the equilibria of its circuit as plain values, in SI units and radians."""
     fall, places = found
+    rest: dict[str, Any] | None = None
+    if fall.rest is not None:
+        rest = {"input": fall.rest.input, "potential_J": fall.rest.potential}
+        rest |= named(fall.rest, "stop", "holding", "holding_unit")
     return {
         "kind": fall.kind,
         "period_s": fall.period,
@@ -204,30 +201,9 @@ def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]
             for one in fall.impacts
         ],
         "rests_from_s": None if fall.rest is None else fall.rests_from,
-        "rest": None if fall.rest is None else _rest_dict(fall.rest),
-        "equilibria": [
-            {
-                "kind": place.kind,
-                "input": place.input,
-                "frequency_rad_s": place.frequency,
-                "rate_1_s": place.rate,
-                "potential_J": place.potential,
-                "until": place.until,
-                "idle_spin": dict(place.spin),
-            }
-            | (_held_dict(place) if place.stop else {})
-            for place in places
-        ],
+        "rest": rest,
+        "equilibria": [_equilibrium(place, fall, places).as_dict for place in places],
     }
-
-
-def _held_dict(place: Equilibrium) -> dict[str, Any]:
-    """What holds an equilibrium on its stop."""
-    return {"stop": place.stop, "holding": place.holding, "holding_unit": place.holding_unit}
-
-
-def _rest_dict(place: Equilibrium) -> dict[str, Any]:
-    return {"input": place.input, "potential_J": place.potential} | _held_dict(place)
 
 
 def free_report(formats: Sequence[str]) -> Report[tuple[FreeMotion, Sequence[Equilibrium]]]:

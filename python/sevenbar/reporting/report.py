@@ -21,7 +21,7 @@ from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.reporting.extents import extents_dict
 from sevenbar.reporting.facts import closure_error, side_lengths
 from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures
-from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
+from sevenbar.reporting.files import Files, LongTable, Report, head_of, json_file, json_text, without_nan
 from sevenbar.reporting.force_peaks import peaks_dict
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.summary import summary
@@ -260,11 +260,14 @@ def modes_report(
     With `poses`, which has their rates, also these, printed or not; `limit` is the nearest value of the
     column up to which the loop closes, where it does not close at this one.
     """
-    return Report(
-        partial(_modes_text, linkage, column, poses if rates else None, limit),
-        partial(_modes_dict, linkage, column, poses, limit),
-        spoken=True,
-    )
+
+    def text(modes: Modes) -> RenderableType:
+        # rich takes a while to load, and JSON does without it
+        from sevenbar.reporting.printed import modes_page
+
+        return modes_page(linkage, column, modes, poses if rates else None, limit)
+
+    return Report(text, partial(_modes_dict, linkage, column, poses, limit), spoken=True)
 
 
 def modes_json(linkage: Solvable, modes: Modes, column: int) -> str:
@@ -286,9 +289,7 @@ def _modes_dict(
     rates = [{} if pose is None else pose_dict(pose) for pose in own]
     drive = None if poses is None else {"speed": poses.speed, "acceleration": poses.acceleration}
     return {
-        "format": 1,
-        "linkage": {"name": linkage.name, "kind": linkage.kind},
-        "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
+        **head_of(linkage),
         "input": {"joint": linkage.columns[column], "value": modes.input},
         "drive": drive,
         "completeness": modes.completeness,
@@ -303,12 +304,3 @@ def _modes_dict(
         ],
         "nearest_limit": limit,
     }
-
-
-def _modes_text(
-    linkage: Solvable, column: int, poses: PosesAt | None, limit: float | None, modes: Modes
-) -> RenderableType:
-    # rich takes a while to load, and JSON does without it
-    from sevenbar.reporting.printed import modes_page
-
-    return modes_page(linkage, column, modes, poses, limit)

@@ -136,6 +136,8 @@ def _(circuit: Circuit) -> str:
         low, high = (show(x) if show else f"{x:.6g}" for x in (extremes.lowest, extremes.highest))
         return f"{low} to {high}"
 
+    # as far as it has been found: to print is not to solve
+    transmission: Extremes | None = vars(circuit).get("transmission", circuit._transmission)
     return lines(
         f"Circuit {circuit.index}: {circuit.motion_type}, {way_round(circuit)}",
         [
@@ -146,7 +148,7 @@ def _(circuit: Circuit) -> str:
             ("input dead centres", still("input")),
             ("output dead centres", still("output")),
             ("time ratio", _time_ratio(circuit)),
-            ("transmission angle", range_of(_known_transmission(circuit), Shown("rad"))),
+            ("transmission angle", range_of(transmission, Shown("rad"))),
             ("velocity", range_of(circuit.velocity)),
             ("acceleration", range_of(circuit.acceleration)),
             ("closure error", closure_text([circuit]).rstrip()),
@@ -158,12 +160,6 @@ def _time_ratio(circuit: Circuit) -> str:
     if circuit.many_strokes:
         return "not defined: more than two strokes"
     return "" if circuit.time_ratio is None else f"{circuit.time_ratio:.6g}"
-
-
-def _known_transmission(circuit: Circuit) -> Extremes | None:
-    """The transmission angle if it has been found: to print is not to solve."""
-    known: Extremes | None = vars(circuit).get("transmission", circuit._transmission)
-    return known
 
 
 def _of_rows(head: str, status: Words, quantities: Iterable[tuple[str, Floats]]) -> str:

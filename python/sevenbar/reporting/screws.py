@@ -15,12 +15,9 @@ from sevenbar.arrays import Floats, counted
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.columns import joint_column
 from sevenbar.kinematics.loop.screw_axes import ScrewAxes
-from sevenbar.reporting.files import Report, columns_file, json_file
+from sevenbar.reporting.files import Report, columns_file, head_of, json_file
 from sevenbar.reporting.page import number_table
-from sevenbar.reporting.shown import drive_text
-
-#: A pitch or slide rate below this share of the size, or of the fastest turn of the size, is printed as 0.
-ROUNDING = 1e-12
+from sevenbar.reporting.shown import REST, drive_text
 
 #: The file with every row.
 TABLE = "axodes.csv"
@@ -80,9 +77,7 @@ def _ranges(axes: ScrewAxes) -> dict[str, tuple[float, float] | None]:
 def _as_dict(links: Sequence[int], relative_to: int | None, motion: Motion) -> dict[str, Any]:
     linkage = motion.linkage
     return {
-        "format": 1,
-        "linkage": {"name": linkage.name, "kind": linkage.kind},
-        "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
+        **head_of(linkage),
         "relative_to": linkage.graph.ground if relative_to is None else relative_to,
         "circuits": [
             {
@@ -108,7 +103,7 @@ def _text(links: Sequence[int], relative_to: int | None, motion: Motion) -> Rend
             ranges = _ranges(axes)
             fastest = circuit.size * max(ranges["rate"] or (0.0,))
             scale = {"pitch": circuit.size, "rate": 0.0, "slide_rate": fastest}
-            cells = [_range(ranges[name], ROUNDING * size) for name, size in scale.items()]
+            cells = [_range(ranges[name], REST * size) for name, size in scale.items()]
             words = ", ".join(f"{n} {word}" for word, n in counted(axes.status).items())
             rows.append((f"{link}", f"{circuit.index}", words, *cells))
     title = Text(linkage.heading, style="bold underline")

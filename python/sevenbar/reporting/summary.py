@@ -73,7 +73,8 @@ def summary(motion: Motion, room: int = 100, *, ranges: bool = False, short: boo
     elif motion.circuits:
         sheets += _side_by_side(motion)
     if motion.circuits and (ranges or not linkage.stops.is_empty):
-        sheets += _extents(motion)
+        parts = [extent_rows(motion), *([span_rows(motion)] if linkage.stops.stops else [])]
+        sheets += [Sheet(heads, tuple(rows), frozenset({0})) for heads, rows in parts]
     every = facts_of(motion)
     sure = motion.completeness in ("closed-form", "counted") and not motion.search.unfollowed
     shown = _short(every, sure=sure) if short else every
@@ -88,14 +89,6 @@ def _short(facts: Sequence[tuple[str, str]], *, sure: bool) -> list[tuple[str, s
         takes = name in BRIEF or (name == "completeness" and not sure) if name else takes
         result += [(name, fact)] * takes
     return result
-
-
-def _extents(motion: Motion) -> list[Sheet]:
-    """How far joints, balls and links go, and what stops leave of each circuit."""
-    parts = [extent_rows(motion)]
-    if motion.linkage.stops.stops:
-        parts.append(span_rows(motion))
-    return [Sheet(heads, tuple(rows), frozenset({0})) for heads, rows in parts]
 
 
 def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:

@@ -11,61 +11,47 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from rich.console import RenderableType
 
 from sevenbar.drawing.names import short
 from sevenbar.kinematics.loop.columns import joint_column, point_column
-from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
-from sevenbar.reporting.page import Facts, number_table, opening, page
+from sevenbar.reporting.files import Report, columns_file, figure_files, head_of, text_file
+from sevenbar.reporting.page import Facts, Page, number_table, page, page_report, prints_its_page
 from sevenbar.reporting.shown import drive_text
 from sevenbar.simulation.agreement import Difference, Simulation
-from sevenbar.text.printing import text_of
+from sevenbar.text.listed import named
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import Console
 
 
-def as_dict(run: Simulation) -> dict[str, Any]:
-    """The result of a run, as plain values, NaN for none; angles in radians, lengths in the file's unit."""
-    way = run.course
-    returned = None if run.returned is None else dict(zip(("length", "angle"), run.returned, strict=True))
-    return {
-        "format": 1,
-        "linkage": {"name": run.linkage.name, "kind": run.linkage.kind},
-        "units": {"length": run.linkage.length_unit, "angle": "rad", "time": "s"},
-        "engine": {"name": run.record.engine, "version": run.record.version, "notes": list(run.record.notes)},
-        "drive": {"input": way.motion.input, "output": way.motion.output, "speed": way.motion.speed},
-        "course": {
-            "circuit": way.circuit.index,
-            "closes": way.closes,
-            "rows": len(way.rows),
-            "lead": len(way.lead),
-            "step": way.step,
-        },
-        "differences": [vars(result) for result in run.differences],
-        "closure_error": {"length": run.gap, "angle": run.tilt},
-        "returned": returned,
-    }
-
-
-def text(run: Simulation) -> RenderableType:
-    """The report for people, to be printed by rich."""
+def page_of(run: Simulation) -> Page:
+    """The result of a run; plain values are in radians and the file's length unit, NaN for none."""
     way, record, linkage = run.course, run.record, run.linkage
     motion, unit = way.motion, run.linkage.length_unit
     facts = Facts()
+    facts.also(**head_of(linkage))
     facts.add("loop", "  ".join(f"{j.kind} {j.name}" for j in linkage.joints))
-    facts.add("engine", f"{record.engine} {record.version}: {record.method}")
-    facts.add("drive", drive_text(motion.input, motion.speed, linkage.unit_of(motion.input), motion.output))
-    facts.add("course", way.text())
-    lead = f", after {len(way.lead)} that are not compared" if len(way.lead) else ""
-    facts.add("steps", f"{len(way.rows) - 1} of {way.step:.6g} s{lead}")
+    engine = {"name": record.engine, "version": record.version, "notes": list(record.notes)}
+    facts.add("engine", f"{record.engine} {record.version}: {record.method}", engine=engine)
+    drive = drive_text(motion.input, motion.speed, linkage.unit_of(motion.input), motion.output)
+    facts.add("drive", drive, drive=named(motion, "input", "output", "speed"))
+    rows, lead = len(way.rows), len(way.lead)
+    course = {"circuit": way.circuit.index, "closes": way.closes, "rows": rows, "lead": lead}
+    facts.add("course", way.text(), course={**course, "step": way.step})
+    after = f", after {lead} that are not compared" if lead else ""
+    facts.add("steps", f"{rows - 1} of {way.step:.6g} s{after}")
     for number, note in enumerate(record.notes):
         facts.add("" if number else "built", note)
-    facts.add("closure error", f"{run.gap:.1e} {unit} and {run.tilt:.1e} rad at most, in the engine")
-    if run.returned is not None:
+    facts.also(differences=[vars(result) for result in run.differences])
+    error = f"{run.gap:.1e} {unit} and {run.tilt:.1e} rad at most, in the engine"
+    facts.add("closure error", error, closure_error={"length": run.gap, "angle": run.tilt})
+    if run.returned is None:
+        facts.also(returned=None)
+    else:
         apart, askew = run.returned
-        facts.add("return", f"misses its first pose by {apart:.1e} {unit} and {askew:.1e} rad")
+        text = f"misses its first pose by {apart:.1e} {unit} and {askew:.1e} rad"
+        facts.add("return", text, returned={"length": apart, "angle": askew})
     if run.forces:
         facts.add("forces", _forces_text(run))
     at = f"at {short(motion.input, 12)}"
@@ -96,12 +82,12 @@ def _cells(found: Difference, slide: bool, unit: str) -> tuple[str, ...]:
 def simulation_report(engine: str, figures: Sequence[str] = ("png",)) -> Report[Simulation]:
     """How a run of an engine is reported; files have its name, so that both engines share a folder."""
     name = engine.lower()
-    files = {f"{name}.json": json_file(as_dict), f"{name}.csv": columns_file(columns)}
+    files = {f"{name}.csv": columns_file(columns)}
     if name == "mujoco":
         files["mujoco.xml"] = text_file(_mjcf)
     for stem in ("output", "joints", "points", "forces"):
         files |= figure_files(f"{name}_{stem}", figures, partial(_figure, stem))
-    return Report(text, as_dict, files)
+    return page_report(page_of, name, files, spoken=False)
 
 
 def _mjcf(run: Simulation) -> str:
@@ -166,6 +152,4 @@ def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
     return result
 
 
-@text_of.register(Simulation)
-def _(run: Simulation) -> str:
-    return opening("Simulation", text(run))
+prints_its_page(Simulation, "Simulation", page_of)

@@ -7,7 +7,7 @@ use super::extremes::Extreme;
 use super::linkage::Input;
 use super::motion::{Circuit, Motion, MotionType};
 use crate::error::Error;
-use crate::outcome::{CircuitMeasures, Ends};
+use crate::outcome::{CircuitMeasures, DeadCentreKind, Ends};
 use crate::parallel::in_order;
 use std::f64::consts::PI;
 
@@ -81,12 +81,24 @@ impl From<Circuit> for CircuitMeasures {
     }
 }
 
-/// The measures of a circuit with its rows, at unit speed of the input: at a change point they alone tell the range of the output.
+/// The measures of a circuit with its rows, at unit speed of the input: at a change point they alone tell in which turn the output
+/// runs, between its dead centres.
 pub fn measures_with_rows(circuit: Circuit, rows: &[Row], input: Input) -> CircuitMeasures {
     let followed = (circuit.motion_type == MotionType::ChangePoint).then(|| followed_range(rows, input));
     let mut measures = CircuitMeasures::from(circuit);
-    if let Some(output) = followed {
-        measures.output = output;
+    if let Some(rows) = followed {
+        measures.output = rows.map(|[low, high]| {
+            let turn = Extent::Arc(low, high);
+            let mut ends = [low, high];
+            for dead_centre in &mut measures.dead_centres {
+                dead_centre.output = turn.unwrap(dead_centre.output);
+                // the rows pass by the end that it is
+                if dead_centre.kind == DeadCentreKind::Output {
+                    ends = [ends[0].min(dead_centre.output), ends[1].max(dead_centre.output)];
+                }
+            }
+            ends
+        });
     }
     measures
 }

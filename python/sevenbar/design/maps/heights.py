@@ -114,7 +114,8 @@ def measure_heights(
         refuse_missing_circuit(of, int(take))
     wanted = None if levels is None else levels_of(levels)
     net = _net(of)
-    (own,), seconds = _timed(lambda: of.plane.values_at(_place(of), chosen, take))
+    place = of.shares_of(np.array([[of.design.x, of.design.y]]))
+    (own,), seconds = _timed(lambda: of.plane.values_at(place, chosen, take))
     count = round((1 + IN_CONTOURS * len(chosen)) * len(net.nodes))
     ahead(count, count * seconds)
     of.plane.expect(count)
@@ -134,11 +135,6 @@ def measure_heights(
 def usual_lines(measures: Iterable[Measure]) -> int | None:
     """Lines of a map's grid, where its measures say so: forces take their time at every linkage."""
     return LOOP.lines if any(is_of_forces(measure.name) for measure in measures) else None
-
-
-def _place(of: Map) -> Floats:
-    """The place (1, 2) of the design [shares]."""
-    return of.shares_of(np.array([[of.design.x, of.design.y]]))
 
 
 def _timed(work: Callable[[], Floats]) -> tuple[Floats, float]:

@@ -10,16 +10,14 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from rich.console import RenderableType
 
 from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map, NearestChange
 from sevenbar.design.maps.figures import draw
 from sevenbar.design.maps.heights import Heights
-from sevenbar.reporting.files import Report, Write, figure_files, json_file
+from sevenbar.reporting.files import Report, Write, figure_files
 from sevenbar.reporting.folder import write_csv
-from sevenbar.reporting.page import Facts, number_table, opening, page
-from sevenbar.text.printing import text_of
+from sevenbar.reporting.page import Facts, Page, number_table, page, page_report, prints_its_page
 from sevenbar.text.words import say
 
 
@@ -31,30 +29,42 @@ class MapFindings:
     heights: Sequence[Heights] = ()
 
 
-def as_dict(findings: MapFindings) -> dict[str, Any]:
-    """The map as plain values; places of lines in the dimensions' units, null where there is none."""
+def page_of(findings: MapFindings) -> Page:
+    """What kinds there are, and how far the design is from each change.
+
+    Of plain values places of lines are in the dimensions' units, null where there is none.
+    """
     of, heights = findings.map, findings.heights
     x, y = of.axes
     design = of.design
-    return {
-        "format": 1,
-        "linkage": of.linkage.name,
-        "input": of.input,
-        "axes": [
-            {"dimension": axis.name, "unit": axis.dimension.unit, "low": axis.low, "high": axis.high}
-            for axis in of.axes
-        ],
-        **of.held.as_dict,
-        "kinds": [{**vars(kind), "share": share} for kind, share in of.areas.items()],
-        "design": {
-            x.name: design.x,
-            y.name: design.y,
-            "inside": design.inside,
-            **vars(design.kind),
-            "changes": [_step_dict(step) for step in design.steps],
-        },
-        "precision": {"tolerance": of.tolerance, "widest_hidden": of.widest, "open_area": of.open},
-        "boundaries": [
+    facts = Facts()
+    facts.also(format=1, linkage=of.linkage.name, input=of.input)
+    axes = []
+    for label, axis in (("across", x), ("up", y)):
+        low, high = axis.text(axis.low), axis.text(axis.high)
+        facts.add(label, say("{dimension} from {low} to {high}", dimension=axis.name, low=low, high=high))
+        unit = axis.dimension.unit
+        axes.append({"dimension": axis.name, "unit": unit, "low": axis.low, "high": axis.high})
+    facts.also(axes=axes)
+    facts.add("held", of.held.text, **of.held.as_dict)
+    facts.add("input", of.input)
+    facts.add("boundaries", _precision(of))
+    facts.also(kinds=[{**vars(kind), "share": share} for kind, share in of.areas.items()])
+    place = f"{x.name} = {x.text(design.x)}, {y.name} = {y.text(design.y)}"
+    plain: dict[str, Any] = {x.name: design.x, y.name: design.y, "inside": design.inside}
+    plain |= {**vars(design.kind), "changes": [_step_dict(step) for step in design.steps]}
+    where = place if design.inside else say("{design}; outside the map", design=place)
+    facts.add("design", where, design=plain)
+    facts.add("", of.name(design.kind), "bold")
+    for result in heights:
+        name = result.measure.name
+        value = say("none") if result.here is None else f"{result.here:.6g} {result.unit}".rstrip()
+        facts.add("", f"{name} {value}")
+        if not np.isfinite(result.values).any():
+            facts.add("", say("{measure}: no linkage on the map has it", measure=name), "yellow")
+    facts.also(
+        precision={"tolerance": of.tolerance, "widest_hidden": of.widest, "open_area": of.open},
+        boundaries=[
             {
                 "left": vars(of.kinds[line.left]),
                 "right": vars(of.kinds[line.right]),
@@ -62,7 +72,7 @@ def as_dict(findings: MapFindings) -> dict[str, Any]:
             }
             for line in of.boundaries
         ],
-        "regions": [
+        regions=[
             {
                 **vars(of.kinds[region.kind]),
                 "share": region.area,
@@ -71,8 +81,14 @@ def as_dict(findings: MapFindings) -> dict[str, Any]:
             }
             for region in of.regions
         ],
-        "measures": [_heights_dict(of, result) for result in heights],
-    }
+        measures=[_heights_dict(of, result) for result in heights],
+    )
+    shares = [[of.name(kind), f"{100 * share:.3f} %"] for kind, share in of.areas.items()]
+    tables = [number_table(["on the map", "share"], shares)]
+    if design.inside:
+        rows = [_row(of, step) for step in design.steps]
+        tables.append(number_table(["the design changes", "by", "at", "and becomes"], rows, words=(3,)))
+    return page(of.linkage.heading, facts, *tables)
 
 
 def _step_dict(step: NearestChange) -> dict[str, Any]:
@@ -96,36 +112,6 @@ def _heights_dict(of: Map, heights: Heights) -> dict[str, Any]:
             for line in heights.contours
         ],
     }
-
-
-def text(findings: MapFindings) -> RenderableType:
-    """What kinds there are, and how far the design is from each change, for people."""
-    of, heights = findings.map, findings.heights
-    x, y = of.axes
-    design = of.design
-    facts = Facts()
-    for label, axis in (("across", x), ("up", y)):
-        low, high = axis.text(axis.low), axis.text(axis.high)
-        facts.add(label, say("{dimension} from {low} to {high}", dimension=axis.name, low=low, high=high))
-    if held := of.held.text:
-        facts.add("held", held)
-    facts.add("input", of.input)
-    facts.add("boundaries", _precision(of))
-    place = f"{x.name} = {x.text(design.x)}, {y.name} = {y.text(design.y)}"
-    facts.add("design", place if design.inside else say("{design}; outside the map", design=place))
-    facts.add("", of.name(design.kind), "bold")
-    for result in heights:
-        name = result.measure.name
-        value = say("none") if result.here is None else f"{result.here:.6g} {result.unit}".rstrip()
-        facts.add("", f"{name} {value}")
-        if not np.isfinite(result.values).any():
-            facts.add("", say("{measure}: no linkage on the map has it", measure=name), "yellow")
-    shares = [[of.name(kind), f"{100 * share:.3f} %"] for kind, share in of.areas.items()]
-    tables = [number_table(["on the map", "share"], shares)]
-    if design.inside:
-        rows = [_row(of, step) for step in design.steps]
-        tables.append(number_table(["the design changes", "by", "at", "and becomes"], rows, words=(3,)))
-    return page(of.linkage.heading, facts, *tables)
 
 
 def _precision(of: Map) -> str:
@@ -165,14 +151,13 @@ def map_report(
 ) -> Report[MapFindings]:
     """How a map with contours of these measures is reported; a figure for the map and for each measure."""
     files: dict[str, Write[MapFindings]] = {
-        "map.json": json_file(as_dict),
         "boundaries.csv": partial(_write_lines, ["boundary", "left", "right"], _boundaries),
     }
     if measures:
         files["contours.csv"] = partial(_write_lines, ["contour", "measure", "level"], _contours)
     for place, stem in enumerate(("map", *measures)):
         files |= figure_files(stem, figures, partial(_sheet, size, side, place))
-    return Report(text, as_dict, files, spoken=True)
+    return page_report(page_of, "map", files)
 
 
 def _sheet(size: str | None, side: bool, place: int, found: MapFindings) -> Figure:
@@ -205,6 +190,4 @@ def _write_lines(
     write_csv(path, head, rows)
 
 
-@text_of.register(Map)
-def _(of: Map) -> str:
-    return opening("Map", text(MapFindings(of)))
+prints_its_page(Map, "Map", lambda of: page_of(MapFindings(of)))

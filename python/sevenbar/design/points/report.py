@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from rich.console import RenderableType
 
 from sevenbar.arrays import Floats
 from sevenbar.design.points.cycle import Cycle, input_text
@@ -19,17 +18,16 @@ from sevenbar.design.points.poles import poles_of
 from sevenbar.drawing.figure import shown_value, slides
 from sevenbar.kinematics.loop.columns import joint_column, unit_in_column
 from sevenbar.reporting.files import Files, Report, columns_file, figure_files, json_file, text_file
-from sevenbar.reporting.page import Facts, number_table, opening, page
+from sevenbar.reporting.page import Facts, Page, number_table, page, prints_its_page
 from sevenbar.reporting.shown import drive_text
 from sevenbar.text.listed import named
-from sevenbar.text.printing import text_of
 from sevenbar.text.words import retold, say
 
 #: Most inputs that are listed; more are a rate that is as great at all of them.
 MOST_LISTED = 6
 
 
-def least_text(found: LeastPoint) -> RenderableType:
+def least_text(found: LeastPoint) -> Page:
     """A point of least rate as a page."""
     facts, unit = Facts(), found.unit
     rate = say(found.of)
@@ -97,7 +95,7 @@ def _met(found: LeastPoint) -> str:
     return say("{inputs} and {count} more", inputs=text, count=more) if more > 0 else text
 
 
-def nearest_text(found: NearestPath) -> RenderableType:
+def nearest_text(found: NearestPath) -> Page:
     """A point with a nearest path as a page."""
     facts, length = Facts(), _length(found.cycle)
     facts.add("link", f"{found.link}{say(', ')}{_whose(found.cycle)}")
@@ -124,7 +122,7 @@ def nearest_text(found: NearestPath) -> RenderableType:
     return page(found.cycle.motion.linkage.heading, facts)
 
 
-def inertia_text(found: Inertia) -> RenderableType:
+def inertia_text(found: Inertia) -> Page:
     """What masses do as a page."""
     facts, motion = Facts(), found.cycle.motion
     what = say("force") if found.slides else say("torque")
@@ -353,16 +351,6 @@ def _pole_columns(found: LeastPoint) -> dict[str, Any]:
     }
 
 
-@text_of.register(LeastPoint)
-def _(found: LeastPoint) -> str:
-    return opening("Least point", least_text(found))
-
-
-@text_of.register(NearestPath)
-def _(found: NearestPath) -> str:
-    return opening("Nearest path", nearest_text(found))
-
-
-@text_of.register(Inertia)
-def _(found: Inertia) -> str:
-    return opening("Inertia", inertia_text(found))
+prints_its_page(LeastPoint, "Least point", least_text)
+prints_its_page(NearestPath, "Nearest path", nearest_text)
+prints_its_page(Inertia, "Inertia", inertia_text)

@@ -8,19 +8,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from rich.console import RenderableType
-from rich.table import Table
 
 from sevenbar.arrays import counted
 from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
-from sevenbar.design.tolerance.linear import Linear
+from sevenbar.design.tolerance.linear import Effect, Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.tolerances import CUT
 from sevenbar.design.tolerance.worst import WorstCase
 from sevenbar.kinematics.loop.columns import unit_in_column
 from sevenbar.kinematics.measures import MEASURES
-from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
-from sevenbar.reporting.page import Facts, number_table, page
+from sevenbar.kinematics.numbers.gradients import MeasureSlopes
+from sevenbar.reporting.files import Report, columns_file, figure_files
+from sevenbar.reporting.page import Facts, Page, facts_table, page, page_report
 from sevenbar.reporting.shown import drive_text
 from sevenbar.text.listed import named
 from sevenbar.text.words import retold, say, spoken
@@ -41,83 +40,49 @@ class Findings:
     exact: MonteCarlo | None
 
 
-def text(findings: Findings) -> RenderableType:
-    """The findings for people."""
+def page_of(findings: Findings) -> Page:
+    """The findings; plain values are in rad and length, dimensions in the units of the file."""
     linear, worst, exact = findings.linear, findings.worst, findings.exact
     result = linear.found
-    facts = Facts()
     circuit, turns = result.circuit, say(result.circuit.motion_type)
+    facts = Facts()
+    facts.also(format=1, linkage=result.linkage.name)
     output = {"output": linear.words, "number": circuit.index, "motion_type": turns}
     facts.add("output", say("{output}, circuit {number} ({motion_type})", **output))
     unit = result.linkage.unit_of(result.input_name)
-    facts.add("drive", drive_text(result.input_name, result.speed, unit))
-    if linear.held.left_to_the_program:
-        facts.add("held", linear.held.text)
+    drive = {"input": result.input_name, "output": result.output_name, "speed": result.speed}
+    facts.add("drive", drive_text(result.input_name, result.speed, unit), drive=drive)
+    facts.also(circuit=circuit.index, reported=named(linear, "output", "quantity", "unit"))
+    facts.also(distribution=linear.distribution)
+    held = linear.held.text if linear.held.left_to_the_program else ""
+    facts.add("held", held, **linear.held.as_dict)
     errors = say("independent, {distribution}", distribution=say(linear.distribution))
     if linear.distribution == "normal":
         errors = say("{errors}, the tolerance being {count:g} standard deviations", errors=errors, count=CUT)
     facts.add("errors", errors)
+    effects = [_effect(linear, effect) for effect in linear.effects]
+    facts.also(dimensions=[effect.as_dict for effect in effects], opening=list(result.opening))
     most = float(linear.shown(linear.worst)[worst.at])
-    facts.add("worst case", _linear_text(linear, most, worst.at))
+    corners = {
+        "linear": float(linear.worst[worst.at]),
+        "at_input": float(linear.input[worst.at]),
+        **named(worst, "corner", "corner_low", "corners"),
+        "corners_tried": worst.tried,
+        "corners_that_do_not_close": worst.open,
+        "exact_high": float(worst.high[worst.at]),
+        "exact_low": float(worst.low[worst.at]),
+    }
+    facts.add("worst case", _linear_text(linear, most, worst.at), worst_case=corners)
     facts.add("", _corner_text(worst))
-    if tried := _tried_text(worst):
-        facts.add("", tried)
+    facts.add("", _tried_text(worst))
     row = int(np.argmax(linear.deviation))
     three = 3 * float(linear.shown(linear.deviation)[row])
-    facts.add("3 sigma", _linear_text(linear, three, row))
+    facts.add("3 sigma", _linear_text(linear, three, row), deviation=float(linear.deviation.max()))
+    measures = [_measure(linear, one) for one in result.measures]
+    facts.also(measures=[measure.as_dict for measure in measures], rows=counted(linear.status))
+    facts.also(notes=list(linear.left_out()))
     if exact is not None:
-        facts.add("Monte Carlo", _samples_text(exact))
-        facts.add("", exact.verdict, style="bold")
-    for note in linear.left_out():
-        facts.add("note", retold(note))
-    measures = [_measures_table(linear)] if result.measures else []
-    return page(result.linkage.heading, facts, _effects_table(linear), *measures)
-
-
-def as_dict(findings: Findings) -> dict[str, Any]:
-    """The findings as plain values: outputs in rad and length, dimensions in the units of the file."""
-    linear, worst, exact = findings.linear, findings.worst, findings.exact
-    result = linear.found
-    plain_values: dict[str, Any] = {
-        "format": 1,
-        "linkage": result.linkage.name,
-        "drive": {"input": result.input_name, "output": result.output_name, "speed": result.speed},
-        "circuit": result.circuit.index,
-        "reported": {"output": linear.output, "quantity": linear.quantity, "unit": linear.unit},
-        "distribution": linear.distribution,
-        **linear.held.as_dict,
-        "dimensions": [
-            {
-                **named(effect.dimension, "name", "unit", "value"),
-                "tolerance": effect.width,
-                "from": effect.source,
-                "greatest_effect": effect.greatest,
-                "at_input": effect.at,
-                "share_of_variance": effect.share,
-            }
-            for effect in linear.effects
-        ],
-        "opening": list(result.opening),
-        "worst_case": {
-            "linear": float(linear.worst[worst.at]),
-            "at_input": float(linear.input[worst.at]),
-            **named(worst, "corner", "corner_low", "corners"),
-            "corners_tried": worst.tried,
-            "corners_that_do_not_close": worst.open,
-            "exact_high": float(worst.high[worst.at]),
-            "exact_low": float(worst.low[worst.at]),
-        },
-        "deviation": float(linear.deviation.max()),
-        "measures": [
-            named(one, "name", "unit", "value")
-            | dict(zip(("worst_case", "deviation"), linear.measure(one.name), strict=True))
-            for one in result.measures
-        ],
-        "rows": counted(linear.status),
-        "notes": list(linear.left_out()),
-    }
-    if exact is not None:
-        plain_values["monte_carlo"] = {
+        drawn = {
             **named(exact, "count", "seed", "lost"),
             "reasons": dict(exact.reasons),
             "greatest": exact.greatest,
@@ -126,39 +91,36 @@ def as_dict(findings: Findings) -> dict[str, Any]:
             "linear_estimate_holds": exact.holds,
             "verdict": exact.verdict,
         }
-    return plain_values
+        facts.add("Monte Carlo", _samples_text(exact), monte_carlo=drawn)
+        facts.add("", exact.verdict, style="bold")
+    for note in linear.left_out():
+        facts.add("note", retold(note))
+    tables = [facts_table(effects, words=[6]), *([facts_table(measures)] if measures else [])]
+    return page(result.linkage.heading, facts, *tables)
 
 
 def tolerance_report(figures: Sequence[str] = ("png",)) -> Report[Findings]:
     """How findings are reported, with the figures in these formats."""
-    return Report(
-        text,
-        as_dict,
+    return page_report(
+        page_of,
+        "tolerance",
         {
-            "tolerance.json": json_file(as_dict),
             "dimensions.csv": columns_file(_dimensions),
             "deviation.csv": columns_file(_deviation),
             "sensitivities.csv": columns_file(_sensitivities),
             **figure_files("shares", figures, lambda found: shares_figure(found.linear)),
             **figure_files("deviation", figures, lambda found: deviation_figure(found.linear, found.exact)),
         },
-        spoken=True,
     )
 
 
 def _dimensions(findings: Findings) -> dict[str, Any]:
     linear = findings.linear
-    effects = linear.effects
-    greatest = linear.shown([effect.greatest for effect in effects])
-    return {
-        "dimension": [effect.dimension.name for effect in effects],
-        "unit": [effect.dimension.unit for effect in effects],
-        "value": [effect.dimension.value for effect in effects],
-        "tolerance": [effect.width for effect in effects],
-        "from": [effect.source for effect in effects],
-        f"greatest_effect_{_suffix(linear)}": greatest,
-        "share_of_variance": [effect.share for effect in effects],
-    }
+    greatest = f"greatest_effect_{_suffix(linear)}"
+    heads = {"name": "dimension", "greatest_effect": greatest}
+    rows = [_effect(linear, effect).as_dict for effect in linear.effects]
+    columns = {heads.get(key, key): [row[key] for row in rows] for key in rows[0] if key != "at_input"}
+    return columns | {greatest: linear.shown(columns[greatest])}
 
 
 def _deviation(findings: Findings) -> dict[str, Any]:
@@ -260,34 +222,38 @@ def _with_error(value: float, error: float) -> str:
     return f"{value:.{digits}f} ± {error:.{digits}f}"
 
 
-def _effects_table(linear: Linear) -> Table:
-    heads = ("dimension", "value", "tolerance", "effect", "at", "share", "from")
-    least = NO_EFFECT * max(effect.greatest for effect in linear.effects)
-    rows = (
-        (
-            effect.dimension.name,
-            f"{effect.dimension.value:.7g}",
-            f"± {effect.width:.4g} {effect.dimension.unit}".rstrip(),
-            f"± {float(linear.shown(effect.greatest)):.4g} {linear.shown_unit}"
-            if effect.greatest > least
-            else say("none"),
-            linear.shown_input(effect.at) if effect.greatest > least else "-",
-            f"{100 * effect.share:.1f} %",
-            effect.source,
-        )
-        for effect in linear.effects
-    )
-    return number_table(heads, rows, words=[6])
+def _effect(linear: Linear, effect: Effect) -> Facts:
+    """What the tolerance of one dimension does."""
+    dimension, row = effect.dimension, Facts()
+    unit = dimension.unit
+    row.add("dimension", dimension.name, name=dimension.name, unit=unit)
+    row.add("value", f"{dimension.value:.7g}", value=dimension.value)
+    row.add("tolerance", f"± {effect.width:.4g} {unit}".rstrip(), tolerance=effect.width)
+    row.also(**{"from": effect.source})
+    greatest, at = say("none"), "-"
+    if effect.greatest > NO_EFFECT * max(other.greatest for other in linear.effects):
+        greatest = f"± {float(linear.shown(effect.greatest)):.4g} {linear.shown_unit}"
+        at = linear.shown_input(effect.at)
+    row.add("effect", greatest, greatest_effect=effect.greatest)
+    row.add("at", at, at_input=effect.at)
+    row.add("share", f"{100 * effect.share:.1f} %", share_of_variance=effect.share)
+    row.add("from", effect.source)
+    return row
 
 
-def _measures_table(linear: Linear) -> Table:
-    rows = []
-    for one in linear.found.measures:
-        worst, deviation = linear.measure(one.name)
-        cells = [f"± {value:.4g}" if math.isfinite(value) else "-" for value in (worst, 3 * deviation)]
-        unit = f" [{one.unit.replace('^2', '²')}]" if one.unit else ""
-        measure, colon, joint = one.name.partition(":")
-        title = MEASURES[measure].title if measure in MEASURES and spoken() != "en" else measure
-        words = say(title.replace("_", " "))
-        rows.append((words + colon + joint + unit, f"{one.value:.6g}", *cells))
-    return number_table(("measure", "nominal", "worst case", "3 sigma"), rows)
+def _measure(linear: Linear, one: MeasureSlopes) -> Facts:
+    """What tolerances do to a measure."""
+    worst, deviation = linear.measure(one.name)
+    unit = f" [{one.unit.replace('^2', '²')}]" if one.unit else ""
+    measure, colon, joint = one.name.partition(":")
+    title = MEASURES[measure].title if measure in MEASURES and spoken() != "en" else measure
+    words, row = say(title.replace("_", " ")), Facts()
+    row.add("measure", words + colon + joint + unit, name=one.name, unit=one.unit)
+    row.add("nominal", f"{one.value:.6g}", value=one.value)
+    row.add("worst case", _both_ways(worst), worst_case=worst)
+    row.add("3 sigma", _both_ways(3 * deviation), deviation=deviation)
+    return row
+
+
+def _both_ways(value: float) -> str:
+    return f"± {value:.4g}" if math.isfinite(value) else "-"

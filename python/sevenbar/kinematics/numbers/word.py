@@ -332,10 +332,10 @@ def _longer(kinds: Sequence[str], slots: Slots, link: int) -> Product:
     line = [slots.three(("joint", i, "at")) for i in (link, link + 1)]
     result = axis_at(kinds, link)
     if result is None:
-        frame = Product.held(line, 2, None, slots.across[link])
+        frame = Product.held(line, 3, None, slots.across[link])
     else:
         joint, which = result
-        frame = Product.held(line, 2, _axes(kinds, slots, joint)[which], np.zeros(3))
+        frame = Product.held(line, 3, _axes(kinds, slots, joint)[which], np.zeros(3))
     # its z runs against the line
     return frame + slots.slide(2, place).back + frame.back
 

@@ -57,7 +57,8 @@ pub struct Held {
     pub axis: Axis,
     /// The places of the ball and of the next one.
     pub line: [Three; 2],
-    /// 0 for the axis, 1 for one square to it and to the line, 2 for the one square to both, about which it does not turn.
+    /// 0 for the axis, 1 for one square to it and to the line, 2 for the one square to both, about which it does not turn; 3 for
+    /// that one where something slides along it.
     pub which: usize,
 }
 
