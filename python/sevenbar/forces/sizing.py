@@ -312,7 +312,14 @@ class CycleLoads:
         fluctuation = heard(unit * (top.value - bottom.value), way)
         if not fluctuation:
             top = bottom = Peak(0.0, float(self.rows.input[0]))
-        return self.work * fluctuation, bottom.input, top.input
+        return self.work * fluctuation, self._within_cycle(bottom.input), self._within_cycle(top.input)
+
+    def _within_cycle(self, input: float) -> float:
+        """An input as the rows of the cycle count: the end of pieces that begin at a break is their first."""
+        start = float(self.rows.input[0])
+        if self.period is None or abs(input - start) < abs(self.period):
+            return input
+        return start + (input - start) % self.period
 
     @property
     def fluctuation(self) -> float:
