@@ -303,3 +303,28 @@ def test_the_unit_of_length_changes_no_angle() -> None:
         assert len(here) == len(there)
         apart = np.abs((here[:, None] - there + np.pi) % (2 * np.pi) - np.pi).max(axis=2)
         assert apart.min(axis=1).max() < 1e-7
+
+
+def test_modes_in_which_a_ball_stands_in_a_gimbal_throughout_are_found_in_any_frame():
+    """Of these axes j4 stands still on every circuit, a quarter turn from the drawn pose on one of them."""
+    joints = [
+        ("R", (0, 1, 0), (0, 1, 0)),
+        ("R", (-1, 2, 2), (0, 1, 0)),
+        ("S", (-1, 1, -1), None),
+        ("R", (1, -1, -1), (0, 0, 1)),
+        ("R", (-2, 1, -2), (0, 1, 0)),
+    ]
+    quarter = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+    found = []
+    for turn in (np.eye(3), quarter):
+        drawn = [
+            {"kind": kind, "at": turn @ at} | ({} if axis is None else {"axis": turn @ axis})
+            for kind, at, axis in joints
+        ]
+        linkage = sb.from_axes(drawn)
+        motion = linkage.motion(24)
+        assert (motion.completeness, len(motion.circuits)) == ("counted", 3)
+        found.append([sorted(linkage.assembly_modes(value).q[:, -1]) for value in (-0.93, 0.31, 2.8)])
+    assert [len(modes) for modes in found[0]] == [4, 2, 4]
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-9)

@@ -16,6 +16,7 @@ from sevenbar.measuring.calibrate import calibrate
 from sevenbar.measuring.compare import compare
 from sevenbar.measuring.measured import Measured
 from sevenbar.measuring.report import calibration_page, comparison_page
+from sevenbar.reporting import pose_forces
 from sevenbar.reporting.page import Facts, facts_table, page
 
 
@@ -31,7 +32,14 @@ def measured():
     return Measured("bench.csv", np.arange(2, 2 + len(rocker)), {"input": circuit.input, "angle": rocker})
 
 
+def pose_forces_page():
+    linkage = sb.load("rssr_press")
+    pose = linkage.motion(24).circuits[0].at(0.5)
+    return pose_forces.page_of(pose_forces.PoseForces(linkage, [(pose, pose.forces())]))
+
+
 PAGES = {
+    "forces in a pose": pose_forces_page,
     "tolerance": tolerance_page,
     "comparison": lambda: comparison_page(compare(sb.load("rssr"), measured(), align=["offset"])),
     "calibration": lambda: calibration_page(calibrate(sb.load("rssr"), measured(), free=["L1", "L3"])),

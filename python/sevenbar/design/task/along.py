@@ -13,7 +13,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.problem import TaskModel, pose_slacks
 from sevenbar.design.task.task import DesignTask, PoseMust
-from sevenbar.design.task.wanted import Fact, PlacesCurve, ReadingsCurve, Used
+from sevenbar.design.task.wanted import PlacesCurve, ReadingsCurve, Used, WantFact
 
 #: Poses along a want, at least, and the longest step of an input from one to the next [rad].
 DENSE, STEP = 240, math.radians(1.0)
@@ -72,7 +72,7 @@ class DesignAlong:
         own, stations = solution.seed.own[number], solution.poses_of(number)
         return Used(self.loop, self.values, own, self.design.placing, way.inputs, way.q, stations)
 
-    def facts(self, number: int) -> Sequence[Fact]:
+    def facts(self, number: int) -> Sequence[WantFact]:
         """What reports say of it besides its errors."""
         return self.model.wanted[number].facts(self._used(number))
 

@@ -80,7 +80,7 @@ class Used:
 
 
 @dataclass(frozen=True)
-class Fact:
+class WantFact:
     """What reports say of a want: a name, a unit, a value; `tabled`: in the printed table, too."""
 
     name: str
@@ -142,7 +142,7 @@ class Wanted(Protocol):
     def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
         """What it is off (n,) on rows of an analysis at its inputs [rad, or length], by its own unknowns."""
 
-    def facts(self, used: Used) -> Sequence[Fact]:  # noqa: ARG002
+    def facts(self, used: Used) -> Sequence[WantFact]:  # noqa: ARG002
         """What reports say of it besides its errors."""
         return ()
 

@@ -70,7 +70,7 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
     let mut out = Curves::new(wished);
     out.search.columns.clone_from(&seeds);
     for seed in seeds {
-        let finder = ModeFinder::new(chain, seed);
+        let finder = ModeFinder::well_placed(chain, seed);
         let searched = finder.completeness() == Completeness::Searched;
         if searched {
             out.search.completeness = Completeness::Searched;

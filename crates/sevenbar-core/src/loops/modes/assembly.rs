@@ -23,9 +23,13 @@ pub struct Modes {
 pub fn modes(linkage: &Loop, column: usize, value: f64) -> Option<Modes> {
     let chain = linkage.reduced.chain.as_ref()?;
     let input = linkage.chain_column(column)?;
-    let finder = ModeFinder::new(chain, input);
+    let mut finder = ModeFinder::new(chain, input);
     let value = value * linkage.inward(column);
-    let (mut found, fewer) = finder.once(value);
+    let (mut found, mut fewer) = finder.once(value);
+    if fewer && finder.has_free_axes() {
+        finder = ModeFinder::well_placed(chain, input);
+        (found, fewer) = finder.once(value);
+    }
     let mut completeness = finder.completeness();
     if found.modes.is_empty() && finder.is_degenerate() {
         found.modes.extend(finder.one_by_search(value));

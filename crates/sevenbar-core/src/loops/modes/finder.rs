@@ -101,6 +101,19 @@ impl<'a> ModeFinder<'a> {
         Self::with_axes(chain, input, Pose::STILL.rotation, 0x5eed)
     }
 
+    /// With the turns of balls about other axes where solutions are lost with the usual ones, and are not with these: on some circuits a
+    /// ball may stand in a gimbal throughout.
+    pub fn well_placed(chain: &'a Chain, input: usize) -> Self {
+        let usual = Self::new(chain, input);
+        if usual.has_free_axes() && usual.is_degenerate() {
+            let other = Self::about_other_axes(chain, input);
+            if !other.is_degenerate() {
+                return other;
+            }
+        }
+        usual
+    }
+
     /// With the turns of balls, and the added joints, about other axes: where those about one choice are singular, as in a gimbal, these
     /// are not.
     pub fn about_other_axes(chain: &'a Chain, input: usize) -> Self {

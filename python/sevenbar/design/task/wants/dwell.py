@@ -15,7 +15,7 @@ from sevenbar.design.task.given import reading_span, zero
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.task import DesignTask, SampledWant, WantForm
 from sevenbar.design.task.values import OF_INPUT, Samples, Span, Weight, Zero
-from sevenbar.design.task.wanted import Fact, Used
+from sevenbar.design.task.wanted import Used, WantFact
 from sevenbar.design.task.wants.readings import ReadingsWanted
 from sevenbar.design.task.words import ends_in_words
 from sevenbar.kinematics.linkage import Linkage
@@ -70,6 +70,6 @@ class DwellWant(SampledWant):
 
 
 class _DwellResiduals(ReadingsWanted):
-    def facts(self, used: Used) -> Sequence[Fact]:
+    def facts(self, used: Used) -> Sequence[WantFact]:
         unit, scale = shown_in(used.loop.linkage, used.loop.linkage.drive.output)
-        return (Fact("level", unit, self.shown_zeros(used)[1] * scale),)
+        return (WantFact("level", unit, self.shown_zeros(used)[1] * scale),)

@@ -18,7 +18,7 @@ from sevenbar.design.task.given import one_of, read_file, reading, reading_span,
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.task import DesignTask, SampledWant, WantForm
 from sevenbar.design.task.values import OF_INPUT, Numbers, Pairs, Points, Span, Weight, Zero
-from sevenbar.design.task.wanted import Fact, Used
+from sevenbar.design.task.wanted import Used, WantFact
 from sevenbar.design.task.wants.readings import ReadingsWanted
 from sevenbar.design.task.words import ends_in_words
 from sevenbar.design.wish import chebyshev, degrees_hint, read_pairs, wish_of_function
@@ -171,10 +171,10 @@ class FunctionWant(SampledWant):
 
 
 class _FunctionResiduals(ReadingsWanted):
-    def facts(self, used: Used) -> Sequence[Fact]:
+    def facts(self, used: Used) -> Sequence[WantFact]:
         linkage, result = used.loop.linkage, []
         ends = (("input_zero", linkage.drive.joint), ("output_zero", linkage.drive.output))
         for (name, column), value in zip(ends, self.shown_zeros(used), strict=True):
             unit, scale = shown_in(linkage, column)
-            result.append(Fact(name, unit, value * scale))
+            result.append(WantFact(name, unit, value * scale))
         return result

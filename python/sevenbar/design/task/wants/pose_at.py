@@ -26,7 +26,7 @@ from sevenbar.design.task.given import reading
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.task import DesignTask, SampledWant, WantForm
 from sevenbar.design.task.values import OF_INPUT, Link, Value, Weight
-from sevenbar.design.task.wanted import Bound, Fact, Used
+from sevenbar.design.task.wanted import Bound, Used, WantFact
 from sevenbar.design.task.wants.places import PlacesWanted, frame_ends, frame_places
 from sevenbar.design.task.wants.pose_form import PoseForm
 from sevenbar.design.task.words import ends_in_words
@@ -184,13 +184,13 @@ class _PoseAtResiduals(PlacesWanted):
             asked = f"{asked} and {math.degrees(self._want.turn):g} deg"
         return Bound(slack, slack_by, f"the pose is off by {missed} along its axes, at most {asked} is asked")
 
-    def facts(self, used: Used) -> Sequence[Fact]:
+    def facts(self, used: Used) -> Sequence[WantFact]:
         places = used.points(self.numbers, used.station_poses)[0]
         off = float(np.linalg.norm(places[0] - self.places[0, 0]))
-        result = [Fact("off", self._length, off, tabled=True)]
+        result = [WantFact("off", self._length, off, tabled=True)]
         if self._want.turn is not None:
             angle = math.degrees(_turned(self._axes_off(places)))
-            result.append(Fact("turned", "deg", angle, tabled=True))
+            result.append(WantFact("turned", "deg", angle, tabled=True))
         return result
 
 

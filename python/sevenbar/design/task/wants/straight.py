@@ -18,7 +18,16 @@ from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.placing import Placing
 from sevenbar.design.task.task import DesignTask, SampledWant, WantForm, linkage_size
 from sevenbar.design.task.values import OF_INPUT, Samples, Span, Weight
-from sevenbar.design.task.wanted import Bound, Fact, PlacesCurve, Stations, TaskStart, Used, Wanted, distances
+from sevenbar.design.task.wanted import (
+    Bound,
+    PlacesCurve,
+    Stations,
+    TaskStart,
+    Used,
+    Wanted,
+    WantFact,
+    distances,
+)
 from sevenbar.design.task.words import ends_in_words
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.linkage import Linkage
@@ -157,11 +166,11 @@ class LineWanted(Wanted):
         """Where the point is (n, 3)."""
         return used.points(self.numbers, q)[:, 0]
 
-    def facts(self, used: Used) -> Sequence[Fact]:
+    def facts(self, used: Used) -> Sequence[WantFact]:
         p = self._taken(used, used.poses)
         first, last = farthest(p)
         travel = float(np.linalg.norm(p[last] - p[first]))
-        return (Fact("travel", self._length_unit, travel, tabled=True),)
+        return (WantFact("travel", self._length_unit, travel, tabled=True),)
 
     def curve(self, used: Used) -> PlacesCurve:
         taken = self._taken(used, used.station_poses)
