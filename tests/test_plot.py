@@ -290,6 +290,18 @@ def test_extremes_are_marked_at_the_papers_numbers(figure: Figure) -> None:
         np.testing.assert_allclose(values, [low, high], rtol=5e-4)
 
 
+def test_any_quantity_of_the_list_is_drawn_by_its_name_and_lines_are_one_where_all_of_them_are() -> None:
+    motion = sb.load("seven_r").motion(36)
+    labels = [line.get_label() for line in plot.curves(motion, "input").axes[0].lines]
+    assert sum(label.startswith("circuits") for label in labels) == 4
+    _, lower = plot.curves(motion, "input", quantities=["angle", "theta_3 velocity"]).axes
+    assert lower.get_ylabel() == "θ₃ velocity [rad/s]"
+    values = [line.get_ydata()[:-1] for line in lower.lines]
+    np.testing.assert_array_equal(values, [circuit.dq[:, 2] for circuit in motion])
+    with pytest.raises(RequestError, match="quantities: 'theta_3 speed' is not drawn; did you mean"):
+        plot.curves(motion, quantities=["theta_3 speed"])
+
+
 def test_one_quantity_may_be_a_word() -> None:
     (axes,) = plot.curves(sb.load("rssr").motion(36), "input", quantities="velocity").axes
     assert axes.get_ylabel() == "rocker velocity [rad/s]"

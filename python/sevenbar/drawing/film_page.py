@@ -13,7 +13,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import column_label
 from sevenbar.drawing.names import named_together
-from sevenbar.drawing.output_curves import curves_of_output
+from sevenbar.drawing.output_curves import curves_of
 from sevenbar.drawing.scene import SAME, link_colours, paths, stays
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import GROUND, PATH, circuit_colour
@@ -141,7 +141,7 @@ def _curves(motion: Motion, circuit: Circuit, rows: Floats) -> list[dict[str, An
             "colour": circuit_colour(circuit.index),
             "cut": curve.cut,
         }
-        for curve in curves_of_output(motion, circuit).values()
+        for curve in curves_of(motion, circuit).values()
     ]
 
 

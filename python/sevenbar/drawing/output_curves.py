@@ -24,7 +24,7 @@ from sevenbar.drawing.figure import (
 )
 from sevenbar.drawing.names import handy_unit
 from sevenbar.drawing.panels import coinciding, panels_of
-from sevenbar.drawing.quantities import QUANTITIES, Curve, Over, Span, curve_of, quantities
+from sevenbar.drawing.quantities import QUANTITIES, Curve, Over, Quantity, Span, curve_of, quantities
 from sevenbar.drawing.style import QUIET, circuit_colour, line_style, stroke, styled
 from sevenbar.drawing.ticks import DegreeLocator, widen
 from sevenbar.errors import check_word
@@ -40,7 +40,7 @@ EXTREME, LIMIT, CHANGE_POINT = "extreme", "input limit", "change point"
 #: Times its own width at which a range that other circuits share makes a curve flat.
 FLATTEST = 5.0
 
-#: Curves nearer than this [deg, or share of the size] on all rows are one.
+#: Curves nearer than this [deg, or share of their natural size] on all rows are one.
 SAME_CURVE = 1e-6
 
 
@@ -53,7 +53,7 @@ class DrawnPass:
     part: slice
     label: str
     #: The branch and how the input goes on it, where the circuit has several.
-    way: str
+    direction: str
     style: dict[str, Any]
 
     def across(self, over: Over) -> Floats:
@@ -64,54 +64,61 @@ class DrawnPass:
         """Its values of a quantity, (n,)."""
         return self.curves[quantity].values[self.part]
 
-    @property
-    def placed(self) -> tuple[Floats, ...]:
-        """Input, time and angle."""
-        return self.across("input"), self.across("time"), self.values("angle")
-
     def span(self, quantity: str) -> Span | None:
         """The range worth showing."""
         return self.curves[quantity].span(self.part)
 
+    @property
+    def placed(self) -> list[Floats]:
+        """What is the same where two lines are one: input, time, and values but rates of the output."""
+        return [self.across("input"), self.across("time")] + [
+            self.values(word) / (1.0 if curve.quantity.unit == "deg" else curve.natural or 1.0)
+            for word, curve in self.curves.items()
+            if word not in QUANTITIES[1:]
+        ]
 
-def curves_of_output(motion: Motion, circuit: Circuit) -> dict[str, Curve]:
-    """The curves of the output along a circuit, by their words."""
-    walked = TimedWalk(motion, circuit)
-    output = [one for one in quantities(motion) if one.key.startswith("output.")]
-    return {one.row.word: curve_of(one, walked) for one in output}
+
+def drawable(motion: Motion) -> dict[str, Quantity]:
+    """What can be drawn, by a word: of the output "angle" and its rates, of all else its name in a menu."""
+    return {one.row.word if one.key.startswith("output.") else one.name: one for one in quantities(motion)}
 
 
-def passes(motion: Motion) -> list[DrawnPass]:
+def curves_of(motion: Motion, circuit: Circuit, words: Iterable[str] = QUANTITIES) -> dict[str, Curve]:
+    """The curves of quantities along a circuit, by their words."""
+    listed, walked = drawable(motion), TimedWalk(motion, circuit)
+    return {word: curve_of(listed[word], walked) for word in words}
+
+
+def passes(motion: Motion, words: Iterable[str] = QUANTITIES) -> list[DrawnPass]:
     """Every pass of every circuit; where the input goes back, the velocity is turned as it is in time."""
     made: list[DrawnPass] = []
     for circuit in motion.circuits:
-        path, own = walk(circuit), curves_of_output(motion, circuit)
+        path, own = walk(circuit), curves_of(motion, circuit, dict.fromkeys(("angle", *words)))
         for branch, part in enumerate(path.passes):
-            label, way = say("circuit {number}", number=circuit.index), ""
+            label, direction = say("circuit {number}", number=circuit.index), ""
             inputs = path.input[part]
             if len(path.passes) > 1:
-                way = say("branch {number}", number=branch)
+                direction = say("branch {number}", number=branch)
                 if motion.law is None and inputs[-1] > inputs[0]:
-                    way = say("{branch}: input rising", branch=way)
+                    direction = say("{branch}: input rising", branch=direction)
                 elif motion.law is None:
-                    way = say("{branch}: input falling", branch=way)
-                label = say("{circuits}, {branch}", circuits=label, branch=way)
+                    direction = say("{branch}: input falling", branch=direction)
+                label = say("{circuits}, {branch}", circuits=label, branch=direction)
             colour, dashes = circuit_colour(circuit.index), line_style(len(made))
             style = {"color": colour, "ls": dashes, "lw": 1.6 * stroke()}
-            made.append(DrawnPass(circuit, own, part, label, way, style))
+            made.append(DrawnPass(circuit, own, part, label, direction, style))
     return made
 
 
-def drawn_once(motion: Motion, drawn: Sequence[DrawnPass]) -> list[DrawnPass]:
+def drawn_once(drawn: Sequence[DrawnPass]) -> list[DrawnPass]:
     """The passes without those that lie on another: one line, whose label names all its circuits."""
-    near = SAME_CURVE * (drawn[0].circuit.size if drawn and slides(motion, motion.output) else 1.0)
 
     def alike(first: DrawnPass, line: DrawnPass) -> bool:
         return (
             first.circuit is not line.circuit
             and first.values("angle").shape == line.values("angle").shape
             and all(
-                np.allclose(one, other, rtol=0, atol=near, equal_nan=True)
+                np.allclose(one, other, rtol=0, atol=SAME_CURVE, equal_nan=True)
                 for one, other in zip(first.placed, line.placed, strict=True)
             )
         )
@@ -120,8 +127,8 @@ def drawn_once(motion: Motion, drawn: Sequence[DrawnPass]) -> list[DrawnPass]:
     made = []
     for place, group in enumerate(groups):
         label = circuits_text([line.circuit.index for line in group])
-        if group[0].way:
-            label = say("{circuits}, {branch}", circuits=label, branch=group[0].way)
+        if group[0].direction:
+            label = say("{circuits}, {branch}", circuits=label, branch=group[0].direction)
         style = group[0].style
         if len(groups) < len(drawn):
             style = style | {"ls": line_style(place)}
@@ -145,8 +152,9 @@ def curves(
     `against` "input" [deg] or "time" [s] draws one of the two; "both" puts time on a second scale above where
     the input turns fully at constant speed, else in a second column. Where a rocking input goes back, the
     sign of the velocity is turned. Circuits whose curves coincide are one line. `ax`: axes to draw in, one
-    for each of the `quantities`, over the input unless `against` is "time". The rest is as for
-    `configuration`. Raises `RequestError` where the motion has no circuit.
+    for each of the `quantities`, over the input unless `against` is "time": those of the output, or others of
+    the studio's menu, as "transmission angle" or "P speed" of a point P. The rest is as for `configuration`.
+    Raises `RequestError` where the motion has no circuit.
 
         >>> import sevenbar as sb
         >>> figure = curves(sb.load("rssr").motion(), against="input")
@@ -160,13 +168,13 @@ def curves(
     # a word is a sequence of its letters
     quantities = (quantities,) if isinstance(quantities, str) else quantities
     for quantity in quantities:
-        check_word("quantities", quantity, QUANTITIES, "drawn")
+        check_word("quantities", quantity, drawable(motion), "drawn")
     turning = motion.law is None and all(circuit.goes_round for circuit in motion)
     columns: list[Over] = ["time" if against == "time" else "input"]
     if against == "both":
         columns = ["input"] if turning or ax is not None else ["input", "time"]
     with styled(style):
-        drawn = drawn_once(motion, passes(motion))
+        drawn = drawn_once(passes(motion, quantities))
         usual = 6.4 if len(columns) == 1 else 9.8, 0.6 + 2.4 * len(quantities)
         page = panels_of(
             len(quantities) * len(columns), ax, "one for each of the quantities", usual,
@@ -177,7 +185,7 @@ def curves(
         for row, quantity in enumerate(quantities):
             for column, over in enumerate(columns):
                 panel(grid[row, column], motion, drawn, quantity, over)
-            cut |= _cut(grid[row, 0], motion, drawn, quantity)
+            cut |= _cut(grid[row, 0], drawn, quantity)
         if page.own:
             for axes in page.axes:
                 axes.label_outer()
@@ -192,7 +200,7 @@ def curves(
 def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str, over: Over) -> None:
     """Draws one quantity of the passes over "input" or "time", with the input limits and the extremes."""
     gridded(axes)
-    factor, unit = _unit_of(motion, drawn, quantity)
+    factor, unit = _unit_of(drawn, quantity)
     for line in drawn:
         axes.plot(line.across(over), factor * line.values(quantity), label=line.label, **line.style)
     for circuit in motion.circuits:
@@ -214,7 +222,7 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
         for inputs, dashes, name in marked:
             for place in inputs_between(motion, inputs, ends.min(), ends.max()):
                 axes.axvline(place, color=QUIET, lw=1.0 * stroke(), ls=dashes, zorder=1, label=say(name))
-    if quantity == "angle" and not slides(motion, motion.output):
+    if unit == "deg":
         axes.yaxis.set_major_locator(DegreeLocator(7))
     else:
         axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
@@ -222,6 +230,8 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
         _on_view(axes, motion, drawn, factor)
     shown = drawn[0].curves[quantity]
     widen(axes.yaxis, factor * shown.natural)
+    if shown.quantity.row.is_size:
+        axes.set_ylim(bottom=0)
     axes.set_xlabel(input_label(motion) if over == "input" else say("time [s]"))
     axes.set_ylabel(shown.quantity.label(unit))
 
@@ -274,10 +284,10 @@ def _on_view(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], factor: flo
     axes.annotate(values, (0.01, 0.98), xycoords="axes fraction", va="top", fontsize="x-small", color=QUIET)
 
 
-def _unit_of(motion: Motion, drawn: Sequence[DrawnPass], quantity: str) -> tuple[float, str]:
-    """The factor and the unit in which the output is drawn: rates of a slide in metres for many mm."""
+def _unit_of(drawn: Sequence[DrawnPass], quantity: str) -> tuple[float, str]:
+    """The factor and the unit in which a quantity is drawn: rates of what slides in metres for many mm."""
     unit = drawn[0].curves[quantity].quantity.unit
-    if quantity == "angle" or not slides(motion, motion.output):
+    if "/" not in unit:
         return 1.0, unit
     ranges = [line.span(quantity) for line in drawn]
     length, _, per = unit.partition("/")
@@ -295,16 +305,17 @@ def inputs_between(motion: Motion, inputs: Floats, low: float, high: float) -> F
     return between
 
 
-def _cut(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str) -> bool:
+def _cut(axes: Axes, drawn: Sequence[DrawnPass], quantity: str) -> bool:
     """Cuts the range of rates that grow without bound at input dead centres; returns whether it did."""
     ranges = [(line, span) for line in drawn if (span := line.span(quantity)) is not None]
     if not any(line.curves[quantity].cut for line, _ in ranges):
         return False
     spans = [span for _, span in ranges]
-    factor, _ = _unit_of(motion, drawn, quantity)
+    factor, _ = _unit_of(drawn, quantity)
     low, high = factor * np.min(spans), factor * np.max(spans)
-    axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
-    return True
+    if high > low:
+        axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
+    return bool(high > low)
 
 
 def _time_above(axes: Axes, motion: Motion, line: DrawnPass) -> None:

@@ -12,7 +12,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import headline, input_label, page_figure, shown_value, slides
-from sevenbar.drawing.names import quantity_label, short, shown_name
+from sevenbar.drawing.names import short, shown_name
+from sevenbar.drawing.output_curves import drawable
 from sevenbar.drawing.style import COMPUTED, OTHER, circuit_colour, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.simulation.agreement import Simulation
@@ -53,22 +54,17 @@ class _Row(NamedTuple):
 def output_figure(run: Simulation) -> Figure:
     """Angle, velocity and acceleration of the output: theory and engine left, their difference right."""
     motion, column = run.course.motion, run.course.circuit.output_column
-    slide = slides(motion, motion.output)
-    unit = motion.linkage.unit_of(motion.output)
-    rows = (
-        ("position" if slide else "angle", unit if slide else "deg", "", run.engine.q, run.theory.q),
-        ("velocity", unit, "/s", run.engine.dq, run.theory.dq),
-        ("acceleration", unit, "/s²", run.engine.ddq, run.theory.ddq),
-    )
+    listed, rows = drawable(motion), {"angle": "q", "velocity": "dq", "acceleration": "ddq"}
     figure = page_figure(9.2, 7.2, pads=(0.06, 0.08))
     grid = figure.subplots(3, 2, sharex=True)
-    for (left, right), (word, shown, per, engine, theory) in zip(grid, rows, strict=True):
-        own, other = theory[:, column], engine[:, column]
-        convert = np.degrees if shown == "deg" else np.asarray
+    for (left, right), (word, array) in zip(grid, rows.items(), strict=True):
+        own, other = (getattr(one, array)[:, column] for one in (run.theory, run.engine))
+        convert = np.degrees if listed[word].unit == "deg" else np.asarray
         _draw_both(left, run, convert(own), convert(other))
-        left.set_ylabel(quantity_label(motion.output, word, f"{shown}{per}"))
+        left.set_ylabel(listed[word].label())
         right.plot(_across(run), other - own, color=_ENGINE, lw=0.9)
-        right.set_ylabel(say("difference [{unit}]", unit=f"{unit}{per}"))
+        unit = motion.linkage.unit_of(motion.output) if word == "angle" else listed[word].unit
+        right.set_ylabel(say("difference [{unit}]", unit=unit))
         right.ticklabel_format(axis="y", style="sci", scilimits=(0, 0), useMathText=False)
     _finish(figure, run, _keys(run))
     return figure
