@@ -20,7 +20,7 @@ from sevenbar.drawing.figure import (
 )
 from sevenbar.drawing.page import page_of_one, prepare_box
 from sevenbar.drawing.panels import coinciding, panels_of
-from sevenbar.drawing.quantities import TRANSMISSION, Curve, curve_of, quantities
+from sevenbar.drawing.quantities import TRANSMISSION, QuantityCurve, curve_of, quantities
 from sevenbar.drawing.scene import bars, put, shown_places, stage
 from sevenbar.drawing.skeleton import skeleton
 from sevenbar.drawing.space import box_round
@@ -94,7 +94,7 @@ def transmission(
     return page.figure
 
 
-def _alike(first: Curve, second: Curve) -> bool:
+def _alike(first: QuantityCurve, second: QuantityCurve) -> bool:
     """Whether the curves of two circuits are one line."""
     return all(
         one.shape == other.shape and np.allclose(one, other, rtol=0, atol=SAME_ANGLE, equal_nan=True)

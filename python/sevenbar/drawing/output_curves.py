@@ -24,7 +24,7 @@ from sevenbar.drawing.figure import (
 )
 from sevenbar.drawing.names import handy_unit
 from sevenbar.drawing.panels import coinciding, panels_of
-from sevenbar.drawing.quantities import QUANTITIES, Curve, Over, Quantity, Span, curve_of, quantities
+from sevenbar.drawing.quantities import QUANTITIES, Over, Quantity, QuantityCurve, Span, curve_of, quantities
 from sevenbar.drawing.style import QUIET, circuit_colour, line_style, stroke, styled
 from sevenbar.drawing.ticks import DegreeLocator, widen
 from sevenbar.errors import check_word
@@ -49,7 +49,7 @@ class DrawnPass:
     """A pass of a circuit as a line: the rows `part` of the curve of each quantity, and its style."""
 
     circuit: Circuit
-    curves: Mapping[str, Curve]
+    curves: Mapping[str, QuantityCurve]
     part: slice
     label: str
     #: The branch and how the input goes on it, where the circuit has several.
@@ -83,7 +83,9 @@ def drawable(motion: Motion) -> dict[str, Quantity]:
     return {one.row.word if one.key.startswith("output.") else one.name: one for one in quantities(motion)}
 
 
-def curves_of(motion: Motion, circuit: Circuit, words: Iterable[str] = QUANTITIES) -> dict[str, Curve]:
+def curves_of(
+    motion: Motion, circuit: Circuit, words: Iterable[str] = QUANTITIES
+) -> dict[str, QuantityCurve]:
     """The curves of quantities along a circuit, by their words."""
     listed, walked = drawable(motion), TimedWalk(motion, circuit)
     return {word: curve_of(listed[word], walked) for word in words}

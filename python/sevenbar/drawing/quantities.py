@@ -143,7 +143,7 @@ TRANSMISSION: Final = "transmission angle"
 QUANTITIES: Final = tuple(row.word for row in MOTION if row.of is Column)
 
 
-class Acting(Protocol):
+class ActingForces(Protocol):
     """What acts on a linkage, and gives the forces along circuits."""
 
     @property
@@ -176,7 +176,7 @@ class Quantity:
     word: str
     unit: str
     item: Any
-    acting: Acting | None = None
+    acting: ActingForces | None = None
 
     @property
     def heading(self) -> str:
@@ -233,7 +233,7 @@ class Mark:
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class QuantityCurve:
     """A quantity along the walk of a circuit, as figures, the studio, films and notebooks draw it.
 
     `input` [deg, or length] and `values` [unit] are those of the rows (n,), values that vary by rounding only
@@ -298,7 +298,7 @@ class Curve:
         return min(result)[1]
 
 
-def curve_of(quantity: Quantity, one: TimedWalk) -> Curve:
+def curve_of(quantity: Quantity, one: TimedWalk) -> QuantityCurve:
     """The curve of a quantity along a circuit."""
     motion, circuit = one.motion, one.circuit
     natural, values = quantity.natural(one), quantity.values(one)
@@ -313,10 +313,10 @@ def curve_of(quantity: Quantity, one: TimedWalk) -> Curve:
             marks += (Mark(word, value, shown_value(motion, motion.input, at)),)
     inputs = shown_value(motion, motion.input, one.path.input)
     values = settle(np.where(np.abs(values) < LARGEST, values, np.nan), natural)
-    return Curve(quantity, one, inputs, values, natural, marks)
+    return QuantityCurve(quantity, one, inputs, values, natural, marks)
 
 
-def quantities(motion: Motion, acting: Acting | None = None) -> tuple[Quantity, ...]:
+def quantities(motion: Motion, acting: ActingForces | None = None) -> tuple[Quantity, ...]:
     """All that can be drawn, in the order of a menu: output, other columns, named points, then forces.
 
     Forces only where something acts; nothing is computed.
@@ -345,7 +345,7 @@ def _listed(
     motion: Motion,
     subjects: list[Subject],
     taken: set[str],
-    acting: Acting | None = None,
+    acting: ActingForces | None = None,
 ) -> Iterator[Quantity]:
     """The rows of each subject; a name that is taken gets a word of what it is of."""
     for start, subject, end, item in subjects:

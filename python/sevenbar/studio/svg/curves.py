@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import input_label, shown_value
 from sevenbar.drawing.output_curves import inputs_between
-from sevenbar.drawing.quantities import LARGEST, Curve, Over, Quantity, Span, curve_of
+from sevenbar.drawing.quantities import LARGEST, Over, Quantity, QuantityCurve, Span, curve_of
 from sevenbar.drawing.style import circuit_colour
 from sevenbar.drawing.ticks import FLAT
 from sevenbar.kinematics.circuits.motion import Motion
@@ -61,7 +61,7 @@ def panels(
 def _panel(
     frame: picture.Frame,
     quantity: Quantity,
-    curves: Sequence[Curve],
+    curves: Sequence[QuantityCurve],
     circuit: int,
     reach: Span,
     own_span: Span,
@@ -101,7 +101,7 @@ def _panel(
     return picture.Panel(frame, svg, x, y, own.values, beside, quantity.unit, colour)
 
 
-def _strong(own: Curve, frame: picture.Frame, x: Floats, y: Floats, colour: str) -> str:
+def _strong(own: QuantityCurve, frame: picture.Frame, x: Floats, y: Floats, colour: str) -> str:
     """The chosen circuit's line, pale where a stop of the linkage keeps it from going."""
     whole = _lines(own, frame, x, y, len(x))
     if not own.walked.linkage.stops.stops:
@@ -113,7 +113,7 @@ def _strong(own: Curve, frame: picture.Frame, x: Floats, y: Floats, colour: str)
     )
 
 
-def _lines(curve: Curve, frame: picture.Frame, x: Floats, y: Floats, most: int) -> str:
+def _lines(curve: QuantityCurve, frame: picture.Frame, x: Floats, y: Floats, most: int) -> str:
     """The passes as SVG, in tenths of px from the plot area's corner, with at most about `most` rows."""
     left, top, _, _ = frame.box
     step = max(1, round(len(x) / most))
@@ -175,7 +175,7 @@ def _shown_range(quantity: Quantity, own: Span, others: Sequence[Span], least: f
     return low - (0.2 * room if quantity.row.is_size else room), high + room
 
 
-def _keys(own: Curve) -> tuple[tuple[str, str], ...]:
+def _keys(own: QuantityCurve) -> tuple[tuple[str, str], ...]:
     """Short words, with their dashes, that tell the passes apart and that rates are cut."""
     keys = [("axis cut", "")] if own.cut else []
     if len(own.passes) > 1 and own.walked.motion.law is None:
@@ -218,7 +218,9 @@ def _pale(colour: str) -> str:
     return "#" + "".join(f"{round(255 - 0.4 * (255 - int(colour[i : i + 2], 16))):02x}" for i in (1, 3, 5))
 
 
-def _marks(own: Curve, frame: picture.Frame, below: Scale, beside: Scale, over: Over, colour: str) -> str:
+def _marks(
+    own: QuantityCurve, frame: picture.Frame, below: Scale, beside: Scale, over: Over, colour: str
+) -> str:
     """Small circles at the extremes of the output's angle or rates, each with its value as a tooltip."""
     parts: list[str] = []
     _, top, _, bottom = frame.box
