@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol, TypeVar
+from typing import Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -57,7 +57,15 @@ class Drafted(Protocol):
         ...
 
 
-T = TypeVar("T", bound=Drafted)
+class Design(Drafted, Protocol):
+    """What has a description, and may have another."""
+
+    def drafted(self, draft: Draft) -> Self:
+        """The same with another description."""
+        ...
+
+
+T = TypeVar("T", bound=Design)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +110,10 @@ class Candidate(Printed):
     circuit: int
     branch: int
     position: Floats
+
+    def drafted(self, draft: Draft) -> Candidate:
+        """The same with another description."""
+        return replace(self, draft=draft)
 
     @property
     def name(self) -> str:
@@ -420,15 +432,11 @@ def likeness(draft: Draft, *, scale_free: bool, mirrored: bool = False) -> Float
     return values if scale_free else np.append(values, math.log(longest))
 
 
-def distinct(
-    designs: Iterable[T], *, scale_free: bool, mirrored: bool = False, count: int | None = None
-) -> list[T]:
-    """The designs that differ, the first of those that are alike by `likeness`; at most `count`."""
+def distinct(designs: Iterable[T], *, scale_free: bool, mirrored: bool = False) -> list[T]:
+    """The designs that differ, the first of those that are alike by `likeness`."""
     selected: list[T] = []
     seen: list[Floats] = []
     for design in designs:
-        if count is not None and len(selected) >= count:
-            break
         own = likeness(design.draft, scale_free=scale_free, mirrored=mirrored)
         if all(len(own) != len(other) or np.abs(own - other).max() > SAME for other in seen):
             selected.append(design)
@@ -436,18 +444,11 @@ def distinct(
     return selected
 
 
-def ranked(
-    candidates: Iterable[Candidate], key: Callable[[Candidate], float] | None = None
-) -> list[Candidate]:
-    """The candidates, best first: by the greatest error, or by another figure that should be small."""
-    return sorted(candidates, key=key or (lambda candidate: candidate.error_greatest))
-
-
-def renamed(candidates: Iterable[Candidate], title: str, word: str = "design") -> list[Candidate]:
-    """The candidates with the names `title, design 1`, .. in their order."""
+def renamed(designs: Iterable[T], title: str, word: str = "design") -> list[T]:
+    """The designs with the names `title, design 1`, .. in their order."""
     return [
-        replace(c, draft=c.draft.with_value(("name",), f"{title}, {word} {i}"))
-        for i, c in enumerate(candidates, 1)
+        one.drafted(one.draft.with_value(("name",), f"{title}, {word} {i}"))
+        for i, one in enumerate(designs, 1)
     ]
 
 

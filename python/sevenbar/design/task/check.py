@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -89,6 +89,10 @@ class TaskDesign:
     def draft(self) -> Draft:
         """Its description."""
         return self.candidate.draft
+
+    def drafted(self, draft: Draft) -> TaskDesign:
+        """The same with another description."""
+        return replace(self, candidate=self.candidate.drafted(draft))
 
 
 @dataclass(frozen=True, eq=False)
