@@ -58,7 +58,12 @@ class Drafted(Protocol):
 
 
 class Design(Drafted, Protocol):
-    """What has a description, and may have another."""
+    """What a search gives: it has a description, and may have another."""
+
+    @property
+    def candidate(self) -> Candidate:
+        """What the ordinary analysis says of it."""
+        ...
 
     def drafted(self, draft: Draft) -> Self:
         """The same with another description."""
@@ -111,6 +116,11 @@ class Candidate(Printed):
     branch: int
     position: Floats
 
+    @property
+    def candidate(self) -> Candidate:
+        """Itself: what the ordinary analysis says of the design."""
+        return self
+
     def drafted(self, draft: Draft) -> Candidate:
         """The same with another description."""
         return replace(self, draft=draft)
@@ -161,6 +171,7 @@ def checked(
     limits: Limits | None = None,
     *,
     poses: Floats | None = None,
+    motion: Motion | None = None,
     samples: int = CHECK_SAMPLES,
 ) -> Candidate | Refusal:
     """The design as the ordinary analysis finds it, or why it does not do what is claimed.
@@ -168,13 +179,12 @@ def checked(
     All poses must lie on one circuit and on one pass of it, so that no dead centre of the input is between
     any two, and follow each other in the order claimed; then come the limits. `poses` (n, columns) hold all
     joints, where circuits may share the values of input and output. `samples` inputs of a full turn are
-    compared: more where the input moves little. Raises nothing for a design that cannot be a linkage: that
-    is a refusal, too.
+    compared: more where the input moves little; `motion` is that of the design where it is known. Raises
+    nothing for a design that cannot be a linkage: that is a refusal, too.
     """
     limits = Limits() if limits is None else limits
     try:
-        linkage = draft.linkage
-        motion = linkage.motion(samples)
+        motion = draft.linkage.motion(samples) if motion is None else motion
     except (DescriptionError, RequestError) as error:
         return Refusal("assembly", str(error))
     if not motion.circuits:
@@ -191,7 +201,7 @@ def checked(
     if claim.whole_turn:
         lowest = None if circuit.transmission is None else circuit.transmission.lowest
     else:
-        lowest = used_transmission(linkage, circuit, claim.inputs, ways.position)
+        lowest = used_transmission(draft.linkage, circuit, claim.inputs, ways.position)
     place = int(ways.circuit[0]), int(ways.branch[0])
     return within_limits(Candidate(draft, claim, motion.motion_type, lowest, *place, ways.position), limits)
 

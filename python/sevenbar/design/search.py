@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from sevenbar.design.candidates import Design, Refusal, distinct, renamed, tally
+from sevenbar.design.candidates import Candidate, Design, Refusal, distinct, renamed, tally
 from sevenbar.design.course import SearchCourse
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
@@ -25,6 +25,11 @@ class Designs(Printed, Generic[T]):
     designs: tuple[T, ...]
     refusals: tuple[Refusal, ...] = ()
     unfinished: str = ""
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """What the ordinary analysis says of each design."""
+        return tuple(design.candidate for design in self.designs)
 
     @property
     def refused(self) -> str:

@@ -53,11 +53,6 @@ class SurveyResult(Designs[Candidate]):
     found: DesignsFound | None = None
 
     @property
-    def candidates(self) -> tuple[Candidate, ...]:
-        """The designs."""
-        return self.designs
-
-    @property
     def nearest(self) -> dict[str, str]:
         """By verdict, what came nearest to pass it: its figures and its numbers."""
         verdicts = self.task.verdicts

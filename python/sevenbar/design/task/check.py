@@ -189,7 +189,7 @@ def _candidate(
             draft, figures = moved(draft, solution.seed.placing), {}
         unit = "deg" if one.turns else linkage.length_unit
         claim = Claim(solution.inputs[number], own[0].outputs, own[0].errors, unit, figures)
-        candidate = checked(draft, claim, limits, poses=own[0].poses)
+        candidate = checked(draft, claim, limits, poses=own[0].poses, motion=motion)
         if isinstance(candidate, Refusal):
             return candidate
         result.append(candidate)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.design.candidates import Candidate, Refusal, least_error, likeness
+from sevenbar.design.candidates import Refusal, least_error, likeness
 from sevenbar.design.extra import need_scipy
 from sevenbar.design.search import Designs, Search
 from sevenbar.design.task.check import TIGHT, TaskDesign, checked_design, missed_between
@@ -73,11 +73,6 @@ class DesignsFound(Designs[TaskDesign]):
     starts: int
     #: Starts that ended since they had measured all the motions that one may.
     ended_early: int = 0
-
-    @property
-    def candidates(self) -> tuple[Candidate, ...]:
-        """What the ordinary analysis says of each design."""
-        return tuple(design.candidate for design in self.designs)
 
     def required(self, starts: int) -> None:
         """Raises `RequestError` where nothing was found of so many starts: what was nearest, what to ease."""

@@ -75,11 +75,6 @@ class Synthesis(Designs[Candidate]):
     #: The wanted function, `None` for another wish.
     wish: Wish | None = None
 
-    @property
-    def candidates(self) -> tuple[Candidate, ...]:
-        """The designs."""
-        return self.designs
-
     def required(self) -> tuple[Candidate, ...]:
         """The candidates; `RequestError` saying what was nearest where there are none."""
         if self.candidates:
