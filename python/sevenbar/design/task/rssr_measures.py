@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.design.closure import NAMES, output_slopes, outputs, transmission_slopes, transmissions
+from sevenbar.design.closure import output_slopes, outputs, transmission_slopes, transmissions
 from sevenbar.design.task.loop import TaskLoop
 
 #: The measures, in their closed forms.
@@ -48,8 +48,6 @@ class RssrMeasures:
         ends = loop.input, loop.output
         #: Whether they are known of the loop.
         self.known = loop.linkage.form == "rssr" and ends == (0, len(loop.linkage.columns) - 1)
-        names = loop.numbers.names
-        self._columns = [names.index(name) for name in NAMES] if self.known else []
 
     def knows(self, names: Collection[str]) -> bool:
         """Whether all of these measures are known."""
@@ -60,7 +58,7 @@ class RssrMeasures:
 
         `None` where the input does not turn fully, the output does, or strokes are equal.
         """
-        row = self._row(values)
+        row = self._loop.row(values)
         if not (transmissions(row, TURN)[0] > 0).all():
             return None
         read: dict[str, tuple[float, Floats]] = {}
@@ -72,24 +70,15 @@ class RssrMeasures:
                 return None
             read |= strokes
         value, by = zip(*(read[name] for name in names), strict=True)
-        return np.array(value), self._by_free(values, np.array(by))
+        return np.array(value), self._loop.row_slopes(values, np.array(by))
 
     def ends(self, values: Floats) -> list[tuple[float, Floats]]:
         """Both minima of the transmission angle [deg], or the only one twice, and their slopes (k,).
 
         Below zero where the input does not turn fully.
         """
-        angles, by = zip(*_least_angles(self._row(values)), strict=True)
-        return list(zip(angles, self._by_free(values, np.array(by)), strict=True))
-
-    def _row(self, values: Floats) -> Floats:
-        return np.asarray(self._loop.whole(values)[None, self._columns])
-
-    def _by_free(self, values: Floats, by: Floats) -> Floats:
-        """Slopes (f, 6) by the dimensions as those by the free numbers (f, k)."""
-        every = np.zeros((len(by), len(self._loop.numbers.names)))
-        every[:, self._columns] = by
-        return self._loop.all_slopes(values, every)
+        angles, by = zip(*_least_angles(self._loop.row(values)), strict=True)
+        return list(zip(angles, self._loop.row_slopes(values, np.array(by)), strict=True))
 
 
 def _least_angles(row: Floats) -> list[tuple[float, Floats]]:
