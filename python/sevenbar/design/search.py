@@ -73,17 +73,13 @@ class Search(SearchCourse, Generic[T]):
         for start in starts:
             if enough():
                 return
-            if (result := solve(start)) is not None:
-                self.add(*result)
+            figure, result = solve(start) or (0.0, None)
+            if isinstance(result, Refusal):
+                self.refused.append((figure, result))
+            elif result is not None:
+                self.checked.append((figure, result))
+                self._different = None
             self.step(words([design for _, design in self.checked]))
-
-    def add(self, figure: float, result: T | Refusal) -> None:
-        """Adds a design or a refusal by its figure."""
-        if isinstance(result, Refusal):
-            self.refused.append((figure, result))
-        else:
-            self.checked.append((figure, result))
-            self._different = None
 
     @property
     def different(self) -> list[T]:

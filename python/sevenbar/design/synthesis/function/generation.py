@@ -7,7 +7,7 @@ Starts come by the thousand in closed form (`starts`). The best of them are solv
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -188,7 +188,7 @@ def _fit_each(
     target: Wish,
     limits: Limits,
     tolerance: float,
-    started: Sequence[Start],
+    started: list[Start],
     *,
     hold: bool,
 ) -> None:
