@@ -415,7 +415,7 @@ def test_a_design_that_ends_where_its_motion_type_changes_says_so():
     assert coupler + 90 - crank - rocker == pytest.approx(0.0, abs=1e-3)
     assert design.optimality > 1e-3
     assert design.solution.ended == "edge"
-    found = TaskDesigns(DesignsFound(task, (design,), (), 1, ""), "dwell", "", 0, 0)
+    found = TaskDesigns(DesignsFound((design,), task=task, starts=1), "dwell", "", 0, 0)
     printed = Console(file=StringIO(), width=100, color_system=None)
     printed.print(task_report(task, 1, "").text(found))
     assert "KKT residual of design 1: ends at an edge" in printed.file.getvalue()

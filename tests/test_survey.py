@@ -17,7 +17,7 @@ from sevenbar import _core
 from sevenbar.curves.least_cone import half_angle
 from sevenbar.design.survey import SurveyTally, SurveyTask, SwingWish, Travel, survey
 from sevenbar.design.survey.journal import JOURNAL
-from sevenbar.design.survey.polish import draft_of
+from sevenbar.design.survey.polish import Polish, draft_of
 from sevenbar.design.survey.skew_closure import L2, poses, reach
 from sevenbar.design.survey.task import drawn_numbers
 from sevenbar.design.wish import wish_of_function, wish_of_pairs
@@ -421,3 +421,19 @@ def test_counts_and_seeds_of_numpy_are_numbers():
 def test_bounds_must_be_of_a_linkage():
     with pytest.raises(RequestError, match="are no linkage to build"):
         SurveyTask(FLAP, bounds={"M": (0.0, 1e9)})
+
+
+def test_a_stop_while_polishing_gives_the_designs_there_are_and_says_so(monkeypatch):
+    polished, calls = Polish.polished, []
+
+    def stopped(polish):
+        calls.append(polish)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return polished(polish)
+
+    monkeypatch.setattr(Polish, "polished", stopped)
+    task = SurveyTask(Travel(math.radians(90), math.radians(23.75)), count=3000)
+    found = survey(task, designs_wanted=2, threads=1)
+    assert (found.tally.count, len(found.candidates)) == (3000, 1)
+    assert found.unfinished == "stopped after 1 of 8 steps; these are the best so far"

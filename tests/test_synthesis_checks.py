@@ -15,12 +15,11 @@ from sevenbar.design.candidates import (
     Refusal,
     checked,
     distinct,
-    ranked,
-    renamed,
 )
 from sevenbar.design.closure import draft_of
 from sevenbar.design.files import design_files
 from sevenbar.design.limits import Limits
+from sevenbar.design.search import Search
 from sevenbar.errors import OutputError, RequestError
 from sevenbar.reporting.files import Report
 
@@ -152,7 +151,6 @@ def test_designs_that_are_one_but_for_their_scale_count_once_where_the_scale_is_
     designs = [judged(factor * CRANK, claimed) for factor in (1.0, 2.0, 1.001)]
     assert len(distinct(designs, scale_free=True)) == 1
     assert len(distinct(designs, scale_free=False)) == 2
-    assert distinct(designs, scale_free=True, count=0) == []
 
 
 def test_mirror_images_are_one_design_where_the_senses_of_turning_do_not_matter():
@@ -163,12 +161,48 @@ def test_mirror_images_are_one_design_where_the_senses_of_turning_do_not_matter(
     assert len(distinct(designs, scale_free=True, mirrored=True)) == 1
 
 
+def searched(errors, count, stop=math.inf):
+    """A search whose starts are errors, negative where a start is refused; it is stopped at a start."""
+    rows = [CRANK * [1, 1, 1, 1, 1 + 0.2 * i, 1] for i in range(len(errors))]
+
+    def solve(start):
+        place, error = start
+        if place == stop:
+            raise KeyboardInterrupt
+        if error < 0:
+            return -error, Refusal("error", f"off by {-error}")
+        found = Candidate(
+            draft_of(rows[place], "design"),
+            Claim(NOTHING, NOTHING, np.array([error])),
+            "",
+            None,
+            0,
+            0,
+            NOTHING,
+        )
+        return error, found
+
+    search = Search(len(errors), count=count)
+    with search.until_stopped(search.checked):
+        search.over(enumerate(errors), solve, lambda found: f"{len(found)}", enough=lambda: search.enough)
+    return search.result("wish")
+
+
 def test_the_best_stands_first_and_names_follow_the_rank():
-    inputs = np.linspace(0, 1, 4)
-    designs = [judged(CRANK, claim(CRANK, inputs, 0, np.array([error]))) for error in (0.3, 0.1, 0.2)]
-    best = renamed(ranked(designs), "wish")
-    assert [c.error_greatest for c in best] == [0.1, 0.2, 0.3]
-    assert [c.name for c in best] == ["wish, design 1", "wish, design 2", "wish, design 3"]
+    found = searched([0.3, 0.1, -0.7, 0.2, -0.4], 5)
+    assert [c.error_greatest for c in found.designs] == [0.1, 0.2, 0.3]
+    assert [c.name for c in found.designs] == ["wish, design 1", "wish, design 2", "wish, design 3"]
+    assert [refusal.detail for refusal in found.refusals] == ["off by 0.4", "off by 0.7"]
+    assert (found.refused, found.unfinished) == ("2 by error", "")
+
+
+def test_a_search_ends_with_as_many_as_are_wanted_and_a_stop_gives_what_is_there():
+    assert [c.error_greatest for c in searched([0.3, 0.1, 0.2], 2).designs] == [0.1, 0.3]
+    stopped = searched([0.3, 0.1, 0.2], 3, stop=1)
+    assert [c.error_greatest for c in stopped.designs] == [0.3]
+    assert stopped.unfinished == "stopped after 1 of 3 steps; these are the best so far"
+    with pytest.raises(KeyboardInterrupt):
+        searched([-1.0, 0.1], 1, stop=1)
 
 
 def test_written_designs_open_and_tell_what_they_are_for(tmp_path):

@@ -174,7 +174,7 @@ def test_a_sine_of_degrees_taken_for_radians_is_hinted_at():
 
 def test_a_search_in_which_nothing_closes_says_that_its_limit_led_it():
     wish = wish_of_pairs(np.radians([0, 10, 20, 30, 40]), np.radians([0, 3, 9, 20, 35]), title="pairs")
-    nothing = Synthesis("pairs", USUAL, (), (), 16384, 16, 0, wish)
+    nothing = Synthesis((), wanted="pairs", limits=USUAL, searched=16384, fitted=16, seed=0, wish=wish)
     with pytest.raises(
         RequestError, match=r"none closes .* try a smaller least transmission angle \(0 for none\)"
     ):

@@ -61,14 +61,12 @@ def exact(
     json: options.Json = False,
 ) -> None:
     """All linkages that take pairs of angles, or poses of a link (extra 'design')."""
-    from sevenbar.design.exact.report import ExactDesigns, exact_report
+    from sevenbar.design.exact.report import exact_report
     from sevenbar.design.exact.table import read_exact_task
     from sevenbar.design.extra import need_scipy
 
     need_scipy()
     options.checked_designs(designs)
-    report = exact_report(designs, command_line())
-    check_out(report, out, force=force)
     given: dict[str, Any] = {
         "twist": None if twist is None else angle("--twist", twist),
         "zeros": None if zeros is None else _zeros(zeros),
@@ -77,9 +75,11 @@ def exact(
     }
     task = read_exact_task(table)
     given["moving"] = [_pivot(text, task) for text in moving] if moving else None
+    report = exact_report(task, table.name, designs, command_line())
+    check_out(report, out, force=force)
     with progress_bar(f"all answers to {table.name}"):
         result = task.answers(linkage, **{name: value for name, value in given.items() if value is not None})
-    deliver(ExactDesigns(result, table.name, task.length_unit), report, out, json=json, force=force)
+    deliver(result, report, out, json=json, force=force)
 
 
 def _pivot(text: str, task: ExactTask) -> list[float]:

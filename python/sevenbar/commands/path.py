@@ -57,12 +57,11 @@ def path(
     from sevenbar.design.curve_table import read_curve
     from sevenbar.design.extra import need_scipy
     from sevenbar.design.synthesis.path.generation import check_counts, generated, path_task
-    from sevenbar.design.synthesis.path.report import PathDesigns, path_report
+    from sevenbar.design.synthesis.path.report import path_report
 
     need_scipy()
-    report = path_report(designs, command_line(), options.figure_formats(figures, out))
+    formats = options.figure_formats(figures, out)
     draft = Draft.of(toml_text(linkage), linkage)
-    check_out(report, out, force=force)
     drive = draft.linkage.drive.joint
     points, inputs = read_curve(wanted, draft.linkage, drive, point=point or "")
     if timing and inputs is None:
@@ -90,16 +89,11 @@ def path(
         follow=options.words(follow or []),
     )
     check_counts(designs, starts, seed)
+    report = path_report(task, str(wanted), seed, designs, command_line(), formats)
+    check_out(report, out, force=force)
     with progress_bar(f"searching paths of {draft.linkage.name}") as progress:
         result = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
-    deliver(
-        PathDesigns(task, result, str(wanted), seed),
-        report,
-        out,
-        json=json,
-        force=force,
-        unfinished=result.unfinished,
-    )
+    deliver(result, report, out, json=json, force=force, unfinished=result.unfinished)
 
 
 def missing_point(linkage: Linkage) -> str:

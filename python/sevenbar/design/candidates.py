@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol, TypeVar
+from typing import Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -57,7 +57,20 @@ class Drafted(Protocol):
         ...
 
 
-T = TypeVar("T", bound=Drafted)
+class Design(Drafted, Protocol):
+    """What a search gives: it has a description, and may have another."""
+
+    @property
+    def candidate(self) -> Candidate:
+        """What the ordinary analysis says of it."""
+        ...
+
+    def drafted(self, draft: Draft) -> Self:
+        """The same with another description."""
+        ...
+
+
+T = TypeVar("T", bound=Design)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +115,15 @@ class Candidate(Printed):
     circuit: int
     branch: int
     position: Floats
+
+    @property
+    def candidate(self) -> Candidate:
+        """Itself: what the ordinary analysis says of the design."""
+        return self
+
+    def drafted(self, draft: Draft) -> Candidate:
+        """The same with another description."""
+        return replace(self, draft=draft)
 
     @property
     def name(self) -> str:
@@ -149,6 +171,7 @@ def checked(
     limits: Limits | None = None,
     *,
     poses: Floats | None = None,
+    motion: Motion | None = None,
     samples: int = CHECK_SAMPLES,
 ) -> Candidate | Refusal:
     """The design as the ordinary analysis finds it, or why it does not do what is claimed.
@@ -156,13 +179,12 @@ def checked(
     All poses must lie on one circuit and on one pass of it, so that no dead centre of the input is between
     any two, and follow each other in the order claimed; then come the limits. `poses` (n, columns) hold all
     joints, where circuits may share the values of input and output. `samples` inputs of a full turn are
-    compared: more where the input moves little. Raises nothing for a design that cannot be a linkage: that
-    is a refusal, too.
+    compared: more where the input moves little; `motion` is that of the design where it is known. Raises
+    nothing for a design that cannot be a linkage: that is a refusal, too.
     """
     limits = Limits() if limits is None else limits
     try:
-        linkage = draft.linkage
-        motion = linkage.motion(samples)
+        motion = draft.linkage.motion(samples) if motion is None else motion
     except (DescriptionError, RequestError) as error:
         return Refusal("assembly", str(error))
     if not motion.circuits:
@@ -179,7 +201,7 @@ def checked(
     if claim.whole_turn:
         lowest = None if circuit.transmission is None else circuit.transmission.lowest
     else:
-        lowest = used_transmission(linkage, circuit, claim.inputs, ways.position)
+        lowest = used_transmission(draft.linkage, circuit, claim.inputs, ways.position)
     place = int(ways.circuit[0]), int(ways.branch[0])
     return within_limits(Candidate(draft, claim, motion.motion_type, lowest, *place, ways.position), limits)
 
@@ -420,15 +442,11 @@ def likeness(draft: Draft, *, scale_free: bool, mirrored: bool = False) -> Float
     return values if scale_free else np.append(values, math.log(longest))
 
 
-def distinct(
-    designs: Iterable[T], *, scale_free: bool, mirrored: bool = False, count: int | None = None
-) -> list[T]:
-    """The designs that differ, the first of those that are alike by `likeness`; at most `count`."""
+def distinct(designs: Iterable[T], *, scale_free: bool, mirrored: bool = False) -> list[T]:
+    """The designs that differ, the first of those that are alike by `likeness`."""
     selected: list[T] = []
     seen: list[Floats] = []
     for design in designs:
-        if count is not None and len(selected) >= count:
-            break
         own = likeness(design.draft, scale_free=scale_free, mirrored=mirrored)
         if all(len(own) != len(other) or np.abs(own - other).max() > SAME for other in seen):
             selected.append(design)
@@ -436,18 +454,11 @@ def distinct(
     return selected
 
 
-def ranked(
-    candidates: Iterable[Candidate], key: Callable[[Candidate], float] | None = None
-) -> list[Candidate]:
-    """The candidates, best first: by the greatest error, or by another figure that should be small."""
-    return sorted(candidates, key=key or (lambda candidate: candidate.error_greatest))
-
-
-def renamed(candidates: Iterable[Candidate], title: str, word: str = "design") -> list[Candidate]:
-    """The candidates with the names `title, design 1`, .. in their order."""
+def renamed(designs: Iterable[T], title: str, word: str = "design") -> list[T]:
+    """The designs with the names `title, design 1`, .. in their order."""
     return [
-        replace(c, draft=c.draft.with_value(("name",), f"{title}, {word} {i}"))
-        for i, c in enumerate(candidates, 1)
+        one.drafted(one.draft.with_value(("name",), f"{title}, {word} {i}"))
+        for i, one in enumerate(designs, 1)
     ]
 
 

@@ -34,7 +34,7 @@ class SearchCourse:
 
     def step(self, best: str = "", *, done: int = 1) -> None:
         """Counts steps, and keeps what the best is."""
-        self.done += done
+        self.done = min(self.done + done, self.total)
         self._best = best or self._best
         self.report()
 

@@ -89,6 +89,11 @@ class Wish:
     hint: str | None = None
 
     @property
+    def pairs(self) -> bool:
+        """Whether pairs are to be met exactly, so that designs differ by what they transmit."""
+        return self.exact and self.function is None
+
+    @property
     def exact(self) -> bool:
         """Whether precision points are to be met exactly."""
         return self.point_input.size > 0

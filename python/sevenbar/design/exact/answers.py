@@ -97,6 +97,11 @@ class ExactAnswers(Printed):
     #: The real dyads themselves, in ground coordinates.
     dyads: tuple[Dyad, ...] = ()
 
+    @cached_property
+    def candidates(self) -> tuple[ExactAnswer, ...]:
+        """The answers, those without defects first."""
+        return tuple(sorted(self.answers, key=lambda answer: isinstance(answer.verdict, Refusal)))
+
     @property
     def assemblable(self) -> tuple[ExactAnswer, ...]:
         """The answers whose circuits hold all wanted poses, whatever lies between them."""

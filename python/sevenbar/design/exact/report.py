@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 from rich.console import RenderableType
 from rich.text import Text
 
-from sevenbar.design.candidates import Refusal
-from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers
+from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.dyads import Line
 from sevenbar.design.exact.given import place_text
+from sevenbar.design.exact.table import ExactTask
 from sevenbar.design.files import design_files
 from sevenbar.design.tables import design_table, plain_designs
 from sevenbar.reporting.files import Report
@@ -25,38 +24,27 @@ from sevenbar.text.printing import lines, text_of
 ROUNDING = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
-class ExactDesigns:
-    """Answers with the source of their task and its unit of lengths."""
+def exact_report(task: ExactTask, source: str, count: int, command: str) -> Report[ExactAnswers]:
+    """How answers to the task of a table are reported, with files of at most `count` linkages.
 
-    found: ExactAnswers
-    source: str
-    length_unit: str
+    `source` names the table; the heads of the files name the `command`.
+    """
 
-    @cached_property
-    def candidates(self) -> tuple[ExactAnswer, ...]:
-        """The answers in the order of the report: those without defects first."""
-        return tuple(sorted(self.found.answers, key=lambda answer: isinstance(answer.verdict, Refusal)))
+    def head(found: ExactAnswers) -> list[str]:
+        return [f"answer to: {found.task} of {source}", f"made by: {command}"]
 
-
-def exact_report(count: int, command: str) -> Report[ExactDesigns]:
-    """How answers are reported, with files of at most `count` linkages; their heads name the `command`."""
-
-    def head(designs: ExactDesigns) -> list[str]:
-        return [f"answer to: {designs.found.task} of {designs.source}", f"made by: {command}"]
-
-    files = design_files(count, (), head=head, as_dict=as_dict)
-    return Report(partial(text, count), as_dict, files)
+    as_dict = partial(_as_dict, source)
+    text = partial(_text, source, task.length_unit, count)
+    return Report(text, as_dict, design_files(count, (), head=head, as_dict=as_dict))
 
 
-def text(count: int, designs: ExactDesigns) -> RenderableType:
+def _text(source: str, unit: str, count: int, result: ExactAnswers) -> RenderableType:
     """The answers for people, with the first `count` linkages."""
-    result, facts = designs.found, Facts()
-    facts.add("task", f"{result.task} of {designs.source}", "bold")
+    facts = Facts()
+    facts.add("task", f"{result.task} of {source}", "bold")
     facts.add_all(_answer_facts(result))
     parts: list[RenderableType] = []
     if result.dyads:
-        unit = designs.length_unit
         size = max(float(abs(line.at).max()) for dyad in result.dyads for line in (dyad.ground, dyad.body))
         plane = all(_flat(line, size) for dyad in result.dyads for line in (dyad.ground, dyad.body))
         rows = [
@@ -65,14 +53,14 @@ def text(count: int, designs: ExactDesigns) -> RenderableType:
         ]
         heads = ["dyad", "joints", f"at the ground\n[{unit}]", f"at the link in pose 1\n[{unit}]"]
         parts.append(number_table(heads, rows, words=[1, 2, 3]))
-    if designs.candidates:
+    if result.candidates:
         rows = [
             [answer.linkage.name, str(answer.columns["motion_type"]), answer.defect, f"{answer.error:.1e}"]
-            for answer in designs.candidates[:count]
+            for answer in result.candidates[:count]
         ]
         heads = ["linkage", "motion type", "defect", "closure\nerror"]
         parts.append(design_table(heads, rows, words=heads[:3]))
-    left = len(designs.candidates) - count
+    left = len(result.candidates) - count
     if left > 0:
         parts.append(Text(f"and {left} more; --json lists them all"))
     return page("All answers", facts, *parts)
@@ -95,13 +83,12 @@ def _answer_facts(found: ExactAnswers) -> list[tuple[str, str]]:
     ]
 
 
-def as_dict(designs: ExactDesigns) -> dict[str, Any]:
+def _as_dict(source: str, result: ExactAnswers) -> dict[str, Any]:
     """The answers as plain values; inputs and outputs at the wanted poses [rad, or length]."""
-    result = designs.found
     return {
         "format": 1,
         "task": result.task,
-        "source": designs.source,
+        "source": source,
         **named(result, "counted", "theory", "found", "real", "how"),
         "dyads": [
             {
@@ -113,7 +100,7 @@ def as_dict(designs: ExactDesigns) -> dict[str, Any]:
         ],
         "designs": [
             {**own, "inputs": one.claim.inputs.tolist(), "outputs": one.claim.outputs.tolist()}
-            for own, one in zip(plain_designs(designs), designs.candidates, strict=True)
+            for own, one in zip(plain_designs(result), result.candidates, strict=True)
         ],
     }
 

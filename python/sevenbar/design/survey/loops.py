@@ -144,12 +144,12 @@ class LoopSurvey(Drawn):
     def designs(self, tally: SurveyTally, count: int, progress: Progress = silent) -> DesignsFound:
         """Up to `count` designs of the search that begins with the best linkages of a tally."""
         if not count:
-            return DesignsFound(self.task, (), (), 0, "")
+            return DesignsFound((), task=self.task, starts=0)
         given = [self.values(selected.index, selected.index + 1)[0] for selected in tally.best]
         try:
             return designed(self.task, count=count, starts=0, given=given, progress=progress)
         except KeyboardInterrupt:
-            return DesignsFound(self.task, (), (), 0, "stopped before the first design")
+            return DesignsFound((), unfinished="stopped before the first design", task=self.task, starts=0)
 
 
 def _spread(value: float | None, step: float) -> tuple[int, ...]:

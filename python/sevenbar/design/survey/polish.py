@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -19,8 +18,9 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.curves.least_cone import half_angle
 from sevenbar.description.draft import Draft
-from sevenbar.design.candidates import Candidate, Claim, Refusal, checked, distinct, renamed
+from sevenbar.design.candidates import Candidate, Claim, Refusal, checked
 from sevenbar.design.limits import Limits
+from sevenbar.design.search import Designs, Search
 from sevenbar.design.survey.skew_closure import (
     ANGLE,
     COUNT,
@@ -333,28 +333,30 @@ def _errors(task: SurveyTask, dense: Floats, angles: Floats) -> tuple[Floats, di
 
 def designs(
     task: SurveyTask, tally: SurveyTally, count: int, progress: Progress
-) -> tuple[list[Candidate], list[Refusal], int]:
-    """The best of a survey as designs, what was refused of them, and how many became better by polishing."""
+) -> tuple[Designs[Candidate], int]:
+    """The best of a survey as designs, and how many became better by polishing.
+
+    A second Ctrl+C, or one while polishing, ends it with what is there.
+    """
     best = tally.best[: POLISHED_EACH * count]
-    result: list[Candidate] = []
-    refused: list[Refusal] = []
+    search: Search[Candidate] = Search(len(best), progress, count=count)
     better = 0
-    rows = drawn_numbers(task, [selected.index for selected in best])
-    # a second Ctrl+C, or one while polishing: what is there is given
-    with suppress(KeyboardInterrupt):
-        for done, (selected, numbers) in enumerate(zip(best, rows, strict=True)):
-            progress(done, len(best), f"polishing, {len(result)} checked")
-            drawn = np.append(numbers, selected.start)
-            new = judged(task, Polish(task, drawn, selected.branch, selected.sense).polished(), selected)
-            better += not isinstance(new, Refusal)
-            if isinstance(new, Refusal):
-                new = judged(task, drawn, selected)
-            if isinstance(new, Refusal):
-                refused.append(new)
-            else:
-                result.append(new)
-    order = sorted(result, key=lambda candidate: rank_of(task, candidate))
-    return renamed(distinct(order, scale_free=True, count=count), task.want.title), refused, better
+
+    def solve(start: tuple[Kept, Floats]) -> tuple[float, Candidate | Refusal]:
+        nonlocal better
+        selected, numbers = start
+        drawn = np.append(numbers, selected.start)
+        new = judged(task, Polish(task, drawn, selected.branch, selected.sense).polished(), selected)
+        if isinstance(new, Refusal):
+            new = judged(task, drawn, selected)
+        else:
+            better += 1
+        return (0.0 if isinstance(new, Refusal) else rank_of(task, new)), new
+
+    with search.until_stopped(search.checked, fewest=0):
+        rows = drawn_numbers(task, [selected.index for selected in best])
+        search.over(zip(best, rows, strict=True), solve, lambda result: f"polishing, {len(result)} checked")
+    return search.result(task.want.title), better
 
 
 def rank_of(task: SurveyTask, candidate: Candidate) -> float:

@@ -10,13 +10,14 @@ import math
 import os
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial, reduce
 from operator import add
 from pathlib import Path
 
-from sevenbar.design.candidates import Candidate, Refusal
+from sevenbar.design.candidates import Candidate
 from sevenbar.design.extra import need_scipy
+from sevenbar.design.search import Designs
 from sevenbar.design.survey.drawn import Drawn
 from sevenbar.design.survey.journal import Journal
 from sevenbar.design.survey.loops import LoopSurvey
@@ -28,7 +29,7 @@ from sevenbar.errors import RequestError
 from sevenbar.sweep.held_folder import refuse_unlike
 from sevenbar.sweep.plan import maker
 from sevenbar.sweep.run import Made, made_by_processes, made_on_threads, thread_count
-from sevenbar.text.printing import Printed, lines, text_of
+from sevenbar.text.printing import lines, text_of
 from sevenbar.text.progress import Progress, silent
 
 #: The remark about a survey that Ctrl+C ended.
@@ -38,8 +39,8 @@ UNFINISHED = "stopped after {done} of {total} linkages; these are the best so fa
 Making = Callable[[Iterable[int]], Generator[Made, None, None]]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class SurveyResult(Printed):
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SurveyResult(Designs[Candidate]):
     """The answer of a survey: designs polished and checked, best first, and the tally of all linkages.
 
     `refusals` say why others of the best were no designs after all; `polished` were made better.
@@ -47,11 +48,7 @@ class SurveyResult(Printed):
 
     task: SurveyTask | LoopSurvey
     tally: SurveyTally
-    candidates: tuple[Candidate, ...]
-    refusals: tuple[Refusal, ...]
     polished: int
-    #: The remark about a survey that was stopped; empty for one that ended by itself.
-    unfinished: str = ""
     #: Of a design task: what the search that began with the best hundred found.
     found: DesignsFound | None = None
 
@@ -74,13 +71,13 @@ class SurveyResult(Printed):
 
 
 @text_of.register(SurveyResult)
-def _(found: SurveyResult) -> str:
+def _(result: SurveyResult) -> str:
     return lines(
-        found.task.heading,
+        result.task.heading,
         [
-            ("answer", found.answer),
-            ("designs", str(len(found.candidates))),
-            ("unfinished", found.unfinished),
+            ("answer", result.answer),
+            ("designs", str(len(result.candidates))),
+            ("unfinished", result.unfinished),
         ],
     )
 
@@ -138,11 +135,18 @@ def survey(
         unfinished = UNFINISHED.format(done=tally.count, total=task.count)
     if isinstance(task, LoopSurvey):
         result = task.designs(tally, designs_wanted, progress)
-        made = tuple(one.candidate for one in result.designs)
-        unfinished = unfinished or result.unfinished
-        return SurveyResult(task, tally, made, result.refusals, len(made), unfinished, result)
-    candidates, refusals, polished = designs(task, tally, designs_wanted, progress)
-    return SurveyResult(task, tally, tuple(candidates), tuple(refusals), polished, unfinished)
+        return SurveyResult(
+            result.candidates,
+            result.refusals,
+            unfinished or result.unfinished,
+            task=task,
+            tally=tally,
+            polished=len(result.designs),
+            found=result,
+        )
+    best, polished = designs(task, tally, designs_wanted, progress)
+    best = replace(best, unfinished=unfinished or best.unfinished)
+    return SurveyResult(**vars(best), task=task, tally=tally, polished=polished)
 
 
 def _judged(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -89,6 +89,10 @@ class TaskDesign:
     def draft(self) -> Draft:
         """Its description."""
         return self.candidate.draft
+
+    def drafted(self, draft: Draft) -> TaskDesign:
+        """The same with another description."""
+        return replace(self, candidate=self.candidate.drafted(draft))
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +189,7 @@ def _candidate(
             draft, figures = moved(draft, solution.seed.placing), {}
         unit = "deg" if one.turns else linkage.length_unit
         claim = Claim(solution.inputs[number], own[0].outputs, own[0].errors, unit, figures)
-        candidate = checked(draft, claim, limits, poses=own[0].poses)
+        candidate = checked(draft, claim, limits, poses=own[0].poses, motion=motion)
         if isinstance(candidate, Refusal):
             return candidate
         result.append(candidate)

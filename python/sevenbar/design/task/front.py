@@ -23,11 +23,12 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.candidates import renamed
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.contradictions import refuse_contradictions
 from sevenbar.design.task.musts import measure_within, residuals_within
-from sevenbar.design.task.search import EXACT, STARTS, DesignsFound, designed, named
+from sevenbar.design.task.search import EXACT, STARTS, DesignsFound, designed
 from sevenbar.design.task.task import DesignTask, MeasureWant, Must, SampledWant
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.progress import Progress, silent
@@ -74,8 +75,9 @@ class ParetoFront:
     @property
     def found(self) -> DesignsFound:
         """The designs as those of a search."""
-        designs = named(self.task, [point.design for point in self.points], "front")
-        return DesignsFound(self.task, designs, (), self.solved, self.unfinished)
+        title = self.task.draft.linkage.name
+        designs = renamed([point.design for point in self.points], title, "front")
+        return DesignsFound(tuple(designs), (), self.unfinished, task=self.task, starts=self.solved)
 
     @property
     def values(self) -> Floats:

@@ -173,6 +173,21 @@ class TaskLoop:
         result[..., self._moving] = by[..., [self.free[k] for k in self._moving]]
         return result
 
+    @property
+    def _dimensions(self) -> list[int]:
+        """The numbers of an RSSR given by its dimensions, in the order of `NAMES`."""
+        return [self.numbers.names.index(name) for name in NAMES]
+
+    def row(self, values: Floats) -> Floats:
+        """The design (1, 6) of an RSSR given by its dimensions, as `closure` takes it."""
+        return np.asarray(self.whole(values)[None, self._dimensions])
+
+    def row_slopes(self, values: Floats, by: Floats) -> Floats:
+        """Slopes (n, 6) by these dimensions, as slopes (n, k) by the free numbers."""
+        every = np.zeros((len(by), len(self.numbers.names)))
+        every[:, self._dimensions] = by
+        return self.all_slopes(values, every)
+
     def mass_slopes(self, by: Floats) -> Floats:
         """Slopes by the masses of all links that have a body [1/kg], as slopes (k,) by the free numbers.
 
@@ -227,10 +242,6 @@ class RssrLoop(TaskLoop):
     """
 
     @property
-    def _columns(self) -> list[int]:
-        return [self.numbers.names.index(name) for name in NAMES]
-
-    @property
     def _sees_points(self) -> bool:
         return len(self.numbers.points) > len(self.linkage.points)
 
@@ -238,7 +249,7 @@ class RssrLoop(TaskLoop):
         """The poses (n, columns) at inputs x (n,) on a branch; NaN where there is none."""
         result = np.zeros((len(x), len(self.linkage.columns)))
         result[:, self.input] = x
-        result[:, self.output] = outputs(self.whole(values)[None, self._columns], x, branch)[0]
+        result[:, self.output] = outputs(self.row(values), x, branch)[0]
         return result
 
     def closed(self, values: Floats, x: Floats, q: Floats) -> Floats:
@@ -259,11 +270,9 @@ class RssrLoop(TaskLoop):
         none = np.empty((len(q), 0, 3))
         if not slopes:
             return Here(q, np.empty((*q.shape, 0)), none, np.empty((*none.shape, 0)))
-        row = self.whole(values)[None, self._columns]
-        by_row, by_input = output_slopes(row, q[None, :, self.input], q[None, :, self.output])
-        every = np.zeros((len(q), len(self.numbers.names)))
-        every[:, self._columns] = by_row[0]
+        at = q[None, :, self.input], q[None, :, self.output]
+        by_row, by_input = output_slopes(self.row(values), *at)
         by = np.zeros((*q.shape, len(self.free) + 1))
-        by[:, self.output] = np.column_stack([self.all_slopes(values, every), by_input[0]])
+        by[:, self.output] = np.column_stack([self.row_slopes(values, by_row[0]), by_input[0]])
         by[:, self.input, -1] = 1.0
         return Here(q, by, none, np.empty((*none.shape, by.shape[-1])))

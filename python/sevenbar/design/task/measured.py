@@ -9,6 +9,7 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.given import amount
 from sevenbar.design.task.loop import SAMPLES, TaskLoop
+from sevenbar.design.task.rssr_measures import RssrMeasures
 from sevenbar.design.task.transmitting import LeastAngle
 from sevenbar.design.task.values import Given
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError, no_joint, shown, suggestion
@@ -46,8 +47,10 @@ class Figures:
         self.motions = 0
         self._measures = measures_named(names) if names else ()
         self._angle = LeastAngle(loop) if self.names == ("transmission_lowest",) else None
+        own = RssrMeasures(loop)
+        self._closed_form = own if own.knows(self.names) else None
         #: Whether a value takes a motion that is measured, and counts.
-        self.measured = bool(self.names) and not (self._angle and self._angle.known)
+        self.measured = bool(self.names) and not (self._closed_form or (self._angle and self._angle.known))
         #: Whether they are all of one circuit, which the general way follows.
         self._alone = loop.linkage.form != "rssr" and all(one.per == "circuit" for one in self._measures)
         self._columns = [c for c, ball in enumerate(loop.numbers.is_ball) if not ball]
@@ -58,6 +61,8 @@ class Figures:
         `None` where the circuit is gone or one of the measures has no value.
         """
         quick = None if self._angle is None else self._angle.at(values, anchor, slopes=slopes)
+        if quick is None and self._closed_form is not None:
+            quick = self._closed_form.at(values, anchor, self.names)
         if quick is not None:
             return quick
         self.motions += 1 + slopes

@@ -461,24 +461,16 @@ class TaskProblem:
 
     def _transmission(self, z: Floats) -> list[tuple[str, Floats, Floats]]:
         """The transmission angle of an RSSR over what is used, and that its input turns."""
-        loop, limits = self.loop, self.model.task.limits
-        places = {d.place[1]: i for i, d in enumerate(loop.numbers.dimensions) if d.place[0] == "rssr"}
-        columns = [places[key] for key in ("M", "N", "L1", "L2", "L3", "D")]
-        row = loop.whole(self.values(z))[columns]
-
-        def wide(by_row: Floats) -> Floats:
-            every = np.zeros((len(by_row), len(loop.numbers.names)))
-            every[:, columns] = by_row
-            return self._wide(loop.all_slopes(self.values(z), every))
-
+        values, limits = self.values(z), self.model.task.limits
+        (row,) = self.loop.row(values)
         result: list[tuple[str, Floats, Floats]] = []
         if self.model.transmits and len(self._stations.fixed):
             slack, by_row, by_input = transmission_slack(row, self._stations.inputs(z), limits)
-            by = wide(by_row) + by_input[:, None] * self._stations.by
+            by = self._wide(self.loop.row_slopes(values, by_row)) + by_input[:, None] * self._stations.by
             result.append(("transmission", slack, by))
         if self.model.turns:
             slack, by_row = turning_slack(row)
-            result.append(("motion type", slack, wide(by_row)))
+            result.append(("motion type", slack, self._wide(self.loop.row_slopes(values, by_row))))
         return result
 
     def _figures(self, values: Floats, *, slopes: bool) -> tuple[Slacks, Slacks] | None:

@@ -83,8 +83,8 @@ def lowered(
     if now is None:
         return z
     for _ in range(MOST_STEPS):
-        weight = _weight(now, reach, weight)
-        step, promised = _step(now, reach, weight)
+        weight, program = _weighed(now, reach, weight)
+        step, promised = program[0], _promised(now, program, weight)
         if not promised > worth:
             break
         end = mended(z + step)
@@ -92,10 +92,11 @@ def lowered(
         gained = _gained(now, then, weight)
         if then is not None and not gained > KEPT_MOST * promised:
             # heights bend: the same program again with what they really were at its end
-            bent, _ = _step(_bent(now, then, end - z), reach, weight)
-            there = heights(mended(z + bent))
+            bent = _program(_bent(now, then, end - z), reach, weight)[0]
+            bent_end = mended(z + bent)
+            there = heights(bent_end)
             if _gained(now, there, weight) > gained:
-                step, end, then, gained = bent, mended(z + bent), there, _gained(now, there, weight)
+                step, end, then, gained = bent, bent_end, there, _gained(now, there, weight)
         longest = float(np.abs(step).max())
         if then is None or not gained > KEPT_LITTLE * promised:
             reach = min(longest, reach) / 4
@@ -122,25 +123,32 @@ def _bent(now: MinimaxValues, then: MinimaxValues, step: Floats) -> MinimaxValue
     )
 
 
-def _weight(now: MinimaxValues, reach: float, weight: float) -> float:
-    """The weight of a missed slack, raised until a step misses none that another within the reach keeps."""
-    missed = _program(now, reach, weight)[2]
-    if missed <= TRADED * now.missed:
-        return weight
+#: The step (k,) of a program, its greatest height, and the slack it misses.
+_Program = tuple[Floats, float, float]
+
+
+def _weighed(now: MinimaxValues, reach: float, weight: float) -> tuple[float, _Program]:
+    """The weight of a missed slack, raised until a step misses none that another within the reach keeps.
+
+    With the program of that weight.
+    """
+    program = _program(now, reach, weight)
+    if program[2] <= TRADED * now.missed:
+        return weight, program
     fewest = _program(now, reach, math.inf)[2]
-    while missed > fewest + TRADED * now.missed and weight < MOST_MISSED:
+    while program[2] > fewest + TRADED * now.missed and weight < MOST_MISSED:
         weight *= RISE
-        missed = _program(now, reach, weight)[2]
-    return weight
+        program = _program(now, reach, weight)
+    return weight, program
 
 
-def _step(now: MinimaxValues, reach: float, weight: float) -> tuple[Floats, float]:
-    """The step (k,) of one program, and the gain it promises relative to the unit."""
-    step, height, missed = _program(now, reach, weight)
-    return step, now.merit(now.unit, weight) - (height + weight * missed) / now.unit
+def _promised(now: MinimaxValues, program: _Program, weight: float) -> float:
+    """The gain that a program promises, relative to the unit."""
+    _, height, missed = program
+    return now.merit(now.unit, weight) - (height + weight * missed) / now.unit
 
 
-def _program(now: MinimaxValues, reach: float, weight: float) -> tuple[Floats, float, float]:
+def _program(now: MinimaxValues, reach: float, weight: float) -> _Program:
     """The step (k,) of least greatest height and missed slack by its weight, or of slack alone; and both."""
     from scipy.optimize import linprog
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.design.candidates import Candidate, Refusal, distinct, least_error, likeness, renamed, tally
-from sevenbar.design.course import SearchCourse
+from sevenbar.design.candidates import Refusal, least_error, likeness
 from sevenbar.design.extra import need_scipy
+from sevenbar.design.search import Designs, Search
 from sevenbar.design.task.check import TIGHT, TaskDesign, checked_design, missed_between
 from sevenbar.design.task.musts import MUSTS
 from sevenbar.design.task.problem import TaskModel, TaskSeed
@@ -62,31 +62,17 @@ EASE: Mapping[str, str] = {
 POSE_FAULTS = {one.fault for one in MUSTS if issubclass(one, PoseMust)}
 
 
-@dataclass(frozen=True, eq=False)
-class DesignsFound:
-    """The designs of a search, best first, and why others were refused.
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class DesignsFound(Designs[TaskDesign]):
+    """The designs of a task, best first, and why others were refused.
 
-    `starts` is the number of ways to begin that were found; `unfinished` says that the search was stopped,
-    and is empty where it ended.
+    `starts` is the number of ways to begin that there were.
     """
 
     task: DesignTask
-    designs: tuple[TaskDesign, ...]
-    refusals: tuple[Refusal, ...]
     starts: int
-    unfinished: str
     #: Starts that ended since they had measured all the motions that one may.
     ended_early: int = 0
-
-    @property
-    def candidates(self) -> tuple[Candidate, ...]:
-        """What the ordinary analysis says of each design."""
-        return tuple(design.candidate for design in self.designs)
-
-    @property
-    def refused(self) -> str:
-        """What was refused, the commonest first: "12 by cone, 3 by order"."""
-        return tally(self.refusals)
 
     def required(self, starts: int) -> None:
         """Raises `RequestError` where nothing was found of so many starts: what was nearest, what to ease."""
@@ -143,57 +129,70 @@ def designed(
     """
     need_scipy()
     model = TaskModel(task)
-    course = SearchCourse(starts + 1 + len(given) + (TRIED + TAKEN) * count, progress)
-    selected: list[TaskDesign] = []
-    refusals: list[Refusal] = []
+    total = starts + 1 + len(given) + (TRIED + TAKEN) * count
+    search: Search[TaskDesign] = Search(total, progress, count=count, scale_free=False)
     started: list[TaskSeed] = []
-    with course.until_stopped(selected):
-        started = seeds(model, starts, seed, course.step, [np.asarray(v, dtype=float) for v in given])
-        _search(model, started, count, course, selected, refusals)
-    best = distinct(selected, scale_free=False, count=count)
+    with search.until_stopped(search.checked):
+        started = seeds(model, starts, seed, search.step, [np.asarray(v, dtype=float) for v in given])
+        tried = _tried(model, started, search)
+        _take_each(model, tried, search)
     return DesignsFound(
-        task, named(task, best), tuple(refusals), len(started), course.unfinished, model.effort.ended
+        **vars(search.result(task.draft.linkage.name)),
+        task=task,
+        starts=len(started),
+        ended_early=model.effort.ended,
     )
 
 
-def _search(
-    model: TaskModel,
-    started: Sequence[TaskSeed],
-    count: int,
-    course: SearchCourse,
-    kept: list[TaskDesign],
-    refusals: list[Refusal],
-) -> None:
+def _tried(model: TaskModel, started: Sequence[TaskSeed], search: Search[TaskDesign]) -> list[Solved]:
+    """A first look at each of the starts that are not alike, the best first; one met exactly is taken."""
     tried: list[Solved] = []
-    nearest = math.inf
-    for one in apart(model, _unlike_seeds(model, started), TRIED * count):
-        look = _first_look(model, one)
-        if look is not None:
-            nearest = min(nearest, look.cost)
-            if look.cost < EXACT:
-                _take(model, look, count, kept, refusals)
-            else:
-                tried.append(look)
-        course.step(f"nearest: {nearest:.3g}" if look else "")
-        if _worst(kept, count) < EXACT:
-            return
-    tried.sort(key=lambda look: (look.hopeless, look.slack < MISSED, look.cost))
-    tried = _unlike(model, tried)
-    idle, known = 0, (0, math.inf)
-    for i, look in enumerate(tried):
-        now = len(distinct(kept, scale_free=False)), kept[0].cost if kept else math.inf
-        idle, known = (
-            (idle + 1, known) if now[0] <= known[0] and not now[1] < (1 - SAME) * known[1] else (0, now)
-        )
-        if idle > min(IDLE, TAKEN * count) and model.figures.names:
-            break
-        if len(distinct(kept, scale_free=False)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
-            break
-        _take(model, look, count, kept, refusals)
+
+    def look(one: TaskSeed) -> tuple[float, TaskDesign | Refusal] | None:
+        result = _first_look(model, one)
+        if result is None:
+            return None
+        if result.cost < EXACT:
+            exact.append(result.cost)
+            return _taken(model, result, search)
+        tried.append(result)
+        return None
+
+    def words(_: object) -> str:
+        nearest = min((*exact, *(one.cost for one in tried)), default=math.inf)
+        return f"nearest: {nearest:.3g}" if nearest < math.inf else ""
+
+    exact: list[float] = []
+    chosen = apart(model, _unlike_seeds(model, started), TRIED * search.count)
+    search.over(chosen, look, words, enough=lambda: _worst(search) < EXACT)
+    tried.sort(key=lambda one: (one.hopeless, one.slack < MISSED, one.cost))
+    return _unlike(model, tried)
+
+
+def _take_each(model: TaskModel, tried_first: Sequence[Solved], search: Search[TaskDesign]) -> None:
+    """Solves them to their ends until enough designs differ, and no better is in sight."""
+    count = idle = 0
+    known = 0, math.inf
+
+    def enough() -> bool:
+        nonlocal count, idle, known
+        best = min((cost for cost, _ in search.checked), default=math.inf)
+        now = len(search.different), best
+        new = now[0] > known[0] or best < (1 - SAME) * known[1]
+        idle, known = (0, now) if new else (idle + 1, known)
+        count += 1
+        if idle > min(IDLE, TAKEN * search.count) and model.figures.names:
+            return True
+        many = count > TAKEN * search.count or best < EXACT
+        return search.enough and many
+
+    def words(designs: list[TaskDesign]) -> str:
         # the error of a single want in its unit, the cost of several
-        several = len(model.task.wants) > 1 and bool(kept)
-        best = f"best: {kept[0].cost:.3g}" if several else least_error([one.candidate for one in kept])
-        course.step(best, done=int(course.done < course.total))
+        if len(model.task.wants) > 1 and designs:
+            return f"best: {min(one.cost for one in designs):.3g}"
+        return least_error([one.candidate for one in designs])
+
+    search.over(tried_first, lambda look: _taken(model, look, search), words, enough=enough)
 
 
 def _unlike_seeds(model: TaskModel, started: Sequence[TaskSeed]) -> Sequence[TaskSeed]:
@@ -226,32 +225,26 @@ def _unlike(model: TaskModel, tried: Sequence[Solved]) -> list[Solved]:
     return selected
 
 
-def _worst(kept: Sequence[TaskDesign], count: int) -> float:
-    """The cost of the last of so many distinct designs; infinite while there are fewer."""
-    result = distinct(kept, scale_free=False, count=count)
-    return result[-1].cost if len(result) == count else math.inf
+def _worst(search: Search[TaskDesign]) -> float:
+    """The cost of the last of as many designs as are wanted; infinite while there are fewer."""
+    return search.different[search.count - 1].cost if search.enough else math.inf
 
 
-def _take(
-    model: TaskModel, look: Solved, count: int, kept: list[TaskDesign], refusals: list[Refusal]
-) -> None:
-    """Solves a first look to the end, and keeps it, or the reason why not; one without prospects is left."""
+def _taken(
+    model: TaskModel, look: Solved, search: Search[TaskDesign]
+) -> tuple[float, TaskDesign | Refusal] | None:
+    """A first look solved to the end and checked, or why not; `None` for one that is known or hopeless."""
     own = likeness(model.loop.drawn(look.seed.values), scale_free=False)
-    if any(np.abs(own - likeness(one.draft, scale_free=False)).max() < ONE for one in kept):
-        return
-    most = HOPELESS * _worst(kept, count)
+    if any(np.abs(own - likeness(one.draft, scale_free=False)).max() < ONE for _, one in search.checked):
+        return None
+    most = HOPELESS * _worst(search)
     solution = solved(model, look.seed, most=most)
     if solution is None:
-        refusals.append(Refusal("assembly", "the linkage is lost on the way to its optimum"))
-        return
+        return 0.0, Refusal("assembly", "the linkage is lost on the way to its optimum")
     if solution.cost > most:
-        return
+        return None
     answer = _answer(model, solution, most)
-    if isinstance(answer, Refusal):
-        refusals.append(answer)
-    else:
-        kept.append(answer)
-        kept.sort(key=lambda design: design.cost)
+    return (answer.cost if isinstance(answer, TaskDesign) else 0.0), answer
 
 
 def _answer(model: TaskModel, solution: Solved, most: float) -> TaskDesign | Refusal:
@@ -274,9 +267,3 @@ def _first_look(model: TaskModel, one: TaskSeed) -> Solved | None:
     again = min(seeds_at(model, look.seed.values), key=lambda seed: seed.error, default=None)
     other = None if again is None else solved(model, again, LOOK, whole=False)
     return look if other is None or other.cost > look.cost else other
-
-
-def named(task: DesignTask, designs: Sequence[TaskDesign], word: str = "design") -> tuple[TaskDesign, ...]:
-    """The designs with the names `title, design 1`, .. in their order."""
-    candidates = renamed((one.candidate for one in designs), task.draft.linkage.name, word)
-    return tuple(replace(one, candidate=own) for one, own in zip(designs, candidates, strict=True))

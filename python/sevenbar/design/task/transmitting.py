@@ -9,6 +9,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.limits import MARGIN, Limits
 from sevenbar.design.task.loop import Here, Slacks, TaskLoop
+from sevenbar.design.task.rssr_measures import RssrMeasures
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.transmission.angle import coupling_of
 from sevenbar.kinematics.transmission.slopes import AxisPoints
@@ -30,7 +31,7 @@ class AngleSlack:
 
 
 class LeastAngle:
-    """The measure transmission_lowest of a four-bar or slider-crank whose input turns, in closed form.
+    """The measure transmission_lowest of an RSSR, four-bar or slider-crank whose input turns, in closed form.
 
     Where the input does not turn it is below zero, and rises towards linkages in which it does.
     """
@@ -38,9 +39,11 @@ class LeastAngle:
     def __init__(self, loop: TaskLoop) -> None:
         self._loop = loop
         self._made = AxisPoints.of(loop.numbers, loop.input, loop.output)
+        self._rssr = RssrMeasures(loop)
+        in_line = self._made is not None and self._made.in_line
         #: Whether the loop has it.
-        self.known = self._made is not None and self._made.in_line
-        self._places = loop.marked(self._made.points) if self.known and self._made else []
+        self.known = self._rssr.known or in_line
+        self._places = loop.marked(self._made.points) if in_line and self._made else []
 
     def at(self, values: Floats, anchor: Floats, *, slopes: bool) -> tuple[Floats, Floats] | None:
         """Its value (1,) [deg] and slopes (1, k), by a pose at the anchor's input; `None` without either."""
@@ -51,7 +54,9 @@ class LeastAngle:
         return np.array([value]), by[None]
 
     def ends(self, values: Floats, anchor: Floats, *, slopes: bool) -> list[tuple[float, Floats]] | None:
-        """The angles [deg] where the input is in line with the ground, and their slopes (k,)."""
+        """The angles [deg] where the input is in line with the ground, of an RSSR the least; slopes (k,)."""
+        if self._rssr.known:
+            return self._rssr.ends(values)
         if self._made is None or not self.known:
             return None
         loop = self._loop

@@ -54,7 +54,7 @@ def function_figure(candidate: Candidate, wish: Wish) -> Figure:
 
 def _title(candidate: Candidate, wish: Wish) -> str:
     greatest, rms = (math.degrees(e) for e in (candidate.error_greatest, candidate.error_rms))
-    if wish.exact and wish.function is None:
+    if wish.pairs:
         met = say("{count} precision points, met to {error:.1e}°", count=len(wish.input), error=greatest)
         return f"{short(candidate.name, 60)}\n{met}"
     reached = say("error at most {greatest:.3g}°, RMS {rms:.3g}°", greatest=greatest, rms=rms)

@@ -21,15 +21,12 @@ from sevenbar.design.candidates import (
     checked,
     distinct,
     least_error,
-    ranked,
-    renamed,
-    tally,
     transmits_best,
 )
 from sevenbar.design.closure import NAMES, draft_of, outputs, scaled
-from sevenbar.design.course import SearchCourse
 from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import Limits
+from sevenbar.design.search import Designs, Search
 from sevenbar.design.synthesis.function.precision import reflected
 from sevenbar.design.synthesis.function.starts import ON_BRANCH, Start, chosen, starts
 from sevenbar.design.task import DesignTask, FreeNumber, FunctionWant, Most
@@ -38,7 +35,6 @@ from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.solve import solved
 from sevenbar.design.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.errors import RequestError
-from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
 
 #: What a design must keep to where nothing else is given.
@@ -64,30 +60,26 @@ ENOUGH = 5
 HOPELESS = 1.1
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Synthesis(Printed):
-    """Designs found for a wish, best first, and what was refused on the way.
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Synthesis(Designs[Candidate]):
+    """Designs found for a wish, best first, and what was refused on the way, the nearest first.
 
-    `searched` designs were compared and `fitted` of them refined; `refusals` begin with the nearest.
+    `searched` designs were compared and `fitted` of them refined.
     """
 
     wanted: str
     limits: Limits
-    candidates: tuple[Candidate, ...]
-    refusals: tuple[Refusal, ...]
     searched: int
     fitted: int
     seed: int
     #: The wanted function, `None` for another wish.
     wish: Wish | None = None
-    #: The remark about a search that was stopped; empty for one that ended by itself.
-    unfinished: str = ""
 
     def required(self) -> tuple[Candidate, ...]:
         """The candidates; `RequestError` saying what was nearest where there are none."""
         if self.candidates:
             return self.candidates
-        reasons = tally(self.refusals) or "none closes on one branch over the range"
+        reasons = self.refused or "none closes on one branch over the range"
         nearest = f"; nearest: {self.refusals[0].detail}" if self.refusals else ""
         raise RequestError(
             f"design: no linkage found for {self.wanted} with limits {self.limits.text()}; of "
@@ -157,7 +149,7 @@ def function_generation(
             raise RequestError("zeros: are chosen for a function; leave them out, or give pairs of angles")
         assert function is not None
         wish = wish_of_function(function, x_range, input_range, output_range, points=precision, title=name)
-    return _found(wish, limits, tolerance, count, seed, progress)
+    return _generated(wish, limits, tolerance, count, seed, progress)
 
 
 def check_count(count: int) -> None:
@@ -166,53 +158,62 @@ def check_count(count: int) -> None:
         raise RequestError(f"designs: {count} is no number of designs; give 1 or more")
 
 
-def _found(
-    wish: Wish, limits: Limits, tolerance: float, count: int, seed: int, progress: Progress
+def _generated(
+    target: Wish, limits: Limits, tolerance: float, count: int, seed: int, progress: Progress
 ) -> Synthesis:
-    course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
-    rows, zeros = starts(wish, seed)
-    started = chosen(wish, limits, rows, zeros, course.total - 1)
-    course.step()
-    selected: list[Candidate] = []
-    refused: list[tuple[float, Refusal]] = []
-    by_transmission = wish.exact and wish.function is None
-    key = (lambda c: -(c.transmission_lowest or 0.0)) if by_transmission else None
-    with course.until_stopped(selected):
+    most = max(FITTED_LEAST, FITTED_EACH * count)
+    search: Search[Candidate] = Search(1 + most, progress, count=count)
+    rows, zeros = starts(target, seed)
+    started = chosen(target, limits, rows, zeros, most)
+    search.step()
+    with search.until_stopped(search.checked):
         # first the best of all; where starts end in one design, each with its own zero of the input
-        for hold in (False, True):
-            ends: list[Floats] = []
-            costs: list[float] = []
-            for start in started:
-                if len(costs) >= max(ENOUGH, 2 * count) and len(distinct(selected, scale_free=True)) >= count:
-                    break
-                others = len(costs) >= count and not hold
-                hopeless = HOPELESS * sorted(costs)[count - 1] if others else math.inf
-                fitted = _fitted(wish, limits, start, ends, hopeless, hold=hold)
-                if fitted is not None:
-                    error, result = _judged(wish, fitted, limits, tolerance)
-                    if isinstance(result, Candidate):
-                        selected.append(result)
-                        costs.append(fitted.cost)
-                    else:
-                        refused.append((error, result))
-                course.step(transmits_best(selected) if by_transmission else least_error(selected))
-            if len(distinct(ranked(selected, key), scale_free=True, count=count)) == count:
-                break
-            if not hold:
-                course.longer(len(started))
-    best = distinct(ranked(selected, key), scale_free=True, count=count)
-    refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
+        _fit_each(search, target, limits, tolerance, started, hold=False)
+        if not search.enough:
+            search.longer(len(started))
+            _fit_each(search, target, limits, tolerance, started, hold=True)
     return Synthesis(
-        wish.title,
-        limits,
-        tuple(renamed(best, wish.title)),
-        refusals,
-        len(rows),
-        len(started),
-        seed,
-        wish,
-        course.unfinished,
+        **vars(search.result(target.title)),
+        wanted=target.title,
+        limits=limits,
+        searched=len(rows),
+        fitted=len(started),
+        seed=seed,
+        wish=target,
     )
+
+
+def _fit_each(
+    search: Search[Candidate],
+    target: Wish,
+    limits: Limits,
+    tolerance: float,
+    started: list[Start],
+    *,
+    hold: bool,
+) -> None:
+    """Fits the starts and checks where they lead, with `hold` each with its own zero of the input."""
+    ends: list[Floats] = []
+    costs: list[float] = []
+
+    def solve(start: Start) -> tuple[float, Candidate | Refusal] | None:
+        others = len(costs) >= search.count and not hold
+        hopeless = HOPELESS * sorted(costs)[search.count - 1] if others else math.inf
+        fitted = _fitted(target, limits, start, ends, hopeless, hold=hold)
+        if fitted is None:
+            return None
+        error, result = _judged(target, fitted, limits, tolerance)
+        if isinstance(result, Candidate):
+            costs.append(fitted.cost)
+            error = -(result.transmission_lowest or 0.0) if target.pairs else error
+        return error, result
+
+    def enough() -> bool:
+        if len(costs) < max(ENOUGH, 2 * search.count):
+            return False
+        return len(distinct([one for _, one in search.checked], scale_free=True)) >= search.count
+
+    search.over(started, solve, transmits_best if target.pairs else least_error, enough=enough)
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,36 +224,36 @@ class _Fitted(Start):
     cost: float = 0.0
 
 
-def _task(wish: Wish, limits: Limits, start: Start, *, hold: bool) -> DesignTask:
+def _task(target: Wish, limits: Limits, start: Start, *, hold: bool) -> DesignTask:
     """The wish as a task about a start, within the sizes; with `hold` its zero of the input stays."""
-    inputs, outputs = wish.input, wish.output
-    if wish.function is not None:
-        inputs = np.union1d(wish.input, wish.point_input)
-        outputs = wish.function(inputs)
+    inputs, outputs = target.input, target.output
+    if target.function is not None:
+        inputs = np.union1d(target.input, target.point_input)
+        outputs = target.function(inputs)
     own = (float(start.zeros[0]) if hold else None, None)
-    want = FunctionWant(inputs, outputs, own if wish.zeros is None else wish.zeros)
+    want = FunctionWant(inputs, outputs, own if target.zeros is None else target.zeros)
     low, high = limits.longest / limits.ratio, limits.longest
     row = start.row * math.sqrt(low * high / (start.row[2:5].min() * np.abs(start.row).max()))
     free = [FreeNumber(name, low if name in LINKS else -high, high) for name in NAMES]
-    points = tuple(int(i) for i in np.searchsorted(inputs, wish.point_input))
+    points = tuple(int(i) for i in np.searchsorted(inputs, target.point_input))
     return DesignTask(
-        draft_of(row, wish.title),
+        draft_of(row, target.title),
         tuple(free),
         (want,),
-        (Most(0, 0.0, points),) if wish.exact else (),
-        goal="transmission" if wish.exact and wish.function is None else "minimax",
+        (Most(0, 0.0, points),) if target.exact else (),
+        goal="transmission" if target.pairs else "minimax",
         limits=limits,
     )
 
 
 def _fitted(
-    wish: Wish, limits: Limits, start: Start, ends: list[Floats], hopeless: float, *, hold: bool
+    target: Wish, limits: Limits, start: Start, ends: list[Floats], hopeless: float, *, hold: bool
 ) -> _Fitted | None:
     """Where a start leads; `None` where that is `hopeless`, or one of the `ends`, which become more."""
-    own = start.zeros[2 if wish.zeros is not None else int(hold) :]
-    if wish.exact and len(NAMES) - 1 + own.size <= wish.point_input.size:
+    own = start.zeros[2 if target.zeros is not None else int(hold) :]
+    if target.exact and len(NAMES) - 1 + own.size <= target.point_input.size:
         return _Fitted(start.row, start.zeros, start.branch)
-    model = TaskModel(_task(wish, limits, start, hold=hold))
+    model = TaskModel(_task(target, limits, start, hold=hold))
     assert isinstance(model.loop, RssrLoop)
     inputs = model.wanted[0].stations.inputs(own)
     poses = model.loop.on_branch(model.loop.start, inputs, start.branch)
@@ -279,21 +280,21 @@ def _fitted(
 
 
 def _judged(
-    wish: Wish, point: _Fitted, limits: Limits, tolerance: float
+    target: Wish, point: _Fitted, limits: Limits, tolerance: float
 ) -> tuple[float, Candidate | Refusal]:
     """A design as the ordinary analysis finds it, and its greatest error [rad], infinite without one."""
     rows, zeros = point.row[None], point.zeros[None]
-    if wish.zeros is None:
+    if target.zeros is None:
         rows, zeros = reflected(rows, zeros)
-    elif np.abs(np.exp(1j * (point.zeros - np.array(wish.zeros))) - 1).max() > ON_BRANCH:
+    elif np.abs(np.exp(1j * (point.zeros - np.array(target.zeros))) - 1).max() > ON_BRANCH:
         return math.inf, Refusal("assembly", "needs the crank on the other side of its zero")
     row, zero = scaled(rows[0], limits.longest), zeros[0]
-    dense = np.union1d(wish.dense, wish.input if wish.function is None else wish.point_input)
+    dense = np.union1d(target.dense, target.input if target.function is None else target.point_input)
     angles = outputs(row[None], zero[0] + dense, point.branch)[0]
     if not np.isfinite(angles).all():
         return math.inf, Refusal("assembly", "cannot reach the whole range of the input")
     angles = np.unwrap(angles)
-    at, wanted = (wish.input, wish.output) if wish.function is None else (dense, wish.function(dense))
+    at, wanted = (target.input, target.output) if target.function is None else (dense, target.function(dense))
     errors = short_way(np.interp(at, dense, angles) - zero[1] - wanted)
     greatest = float(np.abs(errors).max())
     if greatest > tolerance:
@@ -305,4 +306,4 @@ def _judged(
     if math.isfinite(point.before):
         figures["error_greatest_least_squares_deg"] = math.degrees(point.before)
     claim = Claim(zero[0] + dense, angles, errors, "deg", figures)
-    return greatest, checked(draft_of(row, wish.title), claim, limits)
+    return greatest, checked(draft_of(row, target.title), claim, limits)

@@ -94,7 +94,7 @@ def chosen(wish: Wish, limits: Limits, rows: Floats, zeros: Floats, most: int) -
         count = wish.input.size
         at_points = np.abs(off[:, count:]).max(axis=1, initial=0.0)
         score = np.sqrt((off[:, :count] ** 2).mean(axis=1)) + missed
-        if wish.exact and wish.function is None:
+        if wish.pairs:
             score = score + 1.0 - square
         good = np.isfinite(off).all(axis=1) & (square > 0) & (at_points < ON_BRANCH)
         scores.append(score[good])

@@ -25,16 +25,13 @@ from sevenbar.design.candidates import (
     Claim,
     Refusal,
     checked,
-    distinct,
-    ranked,
-    renamed,
     transmits_best,
     within_limits,
 )
 from sevenbar.design.closure import draft_of, outputs, scaled
-from sevenbar.design.course import SearchCourse
 from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import MARGIN, Limits
+from sevenbar.design.search import Search
 from sevenbar.design.survey.polish import Polish, swung
 from sevenbar.design.survey.skew_closure import START, N
 from sevenbar.design.survey.tally import SurveyTally
@@ -86,37 +83,33 @@ def swing_generation(
     want = SwingWish(swing, time_ratio)
     refuse_without_swing(limits.motion_type)
     check_count(count)
-    course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
-    started = _begun(want, limits, course.total - 1, seed)
-    course.step()
-    selected: list[Candidate] = []
-    refused: list[tuple[float, Refusal]] = []
+    most = max(FITTED_LEAST, FITTED_EACH * count)
+    search: Search[Candidate] = Search(1 + most, progress, count=count, mirrored=True)
+    started = _begun(want, limits, most, seed)
+    search.step()
     ends: list[Floats] = []
-    with course.until_stopped(selected):
-        for numbers, branch in started:
-            held = numbers[N] if _most_alike(ends) >= ENOUGH else None
-            polished = Polish(_task(want, limits, held), numbers, branch, worth=WORTH).polished()
-            ends.append(np.abs(polished[:6]) / np.abs(polished[:6]).max())
-            far, result = _judged(want, limits, polished, branch)
-            if math.isinf(far):
-                far, result = _judged(want, limits, numbers, branch)
-            if isinstance(result, Candidate):
-                selected.append(result)
-            else:
-                refused.append((far, result))
-            course.step(transmits_best(selected))
-    order = ranked(selected, lambda c: -(c.transmission_lowest or 0.0))
-    best = distinct(order, scale_free=True, mirrored=True, count=count)
-    refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
+
+    def solve(start: tuple[Floats, int]) -> tuple[float, Candidate | Refusal]:
+        numbers, branch = start
+        held = numbers[N] if _most_alike(ends) >= ENOUGH else None
+        polished = Polish(_task(want, limits, held), numbers, branch, worth=WORTH).polished()
+        ends.append(np.abs(polished[:6]) / np.abs(polished[:6]).max())
+        far, result = _judged(want, limits, polished, branch)
+        if math.isinf(far):
+            far, result = _judged(want, limits, numbers, branch)
+        return (
+            (far, result) if isinstance(result, Refusal) else (-(result.transmission_lowest or 0.0), result)
+        )
+
+    with search.until_stopped(search.checked):
+        search.over(started, solve, transmits_best)
     return Synthesis(
-        want.title,
-        limits,
-        tuple(renamed(best, want.title)),
-        refusals,
-        SEARCHED,
-        len(started),
-        seed,
-        unfinished=course.unfinished,
+        **vars(search.result(want.title)),
+        wanted=want.title,
+        limits=limits,
+        searched=SEARCHED,
+        fitted=len(started),
+        seed=seed,
     )
 
 

@@ -9,10 +9,10 @@ import numpy.typing as npt
 
 from sevenbar.arrays import whole_number
 from sevenbar.description.draft import Draft
-from sevenbar.design.candidates import Candidate
+from sevenbar.design.candidates import Candidate, renamed
 from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.path.task import PathTask, Where, path_task
-from sevenbar.design.task.search import STARTS, DesignsFound, designed, named
+from sevenbar.design.task.search import STARTS, DesignsFound, designed
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.progress import Progress, silent
 
@@ -94,7 +94,7 @@ def generated(
     result = designed(task.design, count=count, starts=starts, seed=seed, progress=progress)
     result.required(starts)
     best = sorted(result.designs, key=lambda design: design.candidate.error_greatest)
-    return replace(result, designs=named(task.design, best))
+    return replace(result, designs=tuple(renamed(best, task.draft.linkage.name)))
 
 
 def check_counts(count: object, starts: object, seed: object) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -25,26 +24,6 @@ TINY = 1e-9
 
 #: Dimensions in a printed table.
 ACROSS = 6
-
-
-@dataclass(frozen=True, eq=False)
-class PathDesigns:
-    """The designs of a task, best first; the `source` of the wanted points and the seed of the search."""
-
-    task: PathTask
-    found: DesignsFound
-    source: str
-    seed: int
-
-    @property
-    def candidates(self) -> Sequence[Candidate]:
-        """What the ordinary analysis says of each design."""
-        return self.found.candidates
-
-    @property
-    def unfinished(self) -> str:
-        """The remark about a search that was stopped; empty for one that ended by itself."""
-        return self.found.unfinished
 
 
 def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
@@ -75,20 +54,25 @@ def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
     ]
 
 
-def path_report(count: int, command: str, figures: Sequence[str] = ("png",)) -> Report[PathDesigns]:
-    """How at most `count` designs are reported; the heads of their files name the `command`."""
-    files = design_files(count, figures, head=partial(_head, command), figure=_figure, as_dict=as_dict)
-    return Report(text, as_dict, files, spoken=True)
+def path_report(
+    task: PathTask, source: str, seed: int, count: int, command: str, figures: Sequence[str] = ("png",)
+) -> Report[DesignsFound]:
+    """How at most `count` designs of a task are reported; the heads of their files name the `command`.
+
+    `source` is that of the wanted points, `seed` that of the search.
+    """
+    as_dict = partial(_as_dict, task, source, seed)
+    head, figure = partial(_head, task, source, command), partial(_figure, task)
+    files = design_files(count, figures, head=head, figure=figure, as_dict=as_dict)
+    return Report(partial(_text, task, source, seed), as_dict, files, spoken=True)
 
 
-def _figure(found: PathDesigns, candidate: Candidate) -> Figure:
-    design = next(one for one in found.found.designs if one.candidate is candidate)
-    return path_figure(found.task, design)
+def _figure(task: PathTask, found: DesignsFound, candidate: Candidate) -> Figure:
+    return path_figure(task, next(one for one in found.designs if one.candidate is candidate))
 
 
-def _head(command: str, found: PathDesigns) -> list[str]:
-    task = found.task
-    lines = [f"{label}: {text}" for label, text in _facts(task, found.source)]
+def _head(task: PathTask, source: str, command: str, found: DesignsFound) -> list[str]:
+    lines = [f"{label}: {text}" for label, text in _facts(task, source)]
     if task.design.placement != "fixed" and "joint" not in task.draft.raw:
         lines.append(
             "placed: turned by turn_x, turn_y, turn_z (axis times angle), then shifted, it makes the path"
@@ -98,14 +82,12 @@ def _head(command: str, found: PathDesigns) -> list[str]:
     return [*lines, f"made by: {command}"]
 
 
-def text(found: PathDesigns) -> RenderableType:
+def _text(task: PathTask, source: str, seed: int, found: DesignsFound) -> RenderableType:
     """The designs for people."""
-    task, candidates = found.task, found.candidates
-    linkage = task.draft.linkage
+    candidates, linkage = found.candidates, task.draft.linkage
     unit = linkage.length_unit
     facts = Facts()
-    facts.add_all(_facts(task, found.source), bold=["wanted"])
-    facts.add("seed", str(found.seed))
+    facts.add_all([*_facts(task, source), ("seed", str(seed))], bold=["wanted"])
     if found.unfinished:
         facts.add("unfinished", retold(found.unfinished), "bold yellow")
     transmits = any(c.transmission_lowest is not None for c in candidates)
@@ -126,9 +108,8 @@ def text(found: PathDesigns) -> RenderableType:
     return page(say("Path generation: {linkage}", linkage=linkage.heading), facts, *tables)
 
 
-def as_dict(found: PathDesigns) -> dict[str, Any]:
+def _as_dict(task: PathTask, source: str, seed: int, found: DesignsFound) -> dict[str, Any]:
     """The designs as plain values; what has a unit has it in its name."""
-    task = found.task
     errors = f"errors_{task.draft.linkage.length_unit}"
     designs = [
         {**own, errors: c.claim.errors.tolist(), "inputs": c.claim.inputs.tolist()}
@@ -136,8 +117,8 @@ def as_dict(found: PathDesigns) -> dict[str, Any]:
     ]
     return {
         "format": 1,
-        **dict(_facts(task, found.source)),
-        "seed": found.seed,
+        **dict(_facts(task, source)),
+        "seed": seed,
         "unfinished": found.unfinished or None,
         "designs": designs,
     }
