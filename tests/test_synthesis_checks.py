@@ -19,7 +19,7 @@ from sevenbar.design.candidates import (
 from sevenbar.design.closure import draft_of
 from sevenbar.design.files import design_files
 from sevenbar.design.limits import Limits
-from sevenbar.design.search import Search
+from sevenbar.design.search import DesignSearch
 from sevenbar.errors import OutputError, RequestError
 from sevenbar.reporting.files import Report
 
@@ -182,7 +182,7 @@ def searched(errors, count, stop=math.inf):
         )
         return error, found
 
-    search = Search(len(errors), count=count)
+    search = DesignSearch(len(errors), count=count)
     with search.until_stopped(search.checked):
         search.over(enumerate(errors), solve, lambda found: f"{len(found)}", enough=lambda: search.enough)
     return search.result("wish")

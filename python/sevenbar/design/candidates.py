@@ -57,7 +57,7 @@ class Drafted(Protocol):
         ...
 
 
-class Design(Drafted, Protocol):
+class DesignResult(Drafted, Protocol):
     """What a search gives: it has a description, and may have another."""
 
     @property
@@ -70,7 +70,7 @@ class Design(Drafted, Protocol):
         ...
 
 
-T = TypeVar("T", bound=Design)
+T = TypeVar("T", bound=DesignResult)
 
 
 @dataclass(frozen=True, eq=False)

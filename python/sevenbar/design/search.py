@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from sevenbar.design.candidates import Candidate, Design, Refusal, distinct, renamed, tally
+from sevenbar.design.candidates import Candidate, DesignResult, Refusal, distinct, renamed, tally
 from sevenbar.design.course import SearchCourse
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
 
 S = TypeVar("S")
-T = TypeVar("T", bound=Design)
+T = TypeVar("T", bound=DesignResult)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,7 +37,7 @@ class Designs(Printed, Generic[T]):
         return tally(self.refusals)
 
 
-class Search(SearchCourse, Generic[T]):
+class DesignSearch(SearchCourse, Generic[T]):
     """A search for `count` designs that differ (`distinct`), with the steps that it has done."""
 
     def __init__(

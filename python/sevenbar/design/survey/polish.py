@@ -20,7 +20,7 @@ from sevenbar.curves.least_cone import half_angle
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Candidate, Claim, Refusal, checked
 from sevenbar.design.limits import Limits
-from sevenbar.design.search import Designs, Search
+from sevenbar.design.search import Designs, DesignSearch
 from sevenbar.design.survey.skew_closure import (
     ANGLE,
     COUNT,
@@ -339,7 +339,7 @@ def designs(
     A second Ctrl+C, or one while polishing, ends it with what is there.
     """
     best = tally.best[: POLISHED_EACH * count]
-    search: Search[Candidate] = Search(len(best), progress, count=count)
+    search: DesignSearch[Candidate] = DesignSearch(len(best), progress, count=count)
     better = 0
 
     def solve(start: tuple[Kept, Floats]) -> tuple[float, Candidate | Refusal]:

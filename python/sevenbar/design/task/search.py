@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from sevenbar.design.candidates import Refusal, least_error, likeness
 from sevenbar.design.extra import need_scipy
-from sevenbar.design.search import Designs, Search
+from sevenbar.design.search import Designs, DesignSearch
 from sevenbar.design.task.check import TIGHT, TaskDesign, checked_design, missed_between
 from sevenbar.design.task.musts import MUSTS
 from sevenbar.design.task.problem import TaskModel, TaskSeed
@@ -130,7 +130,7 @@ def designed(
     need_scipy()
     model = TaskModel(task)
     total = starts + 1 + len(given) + (TRIED + TAKEN) * count
-    search: Search[TaskDesign] = Search(total, progress, count=count, scale_free=False)
+    search: DesignSearch[TaskDesign] = DesignSearch(total, progress, count=count, scale_free=False)
     started: list[TaskSeed] = []
     with search.until_stopped(search.checked):
         started = seeds(model, starts, seed, search.step, [np.asarray(v, dtype=float) for v in given])
@@ -144,7 +144,7 @@ def designed(
     )
 
 
-def _tried(model: TaskModel, started: Sequence[TaskSeed], search: Search[TaskDesign]) -> list[Solved]:
+def _tried(model: TaskModel, started: Sequence[TaskSeed], search: DesignSearch[TaskDesign]) -> list[Solved]:
     """A first look at each of the starts that are not alike, the best first; one met exactly is taken."""
     tried: list[Solved] = []
 
@@ -169,7 +169,7 @@ def _tried(model: TaskModel, started: Sequence[TaskSeed], search: Search[TaskDes
     return _unlike(model, tried)
 
 
-def _take_each(model: TaskModel, tried_first: Sequence[Solved], search: Search[TaskDesign]) -> None:
+def _take_each(model: TaskModel, tried_first: Sequence[Solved], search: DesignSearch[TaskDesign]) -> None:
     """Solves them to their ends until enough designs differ, and no better is in sight."""
     count = idle = 0
     known = 0, math.inf
@@ -225,13 +225,13 @@ def _unlike(model: TaskModel, tried: Sequence[Solved]) -> list[Solved]:
     return selected
 
 
-def _worst(search: Search[TaskDesign]) -> float:
+def _worst(search: DesignSearch[TaskDesign]) -> float:
     """The cost of the last of as many designs as are wanted; infinite while there are fewer."""
     return search.different[search.count - 1].cost if search.enough else math.inf
 
 
 def _taken(
-    model: TaskModel, look: Solved, search: Search[TaskDesign]
+    model: TaskModel, look: Solved, search: DesignSearch[TaskDesign]
 ) -> tuple[float, TaskDesign | Refusal] | None:
     """A first look solved to the end and checked, or why not; `None` for one that is known or hopeless."""
     own = likeness(model.loop.drawn(look.seed.values), scale_free=False)

@@ -26,7 +26,7 @@ from sevenbar.design.candidates import (
 from sevenbar.design.closure import NAMES, draft_of, outputs, scaled
 from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import Limits
-from sevenbar.design.search import Designs, Search
+from sevenbar.design.search import Designs, DesignSearch
 from sevenbar.design.synthesis.function.precision import reflected
 from sevenbar.design.synthesis.function.starts import ON_BRANCH, Start, chosen, starts
 from sevenbar.design.task import DesignTask, FreeNumber, FunctionWant, Most
@@ -162,7 +162,7 @@ def _generated(
     target: Wish, limits: Limits, tolerance: float, count: int, seed: int, progress: Progress
 ) -> Synthesis:
     most = max(FITTED_LEAST, FITTED_EACH * count)
-    search: Search[Candidate] = Search(1 + most, progress, count=count)
+    search: DesignSearch[Candidate] = DesignSearch(1 + most, progress, count=count)
     rows, zeros = starts(target, seed)
     started = chosen(target, limits, rows, zeros, most)
     search.step()
@@ -184,7 +184,7 @@ def _generated(
 
 
 def _fit_each(
-    search: Search[Candidate],
+    search: DesignSearch[Candidate],
     target: Wish,
     limits: Limits,
     tolerance: float,

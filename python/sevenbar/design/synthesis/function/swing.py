@@ -31,7 +31,7 @@ from sevenbar.design.candidates import (
 from sevenbar.design.closure import draft_of, outputs, scaled
 from sevenbar.design.extra import need_scipy
 from sevenbar.design.limits import MARGIN, Limits
-from sevenbar.design.search import Search
+from sevenbar.design.search import DesignSearch
 from sevenbar.design.survey.polish import Polish, swung
 from sevenbar.design.survey.skew_closure import START, N
 from sevenbar.design.survey.tally import SurveyTally
@@ -84,7 +84,7 @@ def swing_generation(
     refuse_without_swing(limits.motion_type)
     check_count(count)
     most = max(FITTED_LEAST, FITTED_EACH * count)
-    search: Search[Candidate] = Search(1 + most, progress, count=count, mirrored=True)
+    search: DesignSearch[Candidate] = DesignSearch(1 + most, progress, count=count, mirrored=True)
     started = _begun(want, limits, most, seed)
     search.step()
     ends: list[Floats] = []
