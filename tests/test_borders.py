@@ -81,7 +81,7 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "point without a name": (lambda: sb.Point(1, "b", [1]), "name: 1 is not a name; give some text in quotes"),
     "point of no link": (lambda: sb.Point("P", 0, (1, 2, 3)), "link: 0 is not a link; give 1 or more"),
     "point of one number": (lambda: sb.Point("P", 1, [1]), "at: 1 numbers; give three"),
-    "joint of no kind": (lambda: sb.Joint("Q", "a"), "kind: 'Q' is not a joint kind; give R, P, H, C, U, S or E"),
+    "joint of no kind": (lambda: sb.Joint("Q", "a"), "kind: 'Q' is not a joint kind; give R, P, H, C, U, S, E, K or L"),
     "joint of a text": (lambda: sb.Joint("U", "a", angle="90 mm"), "angle: '90 mm' is not a number with a unit"),
     "drive of an array": (lambda: sb.Drive(np.zeros(2), "b"), "joint: array([0., 0.]) is not a name; give"),
     "drive at no speed": (lambda: sb.Drive("a", "b", float("nan")), "speed: nan is not a finite number"),

@@ -31,7 +31,7 @@ class SketchPanel:
         self._kind = gui.add_dropdown("kind", tuple(self._kinds), hint="with the dimensions of the gallery")
         make = gui.add_button("Make this kind", color="gray", icon=viser.Icon.PLUS)
         self._joints = gui.add_text(
-            "joints", FIRST_JOINTS, hint="their kinds in loop order: R P H C U S E, as in R S S R"
+            "joints", FIRST_JOINTS, hint="their kinds in loop order: R P H C U S E K L, as in R S S R"
         )
         self._unit = gui.add_dropdown("in", tuple(LENGTHS), initial_value="mm", hint="of all lengths")
         self._home = gui.add_folder(None)
