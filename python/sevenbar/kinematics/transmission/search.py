@@ -12,12 +12,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-from sevenbar.arrays import Floats
-from sevenbar.curves.stationary import curve_through, nodes_between, real_roots
+from sevenbar.arrays import Booleans, Floats
+from sevenbar.curves.stationary import curve_through, nodes, nodes_between, real_roots
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Extremes
@@ -33,6 +34,17 @@ FLAT = 1e-12
 
 #: Rows in a turn between which extremes are searched, whatever the motion's samples; on a pass; and most.
 SAMPLES, ON_A_PASS, MANY = 360, 72, 19_440
+
+#: Rows in a turn by which a circuit is recognised; ranges of the input [rad, or relative to the size] nearer
+#: than this are alike.
+FEWEST, SAME_RANGE = 36, 1e-6
+
+#: Inputs nearer than this part of the range are one; nearer to a change point rates lose digits, and so many
+#: nodes of a bracket may be.
+SAME_PLACE, LOSES_DIGITS, MOST_BESIDE = 1e-12, 1e-4, 4
+
+#: The last coefficients of a series that has a limit are smaller than this part of the greatest.
+BOUNDED = 1e-5
 
 #: An angle [rad] below this is that of a dead centre of the input, known to the root of rounding.
 AT_DEAD_CENTRE = 1e-7
@@ -145,12 +157,27 @@ class _Search:
         names = self.linkage.columns
         first, second = names[self.like.input_column], names[self.like.output_column]
         samples, law = (SAMPLES, how) if isinstance(how, Law) else (how, None)
-        try:
+        if self._follows:
             return self.linkage.circuit(self.pose, samples, input=first, output=second, law=law)
+        # through change points where the input may stand still, only the whole motion finds the way
+        motion = self.linkage.motion(samples, input=first, output=second, law=law, method="general")
+        return motion.circuits[self.like.index]
+
+    @cached_property
+    def _follows(self) -> bool:
+        """Whether the circuit through the pose is all of it: at change points it may follow others."""
+        like, names = self.like, self.linkage.columns
+        first, second = names[like.input_column], names[like.output_column]
+        try:
+            alone = self.linkage.circuit(self.pose, FEWEST, input=first, output=second)
         except RequestError:
-            # through change points where the input may stand still, only the whole motion finds the way
-            motion = self.linkage.motion(samples, input=first, output=second, law=law, method="general")
-            return motion.circuits[self.like.index]
+            return False
+        if like.motion_type != "change-point":
+            return True
+        counts = [(one.closed, one.turns, len(one.dead_centres)) for one in (like, alone)]
+        extents = [float(np.ptp(one.input_range or 0.0)) for one in (like, alone)]
+        unit = 1.0 if like.input_turns else like.size
+        return counts[0] == counts[1] and abs(extents[0] - extents[1]) < SAME_RANGE * unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,6 +271,17 @@ def _passed(curve: Chebyshev) -> Floats:
     return np.asarray(roots[changes & (np.abs(roots) < 1)])
 
 
+def _nearest(places: Floats, x: float) -> float:
+    """How far from the nearest of places (n,); infinite without one."""
+    return float(np.abs(places - x).min(initial=math.inf))
+
+
+def _through(values: Floats, some: Booleans) -> Chebyshev:
+    """The polynomial on [-1, 1] through `some` of the values (count,) at its nodes."""
+    at = nodes(len(values))[some]
+    return Chebyshev.fit(at, values[some], len(at) - 1, domain=[-1, 1])
+
+
 @dataclass(frozen=True, eq=False)
 class _VelocitySearch(_Search):
     def extremes(self) -> Extremes | None:
@@ -263,10 +301,24 @@ class _VelocitySearch(_Search):
             passes = [number for number, *_ in left]
             inputs = [stretch.input(nodes_between(a, b)) for _, stretch, a, b in left]
             places: list[tuple[int, float]] = []
-            for (number, stretch, a, b), own in zip(left, self.at(self.values, passes, inputs), strict=True):
-                if np.isfinite(own).all():
-                    roots = real_roots(curve_through(own[:, 0]).deriv())
-                    places += [(number, float(stretch.input((a + b) / 2 + (b - a) / 2 * r))) for r in roots]
+            touched, extent = rows.input[rows.status == "change-point"], float(np.ptp(rows.input))
+            values = self.at(self.values, passes, inputs)
+            for (number, stretch, a, b), at, own in zip(left, inputs, values, strict=True):
+                # a row at a change point has no rates; those of its pass lead up to a limit, and lose digits
+                ends = {-1.0: float(stretch.input(a)), 1.0: float(stretch.input(b))}
+                touching = {u: x for u, x in ends.items() if _nearest(touched, x) < SAME_PLACE * extent}
+                sound: Booleans = np.asarray(np.isfinite(own).all(axis=1))
+                if touching:
+                    sound &= [_nearest(touched, x) > LOSES_DIGITS * extent for x in at]
+                if sound.sum() < len(own) - MOST_BESIDE * len(touching):
+                    continue
+                curve = curve_through(own[:, 0]) if sound.all() else _through(own[:, 0], sound)
+                if touching and np.abs(curve.coef[-2:]).max() > BOUNDED * np.abs(curve.coef).max():
+                    # it grows towards the change point
+                    return None
+                result += [(float(curve(u)), x) for u, x in touching.items()]
+                roots = real_roots(curve.deriv())
+                places += [(number, float(stretch.input((a + b) / 2 + (b - a) / 2 * r))) for r in roots]
             if places:
                 known = self.at(self.values, [n for n, _ in places], [np.array([x]) for _, x in places])
                 result += [(own[0, 0], x) for (_, x), own in zip(places, known, strict=True) if own[0, 1]]
