@@ -220,16 +220,17 @@ class Linkage(Solvable):
         self._refuse_unheld()
         return agreeing._general.modes(column, value)
 
-    def mobility(self, *, agree: float | None = None) -> Mobility:
+    def mobility(self, *, input: str | None = None, agree: float | None = None) -> Mobility:
         """How freely the loop moves: the count of freedoms, idle ones and redundant constraints by name.
 
-        `agree` is that of `motion`.
+        Poses are looked for over the values of the input, the drive's where none is given: a loop may move in
+        more ways than one. `agree` is that of `motion`.
 
         >>> import sevenbar as sb
         >>> print(sb.load("bennett").mobility())
         Gruebler -2, redundant constraints 3, moves with 1
         """
-        return self.agreeing(agree)._general.mobility(self.columns.index(self.drive.joint))
+        return self.agreeing(agree)._general.mobility(self.input_column(input))
 
     @property
     def plane(self) -> MotionPlane | None:

@@ -131,8 +131,8 @@ class Solvable(Loop, ABC):
         """Why a motion of it has no circuit, or which link has no length."""
 
     @abstractmethod
-    def mobility(self, *, agree: float | None = None) -> Mobility:
-        """How freely the loop moves."""
+    def mobility(self, *, input: str | None = None, agree: float | None = None) -> Mobility:
+        """How freely the loop moves where the input does."""
 
     @abstractmethod
     def assembly_modes(
@@ -219,8 +219,8 @@ class Motion(ReadOnly, Drawable):
 
     @property
     def mobility(self) -> Mobility:
-        """How freely the linkage moves."""
-        return self.linkage.mobility(agree=self.agree)
+        """How freely the linkage moves where the input does."""
+        return self.linkage.mobility(input=self.input, agree=self.agree)
 
     @property
     def joint_ranges(self) -> tuple[Mapping[str, JointRange], ...]:
