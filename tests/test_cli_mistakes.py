@@ -163,8 +163,8 @@ def test_a_name_nested_a_thousand_times_is_one_short_message(folder):
         (
             'format = 1\n[[joint]]\nkind = "Revolute"\nat = [0, 0, 0]\n[[joint]]\nkind = "ball joint"\nat = [0, 0, 0]\n',
             [
-                "joint[1].kind: 'Revolute' is not a joint kind; did you mean 'R'? allowed: R, P, H, C, U, S, E",
-                "joint[2].kind: 'ball joint' is not a joint kind; did you mean 'S'? allowed: R, P, H, C, U, S, E",
+                "joint[1].kind: 'Revolute' is not a joint kind; did you mean 'R'? allowed: R, P, H, C, U, S, E, K, L",
+                "joint[2].kind: 'ball joint' is not a joint kind; did you mean 'S'? allowed: R, P, H, C, U, S, E, K, L",
             ],
         ),
         (

@@ -130,7 +130,7 @@ def test_each_mistake_in_the_dimensions_has_its_own_message(old, new, message):
         (
             'kind = "S"',
             'kind = "s"',
-            "joint[2].kind: 's' is not a joint kind; did you mean 'S'? allowed: R, P, H, C, U, S, E",
+            "joint[2].kind: 's' is not a joint kind; did you mean 'S'? allowed: R, P, H, C, U, S, E, K, L",
         ),
         (
             "axis = [0, 0, 1]",

@@ -187,7 +187,7 @@ def test_the_dimensions_of_an_rssr_are_a_row(tmp_path):
         ("a [mm],d [mm]\n1,2\n", ["a loop of 1 joint is not taken; give 2 to 12"]),
         ("kind,x [mm],y [mm],z [mm],axis x,axis y,axis z\nR,0,0,0,0,0,0\nR,1,,0,0,0,1\n,5,0,0,0,0,1\nR,1,2,3,0,0,1\n",
          ["line 3, column 'y [mm]': is empty; give a number, 0 where it is none",
-          "line 4, column 'kind': no kind of joint; give one of R, P, H, C, U, S, E",
+          "line 4, column 'kind': no kind of joint; give one of R, P, H, C, U, S, E, K, L",
           "line 2, columns 'axis x', 'axis y', 'axis z': [0.0, 0.0, 0.0] has no direction; give three numbers, not all 0"]),
         ("kind,x [mm],y [mm]\nR,0,0\nS,1,0\nS,1,1\nP,0,1\n",
          [f"line {line}: no axis; a joint of kind {kind} needs one, in columns axis x, axis y, axis z" for line, kind in ((2, "R"), (5, "P"))]),
