@@ -418,10 +418,3 @@ def test_the_swing_of_a_circuit_through_a_change_point_is_that_between_its_dead_
         # as the solver of any loop has it, which follows the circuit
         assert circuit.swing == pytest.approx(5.03768324158, abs=1e-10)
         assert circuit.angle.highest - circuit.angle.lowest == pytest.approx(circuit.swing, abs=1e-12)
-
-
-def test_an_rssr_that_closes_at_one_input_only_is_rigid():
-    linkage = drawn_rssr(((2, 0, 1), (0, 1, 0)), (-2, 0, -1), (-2, -2, -1), ((-2, 2, 1), (0, 1, -1)))
-    motion = linkage.motion(24)
-    assert (motion.motion_type, len(motion.circuits)) == ("rigid", 0)
-    assert len(linkage.assembly_modes(0.0).q) == 1

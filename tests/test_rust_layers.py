@@ -25,7 +25,7 @@ loops::mobility: rank idle singular_place at_rest
 loops::numbers: twists factors word numbered_loop slopes
 loops::forces: acting stations reactions
 loops::description: spun spin_axis reduce described_loop holding joint_values
-loops::modes: phases continuation straight circle poles geometry starts chain_closure polish many_starts curves_at_input finder assembly
+loops::modes: completeness phases continuation straight circle poles geometry starts chain_closure polish many_starts curves_at_input finder assembly
 loops::branch_points: locating other_input afar survey sectors counting
 loops::circuits: curve follow walked_again on_curve turnings join meetings sphere change_points found arcs known_curves search
 loops::motions: row row_lanes passes extremes rows circuit met_twice motion measures

@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Fact:
-    """A text beside its label, both as they are spoken, and by their keys the values behind it.
+    """A text with its label, both as they are spoken, and by their keys the values behind it.
 
     One without a label goes on with the fact above; one without a text is for programs alone. Texts hold
     names of joints and files, so they are no markup.

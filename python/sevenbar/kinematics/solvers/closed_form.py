@@ -85,8 +85,7 @@ class ClosedForm:
             output=linkage.columns[other],
             speed=np.nan if law is not None else speed,
             samples=samples,
-            # where it closes without a range it is a structure
-            motion_type=raw.motion_type if raw.circuits or raw.motion_type != "change-point" else "rigid",
+            motion_type=raw.motion_type,
             limits=np.array([]) if raw.limits is None else raw.limits,
             change_points=change_points_from(raw, column),
             circuits=tuple(

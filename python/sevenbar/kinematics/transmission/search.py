@@ -41,7 +41,7 @@ FEWEST, SAME_RANGE = 36, 1e-6
 
 #: Inputs nearer than this part of the range are one; nearer to a change point rates lose digits, and so many
 #: nodes of a bracket may be.
-SAME_PLACE, LOSES_DIGITS, MOST_BESIDE = 1e-12, 1e-4, 4
+SAME_PLACE, LOSES_DIGITS, MOST_LOST = 1e-12, 1e-4, 4
 
 #: The last coefficients of a series that has a limit are smaller than this part of the greatest.
 BOUNDED = 1e-5
@@ -310,7 +310,7 @@ class _VelocitySearch(_Search):
                 sound: Booleans = np.asarray(np.isfinite(own).all(axis=1))
                 if touching:
                     sound &= [_nearest(touched, x) > LOSES_DIGITS * extent for x in at]
-                if sound.sum() < len(own) - MOST_BESIDE * len(touching):
+                if sound.sum() < len(own) - MOST_LOST * len(touching):
                     continue
                 curve = curve_through(own[:, 0]) if sound.all() else _through(own[:, 0], sound)
                 if touching and np.abs(curve.coef[-2:]).max() > BOUNDED * np.abs(curve.coef).max():

@@ -7,6 +7,7 @@
 
 use super::chain_closure::{Closure, Input};
 use super::circle::{Circle, InputClosure};
+pub use super::completeness::Completeness;
 use super::continuation::{BRISK, CAREFUL, Pace};
 use super::many_starts::{PATHS_LOST, SAME_MODE, same, searched};
 use super::phases::Watch;
@@ -21,25 +22,6 @@ use crate::random::Random;
 use crate::rigid::Pose;
 use num_complex::Complex64;
 use std::cell::OnceCell;
-
-/// How complete a set of modes is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Completeness {
-    /// All solutions over the complex numbers were accounted for.
-    Algebraic,
-    /// Found from many starts; no proof that there are no others.
-    Searched,
-}
-
-impl Completeness {
-    /// The word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Algebraic => "algebraic",
-            Self::Searched => "searched",
-        }
-    }
-}
 
 /// Rough modes closed as well as they can be.
 pub(crate) struct Polished {
@@ -105,13 +87,9 @@ impl<'a> ModeFinder<'a> {
     /// ball may stand in a gimbal throughout.
     pub fn well_placed(chain: &'a Chain, input: usize) -> Self {
         let usual = Self::new(chain, input);
-        if usual.has_free_axes() && usual.is_degenerate() {
-            let other = Self::about_other_axes(chain, input);
-            if !other.is_degenerate() {
-                return other;
-            }
-        }
-        usual
+        let is_lossy = usual.has_free_axes() && usual.is_degenerate();
+        let other = is_lossy.then(|| Self::about_other_axes(chain, input));
+        other.filter(|o| !o.is_degenerate()).unwrap_or(usual)
     }
 
     /// With the turns of balls, and the added joints, about other axes: where those about one choice are singular, as in a gimbal, these

@@ -3,6 +3,7 @@
 pub(super) mod assembly;
 mod chain_closure;
 pub(super) mod circle;
+mod completeness;
 pub(super) mod continuation;
 mod curves_at_input;
 pub(super) mod finder;
