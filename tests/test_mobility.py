@@ -86,3 +86,25 @@ def test_a_loop_with_two_freedoms_beside_an_idle_spin_needs_two_inputs():
     motion = sb.from_axes(drawn("RSCS", 1)).motion(samples=12)
     assert motion.motion_type == "two-inputs"
     assert motion.mobility.finite == 2
+
+
+def test_the_mobility_of_a_motion_is_that_of_its_input() -> None:
+    """With j1 driven it moves with 1; the pose drawn lies on a surface of poses that j1 does not move."""
+    joints = [
+        ("R", (1, 1, -2), (1, 0, 0)),
+        ("R", (-2, 2, 2), (1, 0, 0)),
+        ("R", (-2, 1, -1), (1, 0, 0)),
+        ("P", (2, -1, 0), (0, 0, 1)),
+        ("R", (-2, 2, -2), (0, 0, 1)),
+        ("R", (-2, 2, 0), (1, 0, 0)),
+        ("R", (1, -1, -1), (0, 0, 1)),
+    ]
+    drawn = [
+        {"kind": kind, "at": at, "axis": axis, "name": f"j{i}"}
+        for i, (kind, at, axis) in enumerate(joints, 1)
+    ]
+    for written in (drawn, drawn[::-1]):
+        linkage = sb.from_axes(written)
+        motion = linkage.motion(24, input="j1", output="j7")
+        assert (motion.mobility.finite, motion.mobility.redundant) == (1, motion.redundant)
+        assert str(linkage.mobility(input="j1")) == str(motion.mobility)

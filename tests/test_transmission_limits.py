@@ -203,3 +203,45 @@ def test_an_output_that_is_at_an_end_of_its_range_at_two_inputs_has_no_time_rati
     ordinary = sb.load("planar_4r").motion(36)[0]
     assert not ordinary.many_strokes
     assert ordinary.time_ratio > 1
+
+
+def test_the_velocity_at_a_change_point_where_the_input_turns_back_is_its_limit() -> None:
+    """Joints on a lattice: towards the change point at 0 the output's velocity is that of half the input's."""
+    joints = [
+        ("R", (2, 1, 0), (0, 0, 1)),
+        ("P", (0, -2, 0), (0, 0, 1)),
+        ("R", (1, 2, -2), (0, 0, 1)),
+        ("R", (-1, -1, 0), (1, 0, 0)),
+        ("R", (-2, 2, 0), (1, 0, 0)),
+        ("R", (0, 1, 2), (1, 0, 1)),
+        ("R", (-2, -1, -1), (1, 0, 0)),
+    ]
+    linkage = sb.from_axes([{"kind": kind, "at": at, "axis": axis} for kind, at, axis in joints])
+    for samples in (24, 90):
+        velocity = linkage.motion(samples).circuits[0].velocity
+        assert velocity is not None
+        assert velocity.lowest == pytest.approx(-0.5, abs=1e-6)
+        assert velocity.lowest_at == pytest.approx(2 * pi, abs=1e-6)
+
+
+def test_velocity_extremes_of_a_circuit_through_change_points_are_of_all_its_passes() -> None:
+    joints = [
+        ("R", (-1, 2, 2), (0, 0, 1)),
+        ("R", (2, -1, -2), (0, 1, 0)),
+        ("R", (-1, 1, 1), (0, 1, 0)),
+        ("R", (0, -1, 0), (0, 1, 0)),
+        ("R", (1, -1, 0), (0, 0, 1)),
+        ("R", (-2, -2, -2), (0, 1, 0)),
+        ("R", (-1, 2, 1), (0, 1, 1)),
+    ]
+    drawn = [
+        {"kind": kind, "at": at, "axis": axis, "name": f"j{i}"}
+        for i, (kind, at, axis) in enumerate(joints, 1)
+    ]
+    for written in (drawn, drawn[1:] + drawn[:1]):
+        circuit = sb.from_axes(written).motion(24, input="j1", output="j7").circuits[-1]
+        assert circuit.motion_type == "change-point"
+        assert circuit.velocity is not None
+        # both rest at a limit of the input, and the output's velocity has a limit there
+        highest = max(abs(circuit.velocity.lowest), abs(circuit.velocity.highest))
+        assert highest == pytest.approx(2.848415, abs=1e-5)

@@ -195,7 +195,7 @@ class _LinkageFile(CommandFile):
             # the file counts the link against the ground, so I and J change places and the axis turns round
             row, turned = KINDS[joint.kind], half_turn(joint.row.half_turn)
             j_side, i_side = ((body, frame @ turned) for body, frame in (i_side, j_side))
-        # the one slot of a joint is on its link, whichever of the two that is in the file
+        # the link of the slot is I or J of the file
         slot_on_i = row.has_slot and row.slot_on_after != joint.backwards
         result = self._connect(joint.row.adams, word, j_side, i_side)
         if row.has_slot:

@@ -223,8 +223,8 @@ class Linkage(Solvable):
     def mobility(self, *, input: str | None = None, agree: float | None = None) -> Mobility:
         """How freely the loop moves: the count of freedoms, idle ones and redundant constraints by name.
 
-        That is of poses at values of the input, the drive's where none is given: a loop may move in several
-        manners. `agree` is that of `motion`.
+        That is of poses at values of the input, the drive's where none is given: a loop may have families of
+        poses that move with different freedoms. `agree` is that of `motion`.
 
         >>> import sevenbar as sb
         >>> print(sb.load("bennett").mobility())

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -158,7 +159,8 @@ class _Search:
         first, second = names[self.like.input_column], names[self.like.output_column]
         samples, law = (SAMPLES, how) if isinstance(how, Law) else (how, None)
         if self._follows:
-            return self.linkage.circuit(self.pose, samples, input=first, output=second, law=law)
+            with suppress(RequestError):
+                return self.linkage.circuit(self.pose, samples, input=first, output=second, law=law)
         # through change points where the input may stand still, only the whole motion finds the way
         motion = self.linkage.motion(samples, input=first, output=second, law=law, method="general")
         return motion.circuits[self.like.index]
@@ -167,13 +169,13 @@ class _Search:
     def _follows(self) -> bool:
         """Whether the circuit through the pose is all of it: at change points it may follow others."""
         like, names = self.like, self.linkage.columns
+        if like.motion_type != "change-point":
+            return True
         first, second = names[like.input_column], names[like.output_column]
         try:
             alone = self.linkage.circuit(self.pose, FEWEST, input=first, output=second)
         except RequestError:
             return False
-        if like.motion_type != "change-point":
-            return True
         counts = [(one.closed, one.turns, len(one.dead_centres)) for one in (like, alone)]
         extents = [float(np.ptp(one.input_range or 0.0)) for one in (like, alone)]
         unit = 1.0 if like.input_turns else like.size
