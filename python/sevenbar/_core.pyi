@@ -151,6 +151,36 @@ class Loop:
     ) -> RawCircuit: ...
     def point(self, rows: Rows, link: int, at: _Floats) -> _Floats: ...
 
+@final
+class Net:
+    """A tree of one-freedom steps closed by rows."""
+
+    def __new__(
+        cls,
+        letters: str,
+        advances: _Floats,
+        parents: Sequence[int | None],
+        origins: _Floats,
+        axes: _Floats,
+        rows: Sequence[
+            tuple[
+                str,
+                tuple[int | None, int | None],
+                tuple[tuple[float, float, float], tuple[float, float, float]],
+                float,
+            ]
+        ],
+        size: float,
+    ) -> Net: ...
+    def freedoms(
+        self,
+    ) -> tuple[list[float], int, int, list[float], list[list[float]], list[list[float]]]: ...
+
+def biconnected_parts(links: int, between: Sequence[tuple[int, int]], root: int) -> list[list[int]]: ...
+def net_blocks(
+    between: Sequence[tuple[int, int]], rows: Sequence[int], known: Sequence[bool], freedoms: int
+) -> tuple[Literal["blocks", "free", "held"], list[tuple[list[int], list[int]]]]: ...
+
 _Three = tuple[int, int, int]
 
 @final

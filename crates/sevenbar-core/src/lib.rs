@@ -6,6 +6,7 @@
 pub mod driven;
 pub mod error;
 pub mod loops;
+pub mod nets;
 mod number;
 mod one_pose;
 pub mod outcome;

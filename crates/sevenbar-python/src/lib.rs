@@ -4,6 +4,7 @@ mod along;
 mod batches;
 mod forces;
 mod loops;
+mod nets;
 mod numbers;
 mod rows;
 mod rssr;
@@ -79,6 +80,8 @@ mod _core {
     use super::forces::{Acting, reactions};
     #[pymodule_export]
     use super::loops::Loop;
+    #[pymodule_export]
+    use super::nets::{Net, biconnected_parts, net_blocks};
     #[pymodule_export]
     use super::numbers::{Carried, LoopWord, Numbers, Product};
     #[pymodule_export]

@@ -183,6 +183,13 @@ def analyze(
         # the report has it
         warnings.simplefilter("ignore", AngleUnitWarning)
     loaded = opened(linkage, agree)
+    if loaded.net is not None:
+        from sevenbar.reporting.net import NET
+
+        options.refuse_unused({"--law": law, "--animate": animate, "--circuit": circuit}, "a single loop")
+        check_out(NET, out, force=force)
+        deliver(loaded, NET, out, json=json, force=force)
+        return
     report = motion_report(formats)
     check_out(report, out, force=force)
     read = law_of(law, loaded, input_joint, law_joint, law_circuit)

@@ -54,7 +54,7 @@ def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
     if key == "joint":
         tables = [(i, t) for i, t in enumerate(entries(raw, key), 1) if t.get("kind") in JOINT_KINDS]
         problems = [
-            Problem(f"joint[{i}].{name}", message) for i, t in tables for name, message in _wrong_keys(t)
+            Problem(f"joint[{i}].{name}", message) for i, t in tables for name, message in wrong_keys(t)
         ]
         if tables and tables[-1][0] == len(entries(raw, key)) and "longer" in tables[-1][1]:
             message = (
@@ -96,7 +96,7 @@ def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list
     return problems
 
 
-def _wrong_keys(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
+def wrong_keys(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Keys of a drawn joint that its kind needs and that are missing, or that its kind has no use for."""
     kind = joint["kind"]
     needs = set(KINDS[kind].drawn_keys)

@@ -12,6 +12,7 @@ from typing import Any
 
 from sevenbar.description.files import checked, toml_tables
 from sevenbar.description.forms import from_description
+from sevenbar.description.links import in_loop_order
 from sevenbar.description.load_tables import with_rows
 from sevenbar.description.toml_text import is_tables
 from sevenbar.errors import RequestError, of_extra, shown, suggestion
@@ -246,6 +247,7 @@ def _opened(raw: Mapping[str, Any], source: str) -> Mapping[str, Any]:
     # most programs that import drafts open none
     from sevenbar.description.formulas import context_of
 
+    raw = in_loop_order(raw, source)
     return with_rows(raw, context_of(raw, source))
 
 

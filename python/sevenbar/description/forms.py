@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.angle_doubts import warn_of_angles
+from sevenbar.description.links import has_links, named_links
 from sevenbar.description.proportions import disproportions
 from sevenbar.errors import (
     DescriptionError,
@@ -25,7 +26,7 @@ from sevenbar.errors import (
 )
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.loop.geometry import Drive, Form, Joint, Place, Point, drawn_off_zero
+from sevenbar.kinematics.loop.geometry import Drive, Form, Joint, Place, Point, drawn_off_zero, loop_frames
 from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.loop.rigid import unit
@@ -297,6 +298,13 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     from sevenbar.description.formulas import context_of, with_numbers
     from sevenbar.description.loop_schema import loop_alone
 
+    if has_links(raw):
+        links = named_links(raw, source)
+        if not links.is_loop:
+            from sevenbar.description.net import net_of
+
+            return net_of(links, raw, source)
+        raw = links.loop_tables()
     context = context_of(raw, source)
     raw = with_numbers(raw, context)
     form, more = loop_alone(raw, context), dict[str, Any]()
@@ -385,9 +393,9 @@ def _linkage(form: LoopForm, written: Form, joints: tuple[Joint, ...], **parts: 
     return Linkage(
         name=form.name,
         joints=joints,
-        base=base.pose(values),
-        ground=ground.pose(values),
-        links=np.stack([link.pose(values) for link in links]),
+        frames=loop_frames(
+            base.pose(values), np.stack([link.pose(values) for link in links]), ground.pose(values)
+        ),
         point_frames=np.stack([frame.pose(values) for frame in frames]),
         drive=Drive(*form.driven, form.drive.speed),
         length_unit=form.length_unit,

@@ -16,6 +16,8 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.modes import Modes, Output
 from sevenbar.kinematics.circuits.motion import LEAST_AGREE, MOST_AGREE, HeldFreedoms, Motion, Solvable
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
+from sevenbar.kinematics.nets.order import Order, order_of
+from sevenbar.kinematics.nets.solver import NetSolver
 from sevenbar.kinematics.solvers.closed_form import ClosedForm
 from sevenbar.kinematics.solvers.general import AGREE, GeneralLoop
 
@@ -106,6 +108,10 @@ class Linkage(Solvable):
     @cached_property
     def _general(self) -> GeneralLoop:
         return GeneralLoop(self, AGREE if self.agree is None else self.agree)
+
+    @cached_property
+    def _net(self) -> NetSolver:
+        return NetSolver(self)
 
     @cached_property
     def _agreeing(self) -> dict[float | None, Linkage]:
@@ -230,7 +236,20 @@ class Linkage(Solvable):
         >>> print(sb.load("bennett").mobility())
         Gruebler -2, redundant constraints 3, moves with 1
         """
-        return self.agreeing(agree)._general.mobility(self.input_column(input))
+        column = self.input_column(input)
+        return self._net.mobility(column) if self.net else self.agreeing(agree)._general.mobility(column)
+
+    @property
+    def order(self) -> Order:
+        """The order in which a net is solved with its input held: its blocks of links.
+
+        Of a single loop that is one block.
+
+            >>> import sevenbar as sb
+            >>> [len(block.links) for block in sb.load("rssr").order.blocks]
+            [3]
+        """
+        return order_of(self, self.input_column())
 
     @property
     def plane(self) -> MotionPlane | None:
@@ -242,7 +261,7 @@ class Linkage(Solvable):
         """
         from sevenbar.kinematics.solvers.plane_and_sphere import plane_of
 
-        return plane_of(self)
+        return None if self.net else plane_of(self)
 
     @property
     def is_planar(self) -> bool:
@@ -264,7 +283,7 @@ class Linkage(Solvable):
         """
         from sevenbar.kinematics.solvers.plane_and_sphere import sphere_of
 
-        return sphere_of(self)
+        return None if self.net else sphere_of(self)
 
     @cached_property
     def answers(self) -> LinkageAnswers:
@@ -287,6 +306,8 @@ class Linkage(Solvable):
         from sevenbar.kinematics.solvers.four_bar import four_bar_of
 
         first, second = self.end_columns(input, output)
+        if self.net:
+            return None
         return four_bar_of(self, self.columns[first], self.columns[second])
 
     def reason_of(self, motion: Motion) -> Reason | None:
@@ -304,7 +325,7 @@ class Linkage(Solvable):
     @property
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""
-        return self._general.idle()
+        return self._net.idle() if self.net else self._general.idle()
 
     @cached_property
     def held(self) -> HeldFreedoms:
@@ -335,6 +356,8 @@ class Linkage(Solvable):
         return self.kind != "RSSR" and self._general.unheld() is None
 
     def _refuse_unheld(self) -> None:
+        if self.net:
+            self._net.refuse()
         spin = self._general.unheld()
         if spin is not None:
             raise NotCoveredError(

@@ -23,6 +23,7 @@ pub use circuits::found::{Bound, Found, Search};
 pub use description::described_loop::{Loop, NO_SIZE};
 pub use description::joint_values::drawn_at;
 pub use equation::chain::AGREE;
+pub(crate) use equation::dense::{least_squares, singular_values};
 pub use equation::kinds::Kind;
 pub use forces::acting::{Acting, Body, JointSpring, Load, Place, PointSpring};
 pub use forces::reactions::{Reactions, Seat, reactions};

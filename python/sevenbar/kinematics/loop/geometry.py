@@ -164,6 +164,18 @@ class Point:
 
 
 @dataclass(frozen=True)
+class Rod:
+    """A link with a ball at each end: its name, the links that it joins, counted from 1, and its two ends.
+
+    The ends `at` [length] are places on these links, as drawn.
+    """
+
+    name: str
+    between: tuple[int, int]
+    at: tuple[tuple[float, float, float], tuple[float, float, float]]
+
+
+@dataclass(frozen=True)
 class Drive:
     """The columns of the input and the output, and the input's speed [rad/s, or length/s]."""
 
@@ -183,7 +195,7 @@ _MADE_WITH = "make linkages with load, from_axes, from_dh, rssr"
 #: The parts of a loop, and what each must be.
 _PARTS: Mapping[str, tuple[type, str]] = {
     "joints": (tuple, "a tuple of joints"),
-    **dict.fromkeys(("base", "ground", "links", "point_frames"), (np.ndarray, "an array")),
+    **dict.fromkeys(("frames", "point_frames"), (np.ndarray, "an array")),
     "drive": (Drive, "a drive"),
     "points": (tuple, "a tuple of points"),
     "dimensions": (Mapping, "a mapping of numbers"),
@@ -197,23 +209,24 @@ _PARTS: Mapping[str, tuple[type, str]] = {
 class Loop(Drawable):
     """A closed loop `base Z(q1) G1 Z(q2) G2 .. Z(qn) = ground`.
 
-    `base` (4, 4) is the frame of joint 1 and `ground` (4, 4) that of the ground's side of the last joint,
-    both in the report frame. `links` (n - 1, 4, 4) are the G's of the moving links, from each joint's frame
-    to the next one's. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame.
+    `frames` (n, 2, 4, 4) are those of each joint on the link before it and on the link after it, where it
+    reads 0, in the link's own frame: the ground's is that of the report, a moving link's that of the joint
+    that it is after. `point_frames` (links, 4, 4) take a point as it is written to its link's own frame.
     `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
     tables and keys of a file, from which a linkage with other numbers is made. Redundant constraints `agree`
     up to a closure error [rad, or relative to the size], the usual one where it is `None`;
     `loading` is what acts on it, `stops` what keeps it from moving on: they change no motion. With
     `points_by_two` a circuit takes a place on a link by two numbers only, as the points were given.
 
+    A net of several loops has its graph as `net`, its links' names, the ground's last, and `rods`. There a
+    link's own frame is that of the report in the drawn pose.
+
     Source: docs/theory.md, (1).
     """
 
     name: str
     joints: tuple[Joint, ...]
-    base: Floats
-    ground: Floats
-    links: Floats
+    frames: Floats
     point_frames: Floats
     drive: Drive
     length_unit: str = "mm"
@@ -225,6 +238,9 @@ class Loop(Drawable):
     agree: float | None = None
     stops: Stops = field(default=NO_STOPS, repr=False)
     points_by_two: bool = field(default=False, repr=False)
+    net: Graph | None = field(default=None, repr=False)
+    link_names: tuple[str, ...] = field(default=(), repr=False)
+    rods: tuple[Rod, ...] = ()
 
     def __post_init__(self) -> None:
         check_name("name", self.name)
@@ -239,7 +255,7 @@ class Loop(Drawable):
                 if not isinstance(part, one):
                     check_kind(f"{name}[{i}]", part, one, f"a {one.__name__.lower()}; {_MADE_WITH}")
         n = len(self.joints)
-        shapes = {"base": (4, 4), "ground": (4, 4), "links": (n - 1, 4, 4), "point_frames": (n, 4, 4)}
+        shapes = {"frames": (n, 2, 4, 4), "point_frames": (self.graph.ground, 4, 4)}
         for name, shape in shapes.items():
             array = getattr(self, name)
             if array.shape != shape:
@@ -251,18 +267,28 @@ class Loop(Drawable):
         return type(self), tuple(getattr(self, field.name) for field in fields(self))
 
     @property
+    def base(self) -> Floats:
+        """The frame (4, 4) of joint 1 on the ground."""
+        return self.frames[0, 0]
+
+    @property
+    def ground(self) -> Floats:
+        """The frame (4, 4) of the last joint on the ground."""
+        return self.frames[-1, 1]
+
+    @property
+    def links(self) -> Floats:
+        """The G's of the moving links (n - 1, 4, 4), from each joint's frame to the next one's."""
+        return self.frames[1:, 0]
+
+    @property
     def transforms(self) -> Floats:
         """The G's of all links (n, 4, 4), the ground's last: `Z(q1) G1 .. Z(qn) Gn = 1`."""
         return np.concatenate([self.links, [inverse(self.ground) @ self.base]])
 
     def joint_on(self, joint: int, link: int) -> Floats:
-        """The frame (4, 4) of a joint on one of its links, of the link's own frame, where it reads 0.
-
-        That of a moving link is the frame of the joint that it is after.
-        """
-        if self.graph.side(joint, link):
-            return self.ground if link == self.graph.ground else np.eye(4)
-        return self.links[joint - 1] if joint else self.base
+        """The frame (4, 4) of a joint on one of its links, of the link's own frame, where it reads 0."""
+        return self.frames[joint, self.graph.side(joint, link)]
 
     def drawn_joint_on(self, joint: int, link: int) -> Floats:
         """The same as the joint is drawn, whatever it reads there."""
@@ -271,25 +297,42 @@ class Loop(Drawable):
 
     @property
     def length(self) -> float:
-        """The lengths of all links, from joint to joint, together."""
+        """The lengths of all links, from joint to joint, together; of a net between their farthest joints."""
+        if self.net is not None:
+            return self._length_of_net
         return float(np.linalg.norm(self.transforms[:, :3, 3], axis=1).sum())
+
+    @property
+    def _length_of_net(self) -> float:
+        ends = [(link, end) for rod in self.rods for link, end in zip(rod.between, rod.at, strict=True)]
+        total = sum(math.dist(*rod.at) for rod in self.rods)
+        for link in self.graph.links:
+            joints = [self.frames[joint, 1, :3, 3] for joint in self.graph.joints_of(link)]
+            places = np.array([*joints, *(end for own, end in ends if own == link)])
+            total += float(np.linalg.norm(places[:, None] - places, axis=-1).max())
+        return total
 
     @property
     def size(self) -> float:
         """The size [length], as the core has it: all links' lengths, and pitches by radian; 1 if none."""
         size = self.length + sum(abs(joint.pitch) / math.tau for joint in self.joints)
-        reach = max(math.hypot(*frame[:3, 3]) for frame in (self.base, self.ground))
+        reach = max(math.hypot(*self.joint_on(joint, self.graph.ground)[:3, 3]) for joint in self.graph.standing)
         return size if size > NO_SIZE * reach else 1.0
 
     @cached_property
     def kind(self) -> str:
-        """The joints' letters in loop order."""
-        return "".join(joint.kind for joint in self.joints)
+        """The joints' letters in loop order; of a net after the word, in the order of the file."""
+        letters = "".join(joint.kind for joint in self.joints)
+        return letters if self.net is None else f"net {letters}"
 
     @cached_property
     def graph(self) -> Graph:
         """Its links and joints."""
-        return loop_graph(self.joints)
+        return loop_graph(self.joints) if self.net is None else self.net
+
+    def link_name(self, link: int) -> str:
+        """What messages call a link, counted from 1."""
+        return self.link_names[link - 1] if self.link_names else f"link {link}"
 
     @property
     def in_rows(self) -> bool:
@@ -301,6 +344,8 @@ class Loop(Drawable):
         """What reports and figures call it: its name, or what it is where it was given none."""
         if self.name != UNNAMED:
             return self.name
+        if self.net is not None:
+            return f"net of {self.graph.ground} links"
         letters = self.kind if len(set(self.kind)) > 1 else f"{len(self.kind)}{self.kind[0]}"
         return f"{letters} linkage"
 
@@ -431,9 +476,10 @@ class Loop(Drawable):
         return written if isinstance(written, str) and self.driven_alike(column) else ""
 
 
-def parts_between(before: Floats, after: Floats) -> tuple[Floats, Floats, Floats]:
-    """`base`, `links` and `ground` of a loop by the frames (joints, 4, 4) before and after its joints."""
-    return before[0], inverse(after[:-1]) @ before[1:], after[-1]
+def loop_frames(base: Floats, links: Floats, ground: Floats) -> Floats:
+    """`frames` (n, 2, 4, 4) of a loop by its `base`, `links` and `ground`."""
+    after = np.broadcast_to(np.eye(4), links.shape)
+    return np.stack([np.concatenate([[base], links]), np.concatenate([after, [ground]])], axis=1)
 
 
 def following_coupler(

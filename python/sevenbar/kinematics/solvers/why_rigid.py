@@ -13,9 +13,9 @@ from sevenbar.arrays import Floats
 from sevenbar.forces.loading import UNLOADED
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.circuits.poses import drawn_frames
-from sevenbar.kinematics.loop.geometry import parts_between
+from sevenbar.kinematics.loop.geometry import loop_frames
 from sevenbar.kinematics.loop.reason import OffJoint, Reason, What
-from sevenbar.kinematics.loop.rigid import cross, perpendicular, pose, turns_about, unit
+from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, turns_about, unit
 from sevenbar.kinematics.loop.stops import NO_STOPS
 from sevenbar.kinematics.solvers.plane_and_sphere import SAME, meeting_point
 
@@ -57,9 +57,9 @@ class _Drawn:
         before, behind = self.before.copy(), self.behind.copy()
         for i, motion in motions.items():
             before[i], behind[i] = motion @ before[i], motion @ behind[i]
-        base, links, ground = parts_between(before, behind)
+        links = inverse(behind[:-1]) @ before[1:]
         return replace(
-            self.loop, base=base, ground=ground, links=links,
+            self.loop, frames=loop_frames(before[0], links, behind[-1]),
             points=(), form="drawn", description={}, dimensions={}, loading=UNLOADED, stops=NO_STOPS,
         )  # fmt: skip
 

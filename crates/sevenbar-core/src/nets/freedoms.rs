@@ -1,0 +1,221 @@
+//! The freedoms of a net: the rank of `A` at a general pose, and the rows that repeat others, `W^T A = 0`.
+//!
+//! The drawn pose serves where it is general. Moves along random free directions, closed again, lead to other poses; the greatest rank counts.
+//!
+//! Source: docs/theory_nets.md, (5).
+
+use super::rows::closure;
+use super::tree::Net;
+use crate::loops::{least_squares, singular_values};
+use crate::random::Random;
+
+/// Singular values below this part of the greatest are zero: in nets of many kinds the least of the others was 8e-3.
+const NO_RANK: f64 = 1e-8;
+
+/// Moves from the drawn pose, each as long [rad, or relative to the size] as all columns together, and how often a move is halved that does not
+/// close again.
+const MOVES: usize = 6;
+const MOVE: f64 = 0.15;
+const HALVED: usize = 4;
+
+/// Steps of Newton's method, and the closure error [rad, or relative to the size] at which they have arrived.
+const MOST_STEPS: usize = 20;
+const CLOSED: f64 = 1e-13;
+
+/// Numbers of the random moves, the same in each run.
+const SEED: u64 = 0x5EED;
+
+/// How freely a net moves near the pose that is drawn.
+#[derive(Clone, Debug)]
+pub struct Freedoms {
+    /// The error of each row at the drawn pose [rad, or relative to the size].
+    pub drawn: Vec<f64>,
+    /// The rank of `A` at the drawn pose, and the greatest that was found.
+    pub drawn_rank: usize,
+    /// See `drawn_rank`.
+    pub rank: usize,
+    /// Where that is [rad, or relative to the size]: a value for each column.
+    pub pose: Vec<f64>,
+    /// A basis of the rows' combinations that no column moves there, of unit length.
+    pub repeated: Vec<Vec<f64>>,
+    /// How each column moves in each of the motions that are free there to first order, of unit length.
+    pub free: Vec<Vec<f64>>,
+}
+
+/// The freedoms of a net about the pose that is drawn.
+pub fn freedoms(net: &Net) -> Freedoms {
+    let columns = net.steps.len();
+    let start = vec![0.0; columns];
+    let drawn = net.closure(&start).0;
+    let mut best = at_pose(net, &start, drawn);
+    let mut random = Random(SEED);
+    let (mut here, mut free) = (start, best.free.clone());
+    for _ in 0..MOVES {
+        if free.is_empty() {
+            break;
+        }
+        let Some(next) = moved(net, &here, &free, &mut random) else {
+            continue;
+        };
+        let there = at_pose(net, &next, Vec::new());
+        free.clone_from(&there.free);
+        here = next;
+        if there.rank > best.rank {
+            best = Freedoms { drawn: best.drawn, drawn_rank: best.drawn_rank, ..there };
+        }
+    }
+    best
+}
+
+/// The rank at a pose, and what goes with it.
+fn at_pose(net: &Net, pose: &[f64], drawn: Vec<f64>) -> Freedoms {
+    let (errors, columns) = net.closure(pose);
+    let (values, vectors) = singular_values(&columns);
+    let greatest = values.first().copied().unwrap_or(0.0);
+    let rank = values.iter().filter(|&&v| v > NO_RANK * greatest && v > 0.0).count();
+    // of as many columns as there are rows, so that a row that nothing moves has a direction of its own
+    let rows: Vec<Vec<f64>> = (0..errors.len())
+        .map(|r| {
+            let mut row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
+            row.resize(row.len().max(errors.len()), 0.0);
+            row
+        })
+        .collect();
+    let repeated = singular_values(&rows).1.split_off(rank.min(rows.len()));
+    Freedoms {
+        drawn,
+        drawn_rank: rank,
+        rank,
+        pose: pose.to_vec(),
+        repeated,
+        free: vectors[rank..].to_vec(),
+    }
+}
+
+/// Another closed pose, a random move along free directions away; `None` where none of its lengths closes.
+fn moved(net: &Net, from: &[f64], free: &[Vec<f64>], random: &mut Random) -> Option<Vec<f64>> {
+    let parts: Vec<f64> = free.iter().map(|_| 2.0 * random.uniform() - 1.0).collect();
+    let size = parts.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let mut length = MOVE;
+    for _ in 0..=HALVED {
+        let along = |c: usize| free.iter().zip(&parts).map(|(v, p)| v[c] * p).sum::<f64>() * length / size;
+        let rough: Vec<f64> = from.iter().enumerate().map(|(c, x)| x + along(c)).collect();
+        if let Some(pose) = net.closed(&rough) {
+            return Some(pose);
+        }
+        length *= 0.5;
+    }
+    None
+}
+
+impl Net {
+    /// `e` and, column by column, `A` at values of the columns, slides relative to the size.
+    pub fn closure(&self, pose: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        closure(self, &self.place(pose))
+    }
+
+    /// The closed pose that Newton's shortest steps lead to; `None` where they lead to none.
+    pub fn closed(&self, rough: &[f64]) -> Option<Vec<f64>> {
+        let mut pose = rough.to_vec();
+        for _ in 0..MOST_STEPS {
+            let (errors, columns) = self.closure(&pose);
+            let greatest = errors.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+            if greatest < CLOSED {
+                return Some(pose);
+            }
+            if !greatest.is_finite() {
+                return None;
+            }
+            let by = least_squares(&columns, &errors, NO_RANK);
+            for (x, d) in pose.iter_mut().zip(by) {
+                *x -= d;
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rows::Row;
+    use super::super::tree::{Move, Step};
+    use super::*;
+    use crate::rigid::{Vec3, norm, sub};
+
+    const Z: Vec3 = [0.0, 0.0, 1.0];
+
+    fn pin(parent: Option<usize>, x: f64, y: f64) -> Step {
+        Step { parent, moves: Move::Turn, origin: [x, y, 0.0], axis: Z }
+    }
+
+    /// The two rows of a pin of a planar cycle.
+    fn closing(a: usize, b: Option<usize>, x: f64, y: f64) -> [Row; 2] {
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|v| Row::Along { on: [Some(a), b], at: [x, y, 0.0], v })
+    }
+
+    fn rod(a: usize, b: Option<usize>, from: Vec3, to: Vec3) -> Row {
+        Row::Length { on: [Some(a), b], at: [from, to], length: norm(sub(from, to)) }
+    }
+
+    #[test]
+    fn a_planar_four_bar_has_one_freedom_as_pins_and_as_a_rod() {
+        let steps = vec![pin(None, 0.0, 0.0), pin(Some(0), 0.3, 1.0), pin(None, 4.0, 0.0)];
+        let rows = closing(1, Some(2), 4.5, 2.0).to_vec();
+        let pins = freedoms(&Net { steps, rows, size: 8.0 });
+        assert_eq!((pins.rank, pins.free.len(), pins.repeated.len()), (2, 1, 0));
+        let steps = vec![pin(None, 0.0, 0.0), pin(None, 4.0, 0.0)];
+        let rows = vec![rod(0, Some(1), [0.3, 1.0, 0.0], [4.5, 2.0, 0.0])];
+        assert_eq!(freedoms(&Net { steps, rows, size: 8.0 }).rank, 1);
+    }
+
+    #[test]
+    fn three_equal_cranks_repeat_one_constraint() {
+        // a coupler on three parallel cranks
+        let steps = vec![
+            pin(None, 0.0, 0.0),
+            pin(Some(0), 0.6, 1.0),
+            pin(None, 2.0, 0.0),
+            pin(None, 5.0, 0.0),
+        ];
+        let mut rows = closing(1, Some(2), 2.6, 1.0).to_vec();
+        rows.extend(closing(1, Some(3), 5.6, 1.0));
+        let found = freedoms(&Net { steps, rows, size: 8.0 });
+        assert_eq!((found.rank, found.free.len(), found.repeated.len()), (3, 1, 1));
+    }
+
+    #[test]
+    fn the_gradient_of_every_row_is_its_difference() {
+        let tilted = {
+            let n = norm([1.0, 2.0, -0.5]);
+            [1.0 / n, 2.0 / n, -0.5 / n]
+        };
+        let steps = vec![
+            pin(None, 0.1, -0.2),
+            Step { parent: Some(0), moves: Move::Screw(0.4), origin: [1.0, 0.3, 0.2], axis: tilted },
+            Step { parent: None, moves: Move::Slide, origin: [0.0; 3], axis: tilted },
+            Step { parent: Some(2), moves: Move::Turn, origin: [0.5, 2.0, 1.0], axis: [1.0, 0.0, 0.0] },
+        ];
+        let on = [Some(1), Some(3)];
+        let rows = vec![
+            Row::Length { on, at: [[1.0, 2.0, 0.5], [0.0, 1.0, 2.0]], length: 2.0 },
+            Row::Along { on, at: [0.7, 0.2, -1.0], v: tilted },
+            Row::Angle { on, u: Z, v: tilted, cosine: 0.3 },
+        ];
+        let net = Net { steps, rows, size: 3.0 };
+        let pose = [0.3, -0.7, 0.2, 1.1];
+        let (_, columns) = net.closure(&pose);
+        let h = 1e-5;
+        for c in 0..4 {
+            let moved = |by: f64| {
+                let mut at = pose;
+                at[c] += by;
+                net.closure(&at).0
+            };
+            let (up, down) = (moved(h), moved(-h));
+            for r in 0..3 {
+                let slope = (up[r] - down[r]) / (2.0 * h);
+                assert!((slope - columns[c][r]).abs() < 1e-9, "{c} {r}");
+            }
+        }
+    }
+}

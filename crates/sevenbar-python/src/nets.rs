@@ -1,0 +1,101 @@
+//! Nets of several loops, for Python.
+
+use crate::{CoreError, in_rows};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use sevenbar_core::nets::{self, Edge, Move, Row, Step, Unbalanced};
+use sevenbar_core::rigid::Vec3;
+
+/// A tree of one-freedom steps closed by rows.
+#[pyclass(frozen, module = "sevenbar._core")]
+pub(crate) struct Net(nets::Net);
+
+/// Errors of the rows as drawn, ranks as drawn and at most, the pose of the greatest, repeated rows, free motions.
+type RawFreedoms = (Vec<f64>, usize, usize, Vec<f64>, Vec<Vec<f64>>, Vec<Vec<f64>>);
+
+/// A row by its kind, the steps that it is on (none for the ground), its vectors and its number.
+type RawRow = (String, [Option<usize>; 2], [Vec3; 2], f64);
+
+fn row((kind, on, [first, second], number): RawRow) -> PyResult<Row> {
+    Ok(match kind.as_str() {
+        "length" => Row::Length { on, at: [first, second], length: number },
+        "along" => Row::Along { on, at: first, v: second },
+        "angle" => Row::Angle { on, u: first, v: second, cosine: number },
+        other => return Err(CoreError::new_err(format!("'{other}' is no row; give length, along, angle"))),
+    })
+}
+
+#[pymethods]
+impl Net {
+    /// From the steps' letters R P H, the advance of each for a radian (H), the step before each (none on the ground), places on their axes as
+    /// drawn and their directions, each (n, 3), the rows, and the size of which residuals are parts.
+    #[new]
+    fn new(
+        letters: &str,
+        advances: PyReadonlyArray1<'_, f64>,
+        parents: Vec<Option<usize>>,
+        origins: PyReadonlyArray2<'_, f64>,
+        axes: PyReadonlyArray2<'_, f64>,
+        rows: Vec<RawRow>,
+        size: f64,
+    ) -> PyResult<Self> {
+        let vectors = |array: &PyReadonlyArray2<'_, f64>| -> Vec<Vec3> {
+            in_rows(array).chunks(3).map(|v| std::array::from_fn(|k| v.get(k).copied().unwrap_or(0.0))).collect()
+        };
+        let (advances, origins, axes) = (in_rows(&advances), vectors(&origins), vectors(&axes));
+        let count = letters.len();
+        if [advances.len(), parents.len(), origins.len(), axes.len()] != [count; 4] {
+            return Err(CoreError::new_err("give an advance, a parent, an origin and an axis for each letter"));
+        }
+        let mut steps = Vec::with_capacity(count);
+        for (k, letter) in letters.chars().enumerate() {
+            let moves = match letter {
+                'R' => Move::Turn,
+                'P' => Move::Slide,
+                'H' => Move::Screw(advances[k]),
+                other => return Err(CoreError::new_err(format!("'{other}' is no step; give R, P or H"))),
+            };
+            if parents[k].is_some_and(|p| p >= k) {
+                return Err(CoreError::new_err("each step stands on one before it"));
+            }
+            steps.push(Step { parent: parents[k], moves, origin: origins[k], axis: axes[k] });
+        }
+        let rows: Vec<Row> = rows.into_iter().map(row).collect::<PyResult<_>>()?;
+        if rows.iter().flat_map(Row::on).flatten().any(|step| step >= count) {
+            return Err(CoreError::new_err("a row is on a step that is not there"));
+        }
+        Ok(Self(nets::Net { steps, rows, size }))
+    }
+
+    /// The freedoms about the pose that is drawn.
+    fn freedoms(&self, py: Python<'_>) -> RawFreedoms {
+        let found = py.detach(|| nets::freedoms(&self.0));
+        (found.drawn, found.drawn_rank, found.rank, found.pose, found.repeated, found.free)
+    }
+}
+
+fn edges(between: Vec<[usize; 2]>, rows: Vec<usize>) -> Vec<Edge> {
+    between.into_iter().zip(rows).map(|(between, rows)| Edge { between, rows }).collect()
+}
+
+/// The edges of each biconnected part of a graph, the parts from the root outwards.
+#[pyfunction]
+pub(crate) fn biconnected_parts(links: usize, between: Vec<[usize; 2]>, root: usize) -> Vec<Vec<usize>> {
+    let rows = vec![0; between.len()];
+    nets::biconnected_parts(links, &edges(between, rows), root)
+}
+
+/// The links and the edges of each block, in the order of solving; or "free" with links, or "held" with edges.
+#[pyfunction]
+pub(crate) fn net_blocks(
+    between: Vec<[usize; 2]>,
+    rows: Vec<usize>,
+    known: Vec<bool>,
+    freedoms: usize,
+) -> (&'static str, Vec<(Vec<usize>, Vec<usize>)>) {
+    match nets::blocks(&edges(between, rows), &known, freedoms) {
+        Ok(blocks) => ("blocks", blocks.into_iter().map(|b| (b.links, b.edges)).collect()),
+        Err(Unbalanced::Free(links)) => ("free", vec![(links, Vec::new())]),
+        Err(Unbalanced::Held(edges)) => ("held", vec![(Vec::new(), edges)]),
+    }
+}

@@ -1,0 +1,104 @@
+"""From a checked net to a linkage: joints between links by name, pins, rods."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.description.links import NamedLinks
+from sevenbar.errors import DescriptionError, Problem, shown, suggestion
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.geometry import Drive, Joint, Point, Rod
+from sevenbar.kinematics.loop.joints import KINDS
+from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, unit
+
+if TYPE_CHECKING:
+    from sevenbar.description.net_schema import NetForm
+
+
+def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
+    """The net of links by name; raises `DescriptionError` with all that is wrong."""
+    from sevenbar.description.formulas import context_of, with_numbers
+    from sevenbar.description.net_schema import check_net, name_flaws
+
+    # pins are joints from here on
+    tables = [{**edge.table, "name": edge.name, "between": list(edge.between)} for edge in links.joints]
+    whole = {**raw, "joint": tables}
+    context = context_of(whole, source)
+    raw = with_numbers(raw, context)
+    check_net(raw, context, source=source)
+    form = check_net({**with_numbers(whole, context), "pin": []}, context, source=source)
+    number = {name: i for i, name in enumerate(links.links, 1)}
+    points, problems = [], name_flaws(whole)
+    for i, point in enumerate(form.point, 1):
+        if point.link in number:
+            points.append(Point(point.name, number[point.link], point.at))
+        else:
+            near = suggestion(point.link, number)
+            what = f"no link {shown(point.link)}; {near}this net has {', '.join(number)}"
+            problems.append(Problem(f"point[{i}].link", what))
+    if problems:
+        raise DescriptionError(problems, source)
+    joints, frames = [], []
+    for edge, own in zip(links.joints, form.joint, strict=True):
+        before, after, angle = drawn_frames(own.kind, own.at, own.axis, own.axes)
+        joint = Joint(own.kind, edge.name, own.pitch or 0.0, angle, value=own.value or 0.0)
+        joints.append(joint)
+        frames.append(np.stack([before @ inverse(joint.to_drawn), after]))
+    rods = tuple(
+        Rod(edge.name, (number[edge.between[0]], number[edge.between[1]]), own.at)
+        for edge, own in zip(links.rods, form.rod, strict=True)
+    )
+    return Linkage(
+        name=form.name,
+        joints=tuple(joints),
+        frames=np.stack(frames),
+        point_frames=np.broadcast_to(np.eye(4), (len(number), 4, 4)).copy(),
+        drive=Drive(*_ends(form, joints), form.drive.speed),
+        length_unit=form.length_unit,
+        points=tuple(points),
+        description=raw,
+        net=links.graph,
+        link_names=tuple(links.links),
+        rods=rods,
+    )
+
+
+def _ends(form: NetForm, joints: list[Joint]) -> tuple[str, str]:
+    """The columns of input and output."""
+    from sevenbar.description.written import Written, driven
+
+    drive = {"joint": form.drive.joint, "output": form.drive.output}
+    return driven([Written("", joint.name, joint.kind) for joint in joints], drive)[:2]
+
+
+def drawn_frames(
+    kind: str,
+    at: tuple[float, float, float],
+    axis: tuple[float, float, float] | None,
+    axes: tuple[tuple[float, float, float], tuple[float, float, float]] | None,
+) -> tuple[Floats, Floats, float]:
+    """The frames (4, 4) of a joint on both links, in ground coordinates, and the angle [rad] between its axes."""
+    row = KINDS[kind]
+    if axes is not None:
+        first, second = unit(axes[0]), unit(axes[1])
+        if row.has_cross:
+            x = unit(cross(first, second))
+            angle = float(np.arctan2(np.linalg.norm(cross(first, second)), first @ second))
+            return _frame(x, first, at), _frame(x, second, at), angle
+        # the pin is z, and its slot y
+        pin, slot = (first, second) if row.slot_on_after else (second, first)
+        slot = unit(slot - (slot @ pin) * pin)
+        frame = _frame(cross(slot, pin), pin, at)
+        return frame, frame, 0.0
+    z = unit(axis) if axis is not None else np.array([0.0, 0.0, 1.0])
+    frame = _frame(perpendicular(z), z, at)
+    return frame, frame, 0.0
+
+
+def _frame(x: Floats, z: Floats, at: tuple[float, float, float]) -> Floats:
+    """The frame with these axes x and z at a place."""
+    return pose(np.stack([x, cross(z, x), z], axis=-1), at)

@@ -1,0 +1,128 @@
+"""A net of several loops in a file, checked with pydantic: its joints and rods between links by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, ValidationError, ValidationInfo
+
+from sevenbar.description.contradictions import wrong_keys
+from sevenbar.description.loop_schema import DriveForm, JointForm
+from sevenbar.description.mistakes import FileForms
+from sevenbar.description.values import (
+    Component,
+    TableForm,
+    Text,
+    Vector,
+    key,
+    number_for,
+    one_of,
+    parts_of,
+    three,
+)
+from sevenbar.description.written import drive_of, driven, joints_of
+from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.text.units import ANGLES, LENGTHS
+
+_BETWEEN = key("the two links that it joins; its value is that of the second against the first")
+
+
+def _in_plane(value: object, info: ValidationInfo) -> tuple[float, float]:
+    parts = parts_of(value, 2, "is not a place in the plane; give x and y, as in [40, 0]")
+    x, y = (number_for(part, info, "length") for part in parts)
+    return x, y
+
+
+def _ends(value: object, info: ValidationInfo) -> tuple[tuple[float, float, float], ...]:
+    ends = parts_of(value, 2, "are not two places; give that on each link, as in [[0, 0, 0], [100, 0, 0]]")
+    first, second = (three(end, info, "length") for end in ends)
+    return first, second
+
+
+class NetJointForm(JointForm):
+    """A joint between two links by name, as drawn in one assembled pose, in ground coordinates."""
+
+    between: Annotated[tuple[Text, Text], _BETWEEN]
+
+
+class NetRodForm(TableForm):
+    """A link with a ball at each end; it takes part with its length alone."""
+
+    between: Annotated[tuple[Text, Text], key("the two links that it joins")]
+    at: Annotated[
+        tuple[tuple[Component, Component, Component], tuple[Component, Component, Component]],
+        BeforeValidator(_ends),
+        key("the place of its end on each link, as drawn", "length"),
+    ]
+    name: Annotated[Text | None, key("left out, rod_1, rod_2 ..")] = None
+
+
+class PinForm(TableForm):
+    """A pin of a planar linkage: a hinge about z for each of its links but the first."""
+
+    at: Annotated[
+        tuple[Component, Component], BeforeValidator(_in_plane), key("its place as drawn: x, y", "length")
+    ]
+    links: Annotated[tuple[Text, ...], key("the links that turn on it; the others against the first")]
+    name: Annotated[Text | None, key("left out, pin_1, pin_2 ..")] = None
+
+
+class NetPointForm(TableForm):
+    """A named point of a link."""
+
+    name: Annotated[Text, key("its own among the points")]
+    link: Annotated[Text, key("the link that carries it, by name")]
+    at: Annotated[Vector, key("its place as drawn, in ground coordinates", "length")]
+
+
+class NetForm(TableForm):
+    """A file of format 1 with links by name that make more than one loop."""
+
+    format: Annotated[Literal[1], key("of this file")]
+    ground: Annotated[Text, key("the link that stands still, by name")]
+    name: Annotated[Text, key("of the linkage, for reports and figures")] = "linkage"
+    length_unit: Annotated[str, *one_of("unit", LENGTHS), key("of all lengths")] = "mm"
+    angle_unit: Annotated[str, *one_of("unit", ANGLES), key("of the angles written in this file")] = "deg"
+    drive: Annotated[DriveForm, key("the input, the output, the speed")] = DriveForm.model_construct()
+    joint: Annotated[tuple[NetJointForm, ...], key("joints as drawn, in any order")] = ()
+    pin: Annotated[tuple[PinForm, ...], key("hinges about z, by place")] = ()
+    rod: Annotated[tuple[NetRodForm, ...], key("links with a ball at each end")] = ()
+    point: Annotated[tuple[NetPointForm, ...], key("points of links")] = ()
+
+
+_FORMS = FileForms(
+    NetForm,
+    {"joint": NetJointForm, "pin": PinForm, "rod": NetRodForm, "point": NetPointForm, "drive": DriveForm},
+    once=("drive",),
+)
+
+
+def check_net(raw: Mapping[str, Any], context: Mapping[str, Any], *, source: str = "") -> NetForm:
+    """The checked form of a net's tables; `DescriptionError` with every problem of the file."""
+    problems: list[Problem] = []
+    form: NetForm | None = None
+    try:
+        form = NetForm.model_validate(raw, context=context)
+    except ValidationError as error:
+        problems += [_FORMS.problem(detail) for detail in error.errors(include_url=False)]
+    for i, table in enumerate(raw.get("joint", ()), 1):
+        problems += [Problem(f"joint[{i}].{name}", message) for name, message in wrong_keys(table)]
+        if "longer" in table:
+            problems.append(Problem(f"joint[{i}].longer", "is of a single loop; draw the link as long as it is"))
+    if form is None or problems:
+        raise DescriptionError(problems, source)
+    return form
+
+
+def name_flaws(raw: Mapping[str, Any]) -> list[Problem]:
+    """Names of joints that are taken twice, and ends of the drive that are not there."""
+    problems, taken = [], set[str]()
+    joints = joints_of(raw)
+    for joint in joints:
+        labels = {joint.name, *joint.columns}
+        if labels & taken:
+            message = f"{shown(joint.name)} is taken already; give each joint its own name"
+            problems.append(Problem(f"{joint.place}.name", message))
+        taken |= labels
+    return problems + driven(joints, drive_of(raw))[2]

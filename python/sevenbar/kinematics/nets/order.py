@@ -1,0 +1,187 @@
+"""In which order a net is solved: its biconnected parts, their planes and centres, and the blocks of links in each.
+
+Source: docs/theory_nets.md, (6).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+import sevenbar._core as _core
+from sevenbar.arrays import Floats
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.joints import Z
+from sevenbar.kinematics.solvers.general import AGREE
+
+#: How links of a part move: in parallel planes, about one point, or any way.
+Group = Literal["planar", "spherical", "spatial"]
+
+#: The freedoms of a link in each.
+FREEDOMS: dict[Group, int] = {"planar": 3, "spherical": 3, "spatial": 6}
+
+#: How far axes may be from parallel [rad], or from one point [share of the size].
+SAME = AGREE
+
+
+@dataclass(frozen=True)
+class Block:
+    """Links that are solved together, once those before them are: links and joints by number, rods by place.
+
+    `solver`: "dyad" has a closed form; "loop" is one loop; "links" are more.
+    """
+
+    links: tuple[int, ...]
+    joints: tuple[int, ...]
+    rods: tuple[int, ...]
+    group: Group
+    solver: Literal["dyad", "loop", "links"]
+
+
+@dataclass(frozen=True)
+class Order:
+    """The blocks of a net in the order in which they are solved, with the input held.
+
+    `free` are links that keep a freedom then, and `held` the joints and rods with rows for which no freedom
+    is left, by name: there the count alone gives no order.
+    """
+
+    blocks: tuple[Block, ...] = ()
+    free: tuple[str, ...] = ()
+    held: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """A net's joints and rods as edges of a graph, joints first."""
+
+    linkage: Loop
+
+    @cached_property
+    def between(self) -> list[tuple[int, int]]:
+        """The two links of each edge, counted from 0."""
+        pairs = [*self.linkage.graph.between, *(rod.between for rod in self.linkage.rods)]
+        return [(a - 1, b - 1) for a, b in pairs]
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the edges."""
+        return [part.name for part in (*self.linkage.joints, *self.linkage.rods)]
+
+    @cached_property
+    def whole(self) -> list[tuple[list[int], Group]]:
+        """The edges of each biconnected part, and how its links move."""
+        count = self.linkage.graph.ground
+        parts = _core.biconnected_parts(count, self.between, count - 1)
+        return [(edges, self._group(edges)) for edges in parts]
+
+    def _group(self, edges: Sequence[int]) -> Group:
+        joints = [edge for edge in edges if edge < len(self.linkage.joints)]
+        links = {link for edge in edges for link in self.between[edge]}
+        if not joints or links != {link for joint in joints for link in self.between[joint]}:
+            return "spatial"
+        if self._is_planar(joints):
+            return "planar"
+        return "spherical" if len(joints) == len(edges) and self._is_spherical(joints) else "spatial"
+
+    def _frame(self, joint: int) -> Floats:
+        return self.linkage.drawn_joint_on(joint, self.linkage.graph.between[joint][0])
+
+    def _is_planar(self, joints: Sequence[int]) -> bool:
+        """Whether all turn about parallel axes, and slide square to them."""
+        turning, sliding = [], []
+        for joint in joints:
+            row, frame = self.linkage.joints[joint].row, self._frame(joint)
+            if row.bends or row.is_screw:
+                return False
+            for step in row.steps:
+                axis = frame[:3, step.axis]
+                if step.freedom == "turn":
+                    turning.append(axis)
+                elif step.axis != Z or len(row.steps) == 1:
+                    # a cylinder turns in the plane and stays at its height
+                    sliding.append(axis)
+        if not turning:
+            return False
+        normal = turning[0]
+        parallel = all(np.linalg.norm(np.cross(normal, axis)) < SAME for axis in turning)
+        return parallel and all(abs(normal @ axis) < SAME for axis in sliding)
+
+    def _is_spherical(self, joints: Sequence[int]) -> bool:
+        """Whether all are hinges whose axes meet in one point."""
+        frames = [self._frame(joint) for joint in joints if self.linkage.joints[joint].kind == "R"]
+        if len(frames) < len(joints):
+            return False
+        # the point nearest to all axes
+        across = [np.eye(3) - np.outer(frame[:3, 2], frame[:3, 2]) for frame in frames]
+        sides = [own @ frame[:3, 3] for own, frame in zip(across, frames, strict=True)]
+        centre, _, rank, _ = np.linalg.lstsq(np.concatenate(across), np.concatenate(sides), rcond=SAME)
+        off = [np.linalg.norm(own @ (centre - frame[:3, 3])) for own, frame in zip(across, frames, strict=True)]
+        return rank == 3 and max(off) < SAME * self.linkage.size
+
+    def rows(self, edge: int, group: Group) -> int:
+        """How many freedoms of one link against the other an edge takes."""
+        if edge >= len(self.linkage.joints):
+            return 1
+        row = self.linkage.joints[edge].row
+        if group == "planar":
+            own = sum(not (step.freedom == "slide" and step.axis == Z) or len(row.steps) == 1 for step in row.steps)
+        else:
+            own = len(row.freedoms)
+        return FREEDOMS[group] - own
+
+
+def order_of(linkage: Loop, column: int) -> Order:
+    """The order in which a net is solved with one column held; a single loop is one block."""
+    if linkage.net is None:
+        graph = linkage.graph
+        joints = tuple(joint for joint in graph.joints if joint != linkage.column_of(column).joint)
+        return Order((Block(tuple(graph.moving), joints, (), "spatial", "loop"),))
+    parts = Parts(linkage)
+    driven = linkage.column_of(column).joint
+    count = linkage.graph.ground
+    a, b = parts.between[driven]
+    alone = len(linkage.joints[driven].columns) == 1
+    # the two links of a joint that is held are one, the ground if it is one of them
+    merged = [max(a, b) if alone and link in (a, b) else link for link in range(count)]
+    edges = [edge for edge in range(len(parts.between)) if edge != driven or not alone]
+    between = [(merged[parts.between[edge][0]], merged[parts.between[edge][1]]) for edge in edges]
+    groups = {edge: group for whole, group in parts.whole for edge in whole}
+    ground = merged[count - 1]
+    known = [False] * count
+    known[ground] = True
+    blocks: list[Block] = []
+    for part in _core.biconnected_parts(count, between, ground):
+        own = [edges[k] for k in part]
+        group = groups[own[0]]
+        pairs = [between[k] for k in part]
+        rows = [parts.rows(edge, group) + (edge == driven) for edge in own]
+        word, found = _core.net_blocks(pairs, rows, known, FREEDOMS[group])
+        if word == "free":
+            return Order(free=tuple(linkage.link_name(link + 1) for link in found[0][0]))
+        if word == "held":
+            return Order(held=tuple(parts.names[own[k]] for k in found[0][1]))
+        for links, places in found:
+            blocks.append(_block(linkage, links, [own[k] for k in places], [pairs[k] for k in places], group))
+            for link in links:
+                known[link] = True
+    return Order(tuple(blocks))
+
+
+def _block(
+    linkage: Loop, links: list[int], edges: list[int], pairs: list[tuple[int, int]], group: Group
+) -> Block:
+    count = len(linkage.joints)
+    joints, rods = [edge for edge in edges if edge < count], [edge - count for edge in edges if edge >= count]
+    one_loop = len(edges) == len(links) + 1 and all(sum(link in pair for pair in pairs) == 2 for link in links)
+    simple = all(len(linkage.joints[joint].columns) == 1 for joint in joints)
+    if group == "planar" and one_loop and len(links) == 2 and not rods and simple:
+        solver: Literal["dyad", "loop", "links"] = "dyad"
+    else:
+        solver = "loop" if one_loop else "links"
+    return Block(tuple(link + 1 for link in links), tuple(joints), tuple(rods), group, solver)
+

@@ -1,0 +1,80 @@
+"""What a net of several loops answers so far: its freedoms, its redundant constraints, its order of solving."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, NoReturn
+
+from sevenbar.errors import NotCoveredError
+from sevenbar.kinematics.loop.mobility import Mobility
+from sevenbar.kinematics.nets.order import Order, Parts, order_of
+from sevenbar.kinematics.nets.tree import Tree
+
+if TYPE_CHECKING:
+    from sevenbar.kinematics.circuits.motion import Solvable
+
+#: Three constraints of a planar or spherical cycle repeat others.
+BY_GROUP = {
+    "planar": ("a force across the plane", "a moment about one direction in it", "a moment about another"),
+    "spherical": ("a force along x", "a force along y", "a force along z"),
+}
+
+
+class NetSolver:
+    """The solver of a net."""
+
+    def __init__(self, linkage: Solvable) -> None:
+        self._linkage = linkage
+
+    def order(self, column: int) -> Order:
+        """The order of solving with a column held."""
+        return order_of(self._linkage, column)
+
+    @cached_property
+    def _parts(self) -> Parts:
+        return Parts(self._linkage)
+
+    def mobility(self, column: int) -> Mobility:
+        """How freely the net moves about the drawn pose; the tree begins with a column's joint.
+
+        Redundant constraints are those by which a part moves in a plane or about a point, cycle by cycle, and
+        how many there are besides.
+        """
+        linkage = self._linkage
+        tree = Tree(linkage, linkage.column_of(column).joint)
+        _, _, rank, _, repeated, free = tree.core().freedoms()
+        freedoms = sum(len(joint.row.freedoms) for joint in linkage.joints)
+        lines, graph = [], linkage.graph
+        for edges, group in self._parts.whole:
+            links = {link for edge in edges for link in self._parts.between[edge]}
+            cycles = sum(edge < len(linkage.joints) for edge in edges) - len(links) + 1
+            lines += [
+                f"{line}, in cycle {cycle} of {_listed(linkage, links)}"
+                for cycle in range(1, cycles + 1)
+                for line in BY_GROUP.get(group, ())
+            ]
+        besides = len(repeated) - len(lines)
+        lines += ["a constraint that repeats the others of its cycles"] * besides
+        return Mobility(
+            freedoms=freedoms,
+            gruebler=6 * (graph.ground - 1) - sum(6 - len(j.row.freedoms) for j in linkage.joints) - len(linkage.rods),
+            rank=rank,
+            finite=len(free),
+            idle=tuple(f"turn of {rod.name} about the line of its two balls" for rod in linkage.rods),
+            redundant=tuple(lines) if besides >= 0 else ("a constraint that repeats others",) * len(repeated),
+        )
+
+    def idle(self) -> tuple[str, ...]:
+        """Freedoms that move no other link."""
+        return tuple(f"turn of {rod.name} about the line of its two balls" for rod in self._linkage.rods)
+
+    def refuse(self) -> NoReturn:
+        """What a net does not answer yet."""
+        raise NotCoveredError(
+            "a net of several loops: its freedoms, redundant constraints and order of solving are found; "
+            "modes, motion and all that follows from them are of single loops"
+        )
+
+
+def _listed(linkage: Solvable, links: set[int]) -> str:
+    return ", ".join(linkage.link_name(link + 1) for link in sorted(links))
