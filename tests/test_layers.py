@@ -27,6 +27,8 @@ CORE_IMPORTERS = {
             "loop/reason",
             "numbers/sensitivity",
             "numbers/word",
+            "nets/order",
+            "nets/tree",
             "solvers/batches",
             "solvers/closed_form",
             "solvers/general",

@@ -30,6 +30,8 @@ loops::branch_points: locating other_input afar survey sectors counting
 loops::circuits: curve follow walked_again on_curve turnings join meetings sphere change_points found arcs known_curves search
 loops::motions: row row_lanes passes extremes rows circuit met_twice motion measures
 loops
+
+nets: order tree rows freedoms
 """
 
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
         universal_joint,
     )
     from sevenbar.description.files import load, loads
-    from sevenbar.description.forms import from_axes, from_dh, rssr
+    from sevenbar.description.forms import from_axes, from_dh, from_pins, rssr
     from sevenbar.description.law_file import load_law
     from sevenbar.description.step_axes import PartAxis, axes_of_step
     from sevenbar.description.tables import from_table
@@ -106,6 +106,7 @@ __all__ = [
     "four_bar",
     "from_axes",
     "from_dh",
+    "from_pins",
     "from_table",
     "goldberg",
     "language",
@@ -139,7 +140,7 @@ _NAMES_OF_MODULES = {
     "description.families": "bennett bricard_line bricard_plane bricard_trihedral clemens four_bar goldberg "
     "myard sarrus slider_crank spherical_four_bar universal_joint",
     "description.files": "load loads",
-    "description.forms": "from_axes from_dh rssr",
+    "description.forms": "from_axes from_dh from_pins rssr",
     "description.law_file": "load_law",
     "description.step_axes": "PartAxis axes_of_step",
     "description.tables": "from_table",

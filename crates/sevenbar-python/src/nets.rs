@@ -56,7 +56,7 @@ impl Net {
                 other => return Err(CoreError::new_err(format!("'{other}' is no step; give R, P or H"))),
             };
             if parents[k].is_some_and(|p| p >= k) {
-                return Err(CoreError::new_err("each step stands on one before it"));
+                return Err(CoreError::new_err("the parent of a step is one before it"));
             }
             steps.push(Step { parent: parents[k], moves, origin: origins[k], axis: axes[k] });
         }

@@ -88,6 +88,9 @@ def from_axes(
     length_unit: str = "mm",
     speed: float | str = 1.0,
     points: Sequence[Mapping[str, Any]] = (),
+    rods: Sequence[Mapping[str, Any]] = (),
+    ground: str | None = None,
+    drive: str | None = None,
 ) -> Linkage:
     """A linkage from its joints as drawn in one assembled pose, in loop order: kind, point, direction.
 
@@ -96,6 +99,10 @@ def from_axes(
     between joints i and i + 1, the last is the ground. Every joint reads 0 in this pose, or its `value`, of R
     [deg, or text] and P [`length_unit`, or text]. Coordinates and pitches are in `length_unit`, or texts as
     in "12 mm", "8 mm/turn". A joint at the ground, first or last, counts its link against the ground.
+
+    With links by name joints stand in any order: each has `between`, the names of its two links, `ground`
+    names the link that stands still, and points name their `link`. `rods`, with `between` and two places
+    `at`, are links with a ball at each end. More than one loop makes a net. `drive` names the input.
 
         >>> import sevenbar as sb
         >>> linkage = sb.from_axes([
@@ -107,10 +114,55 @@ def from_axes(
         >>> linkage.motion().motion_type
         'crank-rocker'
     """
-    tables = {"joint": _plain(joints), "point": _plain(points)}
-    for key, rows in (("joints", tables["joint"]), ("points", tables["point"])):
+    return _drawn(name, length_unit, speed, drive, ground, joints=joints, points=points, rods=rods)
+
+
+@ends_here
+def from_pins(
+    pins: Sequence[Mapping[str, Any]],
+    *,
+    ground: str,
+    drive: str | None = None,
+    name: str = "linkage",
+    length_unit: str = "mm",
+    speed: float | str = 1.0,
+    points: Sequence[Mapping[str, Any]] = (),
+    rods: Sequence[Mapping[str, Any]] = (),
+) -> Linkage:
+    """A planar linkage from its pins as drawn in one assembled pose: links that turn on each, by name.
+
+    Each pin is a mapping with `at` (x, y), `links` (two names or more), and perhaps `name`; a pin of k links
+    is k - 1 hinges about z. `ground` names the link that stands still; `drive` the input, the first pin where
+    it is left out. Points and rods are those of `from_axes`.
+
+        >>> import sevenbar as sb
+        >>> linkage = sb.from_pins([
+        ...     {"name": "crank", "at": (0, 0), "links": ("frame", "crank")},
+        ...     {"at": (10, 40), "links": ("crank", "coupler")},
+        ...     {"at": (100, 70), "links": ("coupler", "rocker")},
+        ...     {"name": "rocker", "at": (90, 0), "links": ("frame", "rocker")},
+        ... ], ground="frame")
+        >>> linkage.motion().motion_type
+        'crank-rocker'
+    """
+    return _drawn(name, length_unit, speed, drive, ground, pins=pins, points=points, rods=rods)
+
+
+def _drawn(
+    name: str, length_unit: str, speed: float | str, drive: str | None, ground: str | None, **lists: Any
+) -> Linkage:
+    """The linkage of tables as drawn, those that are not empty."""
+    raw = head_of(name, length_unit, speed)
+    if drive is not None:
+        raw["drive"] = {**raw.get("drive", {}), "joint": drive}
+    if ground is not None:
+        raw["ground"] = ground
+    for key, values in lists.items():
+        rows = _plain(values)
         check_kind(key, rows, list, f"a list; give one with a mapping for each of the {key}")
-    return from_description(head_of(name, length_unit, speed) | tables)
+        if rows or key in ("joints", "points"):
+            raw[key.removesuffix("s")] = rows
+    return from_description(raw)
 
 
 @ends_here

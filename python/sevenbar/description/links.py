@@ -1,4 +1,4 @@
-"""Links by name: which two links each joint is between, pins of planar linkages, and whether they make one loop.
+"""Links by name: which two each joint is between, pins, and whether they make one loop.
 
 A file whose joints say `between` lists them in any order. Where they make one loop it becomes that loop's own
 tables, joints in order, as if they had been written so; anything else is a net.
@@ -40,7 +40,7 @@ def has_links(raw: Mapping[str, Any]) -> bool:
 
 @dataclass(frozen=True)
 class Edge:
-    """A joint or a rod as written: its place in the file, its name, the links that it is between, its table."""
+    """A joint or a rod as written: its place in the file, its name, its two links, its table."""
 
     place: str
     name: str
@@ -72,7 +72,7 @@ class NamedLinks:
         between = table.get("between")
         if "between" not in table:
             message = "is missing; where one joint says which two links it is between, all do"
-        elif not isinstance(between, list) or len(between) != 2 or not all(map(is_name, between)):
+        elif not isinstance(between, list | tuple) or len(between) != 2 or not all(map(is_name, between)):
             message = f'{shown(between)} are not two links; give their names, as in ["frame", "crank"]'
         elif between[0].strip() == between[1].strip():
             message = f"{shown(between[0])} is joined to itself; give two links"
@@ -86,23 +86,27 @@ class NamedLinks:
 
     def _read_pin(self, place: str, table: Mapping[str, Any], name: str) -> None:
         links, at = table.get("links"), table.get("at")
-        if not isinstance(links, list) or len(links) < 2 or not all(map(is_name, links)):
+        if not isinstance(links, list | tuple) or len(links) < 2 or not all(map(is_name, links)):
             message = f'{shown(links)} are no links; give the names of two or more, as in ["frame", "crank"]'
             self.problems.append(Problem(f"{place}.links", message))
             return
         if len({link.strip() for link in links}) < len(links):
-            self.problems.append(Problem(f"{place}.links", f"{shown(links)} names a link twice; give each once"))
+            self.problems.append(
+                Problem(f"{place}.links", f"{shown(links)} names a link twice; give each once")
+            )
             return
-        if not isinstance(at, list) or len(at) != 2:
-            self.problems.append(Problem(f"{place}.at", f"{shown(at)} is not a place; give x and y, as in [40, 0]"))
+        if not isinstance(at, list | tuple) or len(at) != 2:
+            self.problems.append(
+                Problem(f"{place}.at", f"{shown(at)} is not a place; give x and y, as in [40, 0]")
+            )
             return
         label = table.get("name")
         label = label.strip() if is_name(label) else name
         first, *others = (link.strip() for link in links)
         for k, other in enumerate(others, 1):
-            own = label if len(others) == 1 else f"{label}.{k}"
-            joint = {"name": own, "kind": "R", "at": [*at, 0], "axis": ACROSS}
-            self.joints.append(Edge(place, own, (first, other), joint))
+            hinge = label if len(others) == 1 else f"{label}.{k}"
+            joint = {"name": hinge, "kind": "R", "at": [*at, 0], "axis": ACROSS}
+            self.joints.append(Edge(place, hinge, (first, other), joint))
 
     @property
     def edges(self) -> list[Edge]:
@@ -151,14 +155,9 @@ class NamedLinks:
         for joint in self.joints:
             first = pairs.setdefault(frozenset(joint.between), joint)
             if first is not joint:
-                a, b = joint.between
-                problems.append(
-                    Problem(
-                        f"{joint.place}.between",
-                        f"{a} and {b} are joined twice, by {first.name} and {joint.name}; give one joint with "
-                        "the freedoms that both leave",
-                    )
-                )
+                what = f"{' and '.join(joint.between)} are joined twice, by {first.name} and {joint.name}"
+                remedy = "give one joint with the freedoms that both leave"
+                problems.append(Problem(f"{joint.place}.between", f"{what}; {remedy}"))
         if len(self.edges) > MOST_EDGES:
             count = f"{len(self.edges)} joints and rods"
             problems.append(Problem("joint", f"{count} are not taken; give up to {MOST_EDGES}"))
@@ -212,13 +211,13 @@ class NamedLinks:
 
 
 def _turned(joint: Edge, *, forward: bool) -> dict[str, Any]:
-    """The table of a joint between two links in their order, which is that of the file where `forward`."""
+    """The table of a joint in a loop, its links turned round where not `forward`."""
     table = {"name": joint.name, **{k: v for k, v in joint.table.items() if k != "between"}}
     if forward:
         return table
     if "axis" in table:
         table["axis"] = _reversed(table["axis"])
-    if isinstance(table.get("axes"), list):
+    if isinstance(table.get("axes"), list | tuple):
         # what the first link holds is held by the second
         table["axes"] = [_reversed(axis) for axis in reversed(table["axes"])]
         table["kind"] = OTHER_SLOT.get(table.get("kind", ""), table.get("kind"))
@@ -226,7 +225,7 @@ def _turned(joint: Edge, *, forward: bool) -> dict[str, Any]:
 
 
 def _reversed(axis: Any) -> Any:
-    if not isinstance(axis, list):
+    if not isinstance(axis, list | tuple):
         return axis
     return [-x if isinstance(x, int | float) and not isinstance(x, bool) else x for x in axis]
 
@@ -236,14 +235,13 @@ def _numbered(table: Any, key: str, numbers: Mapping[str, int]) -> Any:
     if not isinstance(table, Mapping) or key not in table:
         return table
     value = table[key]
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         return {**table, key: [_number(one, numbers) for one in value]}
     return {**table, key: _number(value, numbers)}
 
 
 def _number(link: Any, numbers: Mapping[str, int]) -> Any:
     return numbers.get(link.strip(), link) if isinstance(link, str) else link
-
 
 
 def named_links(raw: Mapping[str, Any], source: str = "") -> NamedLinks:

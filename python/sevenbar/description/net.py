@@ -43,14 +43,14 @@ def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
     if problems:
         raise DescriptionError(problems, source)
     joints, frames = [], []
-    for edge, own in zip(links.joints, form.joint, strict=True):
-        before, after, angle = drawn_frames(own.kind, own.at, own.axis, own.axes)
-        joint = Joint(own.kind, edge.name, own.pitch or 0.0, angle, value=own.value or 0.0)
+    for edge, table in zip(links.joints, form.joint, strict=True):
+        before, after, angle = drawn_frames(table.kind, table.at, table.axis, table.axes)
+        joint = Joint(table.kind, edge.name, table.pitch or 0.0, angle, value=table.value or 0.0)
         joints.append(joint)
         frames.append(np.stack([before @ inverse(joint.to_drawn), after]))
     rods = tuple(
-        Rod(edge.name, (number[edge.between[0]], number[edge.between[1]]), own.at)
-        for edge, own in zip(links.rods, form.rod, strict=True)
+        Rod(edge.name, (number[edge.between[0]], number[edge.between[1]]), table.at)
+        for edge, table in zip(links.rods, form.rod, strict=True)
     )
     return Linkage(
         name=form.name,
@@ -81,7 +81,7 @@ def drawn_frames(
     axis: tuple[float, float, float] | None,
     axes: tuple[tuple[float, float, float], tuple[float, float, float]] | None,
 ) -> tuple[Floats, Floats, float]:
-    """The frames (4, 4) of a joint on both links, in ground coordinates, and the angle [rad] between its axes."""
+    """The frames (4, 4) of a joint on both links, in ground coordinates, and the angle [rad] of its axes."""
     row = KINDS[kind]
     if axes is not None:
         first, second = unit(axes[0]), unit(axes[1])

@@ -19,10 +19,12 @@ from sevenbar.description.values import (
     number_for,
     one_of,
     parts_of,
+    refuse,
     three,
 )
 from sevenbar.description.written import drive_of, driven, joints_of
 from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.kinematics.loop.joints import JOINT_KINDS
 from sevenbar.text.units import ANGLES, LENGTHS
 
 _BETWEEN = key("the two links that it joins; its value is that of the second against the first")
@@ -37,6 +39,8 @@ def _in_plane(value: object, info: ValidationInfo) -> tuple[float, float]:
 def _ends(value: object, info: ValidationInfo) -> tuple[tuple[float, float, float], ...]:
     ends = parts_of(value, 2, "are not two places; give that on each link, as in [[0, 0, 0], [100, 0, 0]]")
     first, second = (three(end, info, "length") for end in ends)
+    if first == second:
+        raise refuse("its two ends are one place; give joint S there")
     return first, second
 
 
@@ -107,9 +111,12 @@ def check_net(raw: Mapping[str, Any], context: Mapping[str, Any], *, source: str
     except ValidationError as error:
         problems += [_FORMS.problem(detail) for detail in error.errors(include_url=False)]
     for i, table in enumerate(raw.get("joint", ()), 1):
-        problems += [Problem(f"joint[{i}].{name}", message) for name, message in wrong_keys(table)]
+        if table.get("kind") in JOINT_KINDS:
+            problems += [Problem(f"joint[{i}].{name}", message) for name, message in wrong_keys(table)]
         if "longer" in table:
-            problems.append(Problem(f"joint[{i}].longer", "is of a single loop; draw the link as long as it is"))
+            problems.append(
+                Problem(f"joint[{i}].longer", "is of a single loop; draw the link as long as it is")
+            )
     if form is None or problems:
         raise DescriptionError(problems, source)
     return form

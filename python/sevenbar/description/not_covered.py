@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 _LOOPS = (
-    "several loops are not covered: a file has one loop, in which each joint joins the next link to the "
-    "last; write a file for each, and take the output of one as the --law of the next"
+    "a file has one loop, in which each joint joins the next link to the last; links by name, of one loop or "
+    'of several, are given as between = ["frame", "crank"] of each joint and as ground = "frame"'
 )
 _FRICTION = "friction is not covered: joints have none here; leave it out"
 
@@ -26,7 +26,7 @@ NOT_COVERED = {
 }
 
 #: The same for keys of a joint: what it joins.
-OF_JOINTS = dict.fromkeys(("links", "link", "parent", "child", "bodies", "body", "between"), _LOOPS)
+OF_JOINTS = dict.fromkeys(("links", "link", "parent", "child", "bodies", "body"), _LOOPS)
 
 
 def not_covered(word: object, *, of_joint: bool = False) -> str:

@@ -13,6 +13,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from sevenbar.description.contradictions import FORMS, contradictions, grounds, other_file
+from sevenbar.description.links import OWN_KEYS
 from sevenbar.description.load_schema import BodyForm, ForcesForm, LoadForm, SpringForm
 from sevenbar.description.loop_schema import DriveForm, JointForm, LinkForm, LoopForm, PointForm, RssrForm
 from sevenbar.description.mistakes import FileForms, path_of
@@ -55,8 +56,22 @@ def json_schema() -> dict[str, Any]:
         >>> json_schema()["properties"]["length_unit"]["enum"]
         ['um', 'mm', 'cm', 'm', 'in', 'ft']
     """
+    from sevenbar.description.net_schema import NetForm
+
     schema = LinkageForm.model_json_schema(schema_generator=TomlSchema)
-    one_form = [{"required": [form]} for form in FORMS]
+    net = NetForm.model_json_schema(schema_generator=TomlSchema)
+    # links by name: of one loop, which may have all that a loop has, or of a net
+    forms, of_net = schema["$defs"], net["$defs"]
+    for form, word in (("JointForm", "between"), ("PointForm", "link")):
+        named = of_net[f"Net{form}"]["properties"][word]
+        known = forms[form]["properties"].get(word)
+        forms[form]["properties"][word] = named if known is None else {"anyOf": [known, named]}
+    forms |= {name: of_net[name] for name in ("PinForm", "NetRodForm")}
+    rods = schema["properties"]["rod"]["items"]
+    schema["properties"]["rod"]["items"] = {"anyOf": [rods, {"$ref": "#/$defs/NetRodForm"}]}
+    schema["properties"] |= {word: net["properties"][word] for word in OWN_KEYS}
+    pins_or_joints = {"anyOf": [{"required": ["joint"]}, {"required": ["pin"]}]}
+    one_form = [pins_or_joints if form == "joint" else {"required": [form]} for form in FORMS]
     return {"$schema": GenerateJsonSchema.schema_dialect, **schema, "oneOf": one_form}
 
 

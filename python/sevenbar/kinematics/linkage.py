@@ -16,8 +16,6 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.modes import Modes, Output
 from sevenbar.kinematics.circuits.motion import LEAST_AGREE, MOST_AGREE, HeldFreedoms, Motion, Solvable
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
-from sevenbar.kinematics.nets.order import Order, order_of
-from sevenbar.kinematics.nets.solver import NetSolver
 from sevenbar.kinematics.solvers.closed_form import ClosedForm
 from sevenbar.kinematics.solvers.general import AGREE, GeneralLoop
 
@@ -29,6 +27,8 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
     from sevenbar.kinematics.loop.reason import Reason
+    from sevenbar.kinematics.nets.order import Order
+    from sevenbar.kinematics.nets.solver import NetSolver
     from sevenbar.kinematics.ranges.stopped import Cones, Radii, Ranges
     from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere
 
@@ -111,6 +111,8 @@ class Linkage(Solvable):
 
     @cached_property
     def _net(self) -> NetSolver:
+        from sevenbar.kinematics.nets.solver import NetSolver
+
         return NetSolver(self)
 
     @cached_property
@@ -241,14 +243,14 @@ class Linkage(Solvable):
 
     @property
     def order(self) -> Order:
-        """The order in which a net is solved with its input held: its blocks of links.
+        """The order in which it is solved with its input held: blocks of links, one of a single loop.
 
-        Of a single loop that is one block.
-
-            >>> import sevenbar as sb
-            >>> [len(block.links) for block in sb.load("rssr").order.blocks]
-            [3]
+        >>> import sevenbar as sb
+        >>> sb.load("planar_4r").order.blocks[0].solver, sb.load("rssr").order.blocks[0].links
+        ('dyad', (2, 3))
         """
+        from sevenbar.kinematics.nets.order import order_of
+
         return order_of(self, self.input_column())
 
     @property

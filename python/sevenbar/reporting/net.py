@@ -1,4 +1,4 @@
-"""What is known of a net of several loops before it moves: its freedoms, what repeats, the order of solving."""
+"""A net of several loops before it moves: its freedoms, repeated constraints, the order of solving."""
 
 from __future__ import annotations
 
@@ -54,7 +54,9 @@ def net_page(linkage: Linkage) -> Page:
 
 def _freedoms_text(finite: int | None, gruebler: int) -> str:
     moves = say("moves with {count} about the drawn pose", count=finite)
-    return moves if finite == gruebler else say("{moves}; Gruebler counts {count}", moves=moves, count=gruebler)
+    return (
+        moves if finite == gruebler else say("{moves}; Gruebler counts {count}", moves=moves, count=gruebler)
+    )
 
 
 def _order_text(order: Order) -> str:
@@ -67,7 +69,9 @@ def _order_text(order: Order) -> str:
 
 def _block(block: Block, linkage: Linkage) -> Facts:
     names = [linkage.link_name(link) for link in block.links]
-    by = [linkage.joints[joint].name for joint in block.joints] + [linkage.rods[rod].name for rod in block.rods]
+    by = [linkage.joints[joint].name for joint in block.joints] + [
+        linkage.rods[rod].name for rod in block.rods
+    ]
     row = Facts()
     row.add("links", ", ".join(names), links=names)
     row.add("joints and rods", ", ".join(by), by=by)

@@ -34,7 +34,7 @@ pub struct Step {
 /// A tree of steps, each a column, and the rows that close it.
 #[derive(Clone, Debug)]
 pub struct Net {
-    /// The steps, each after the one that it stands on.
+    /// The steps, each after its parent.
     pub steps: Vec<Step>,
     /// The rows of the chords.
     pub rows: Vec<Row>,
@@ -123,7 +123,7 @@ mod tests {
     use crate::rigid::norm;
 
     #[test]
-    fn a_link_turns_about_its_axis_as_drawn_and_carries_what_stands_on_it() {
+    fn a_link_turns_about_its_axis_as_drawn_and_carries_the_links_beyond() {
         let quarter = std::f64::consts::FRAC_PI_2;
         let z = [0.0, 0.0, 1.0];
         let step = |parent, origin| Step { parent, moves: Move::Turn, origin, axis: z };

@@ -269,12 +269,14 @@ class Loop(Drawable):
     @property
     def base(self) -> Floats:
         """The frame (4, 4) of joint 1 on the ground."""
-        return self.frames[0, 0]
+        frame: Floats = self.frames[0, 0]
+        return frame
 
     @property
     def ground(self) -> Floats:
         """The frame (4, 4) of the last joint on the ground."""
-        return self.frames[-1, 1]
+        frame: Floats = self.frames[-1, 1]
+        return frame
 
     @property
     def links(self) -> Floats:
@@ -288,7 +290,8 @@ class Loop(Drawable):
 
     def joint_on(self, joint: int, link: int) -> Floats:
         """The frame (4, 4) of a joint on one of its links, of the link's own frame, where it reads 0."""
-        return self.frames[joint, self.graph.side(joint, link)]
+        frame: Floats = self.frames[joint, self.graph.side(joint, link)]
+        return frame
 
     def drawn_joint_on(self, joint: int, link: int) -> Floats:
         """The same as the joint is drawn, whatever it reads there."""
@@ -308,7 +311,7 @@ class Loop(Drawable):
         total = sum(math.dist(*rod.at) for rod in self.rods)
         for link in self.graph.links:
             joints = [self.frames[joint, 1, :3, 3] for joint in self.graph.joints_of(link)]
-            places = np.array([*joints, *(end for own, end in ends if own == link)])
+            places = np.array([*joints, *(end for carrier, end in ends if carrier == link)])
             total += float(np.linalg.norm(places[:, None] - places, axis=-1).max())
         return total
 
@@ -316,7 +319,9 @@ class Loop(Drawable):
     def size(self) -> float:
         """The size [length], as the core has it: all links' lengths, and pitches by radian; 1 if none."""
         size = self.length + sum(abs(joint.pitch) / math.tau for joint in self.joints)
-        reach = max(math.hypot(*self.joint_on(joint, self.graph.ground)[:3, 3]) for joint in self.graph.standing)
+        reach = max(
+            math.hypot(*self.joint_on(joint, self.graph.ground)[:3, 3]) for joint in self.graph.standing
+        )
         return size if size > NO_SIZE * reach else 1.0
 
     @cached_property

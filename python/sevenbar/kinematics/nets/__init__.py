@@ -1,1 +1,1 @@
-"""Nets of several loops: a tree of links closed by the rows of chords, and the order in which they are solved."""
+"""Nets of several loops: a tree of links closed by the rows of chords, and the order of solving."""

@@ -1,4 +1,4 @@
-"""What a joint asks of its two links where it closes a loop: places that meet, angles that stay.
+"""The rows of a joint that closes a loop: places that meet, angles that stay.
 
     along    (x_a - x_b) . v_b = 0        a place does not go along v
     angle    u_a . v_b = cos(u, v)        two directions keep their angle
@@ -25,7 +25,7 @@ Triple = tuple[float, float, float]
 
 
 class ChordRow(NamedTuple):
-    """A row: its kind, the side of each of the joint's links that it is on first and second, and its vectors."""
+    """A row: its kind, on which of the joint's links it is first and second, and its vectors."""
 
     kind: str
     sides: tuple[int, int]
@@ -52,7 +52,9 @@ def joint_rows(joint: Joint, before: Floats, after: Floats) -> list[ChordRow]:
     ridden = bool(sliding) and steps[0].freedom == "slide" and bool(turns)
     frame, sides = (before, (1, 0)) if ridden else (after, (0, 1))
     result += [
-        ChordRow("along", sides, (place, _three(frame[:3, axis]))) for axis in (X, Y, Z) if axis not in sliding
+        ChordRow("along", sides, (place, _three(frame[:3, axis])))
+        for axis in (X, Y, Z)
+        if axis not in sliding
     ]
     return result
 

@@ -1,4 +1,4 @@
-"""In which order a net is solved: its biconnected parts, their planes and centres, and the blocks of links in each.
+"""In which order a net is solved: its biconnected parts, and the blocks of links in each.
 
 Source: docs/theory_nets.md, (6).
 """
@@ -14,6 +14,7 @@ import numpy as np
 
 import sevenbar._core as _core
 from sevenbar.arrays import Floats
+from sevenbar.kinematics.circuits.poses import drawn_frames
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
 from sevenbar.kinematics.solvers.general import AGREE
@@ -88,14 +89,20 @@ class Parts:
             return "planar"
         return "spherical" if len(joints) == len(edges) and self._is_spherical(joints) else "spatial"
 
-    def _frame(self, joint: int) -> Floats:
-        return self.linkage.drawn_joint_on(joint, self.linkage.graph.between[joint][0])
+    @cached_property
+    def _frames(self) -> Floats:
+        """The frames (joints, 4, 4) of all joints, in a pose in which those of a net are drawn."""
+        linkage = self.linkage
+        if linkage.net is None:
+            return drawn_frames(linkage)[0]
+        between = enumerate(linkage.graph.between)
+        return np.stack([linkage.drawn_joint_on(joint, before) for joint, (before, _) in between])
 
     def _is_planar(self, joints: Sequence[int]) -> bool:
         """Whether all turn about parallel axes, and slide square to them."""
         turning, sliding = [], []
         for joint in joints:
-            row, frame = self.linkage.joints[joint].row, self._frame(joint)
+            row, frame = self.linkage.joints[joint].row, self._frames[joint]
             if row.bends or row.is_screw:
                 return False
             for step in row.steps:
@@ -113,14 +120,17 @@ class Parts:
 
     def _is_spherical(self, joints: Sequence[int]) -> bool:
         """Whether all are hinges whose axes meet in one point."""
-        frames = [self._frame(joint) for joint in joints if self.linkage.joints[joint].kind == "R"]
+        frames = [self._frames[joint] for joint in joints if self.linkage.joints[joint].kind == "R"]
         if len(frames) < len(joints):
             return False
         # the point nearest to all axes
         across = [np.eye(3) - np.outer(frame[:3, 2], frame[:3, 2]) for frame in frames]
-        sides = [own @ frame[:3, 3] for own, frame in zip(across, frames, strict=True)]
+        sides = [project @ frame[:3, 3] for project, frame in zip(across, frames, strict=True)]
         centre, _, rank, _ = np.linalg.lstsq(np.concatenate(across), np.concatenate(sides), rcond=SAME)
-        off = [np.linalg.norm(own @ (centre - frame[:3, 3])) for own, frame in zip(across, frames, strict=True)]
+        off = [
+            np.linalg.norm(project @ (centre - frame[:3, 3]))
+            for project, frame in zip(across, frames, strict=True)
+        ]
         return rank == 3 and max(off) < SAME * self.linkage.size
 
     def rows(self, edge: int, group: Group) -> int:
@@ -129,18 +139,16 @@ class Parts:
             return 1
         row = self.linkage.joints[edge].row
         if group == "planar":
-            own = sum(not (step.freedom == "slide" and step.axis == Z) or len(row.steps) == 1 for step in row.steps)
+            free = sum(
+                not (step.freedom == "slide" and step.axis == Z) or len(row.steps) == 1 for step in row.steps
+            )
         else:
-            own = len(row.freedoms)
-        return FREEDOMS[group] - own
+            free = len(row.freedoms)
+        return FREEDOMS[group] - free
 
 
 def order_of(linkage: Loop, column: int) -> Order:
-    """The order in which a net is solved with one column held; a single loop is one block."""
-    if linkage.net is None:
-        graph = linkage.graph
-        joints = tuple(joint for joint in graph.joints if joint != linkage.column_of(column).joint)
-        return Order((Block(tuple(graph.moving), joints, (), "spatial", "loop"),))
+    """The order in which a linkage is solved with one column held; of a single loop that is one block."""
     parts = Parts(linkage)
     driven = linkage.column_of(column).joint
     count = linkage.graph.ground
@@ -156,17 +164,19 @@ def order_of(linkage: Loop, column: int) -> Order:
     known[ground] = True
     blocks: list[Block] = []
     for part in _core.biconnected_parts(count, between, ground):
-        own = [edges[k] for k in part]
-        group = groups[own[0]]
+        numbers = [edges[k] for k in part]
+        group = groups[numbers[0]]
         pairs = [between[k] for k in part]
-        rows = [parts.rows(edge, group) + (edge == driven) for edge in own]
-        word, found = _core.net_blocks(pairs, rows, known, FREEDOMS[group])
+        rows = [parts.rows(edge, group) + (edge == driven) for edge in numbers]
+        word, result = _core.net_blocks(pairs, rows, known, FREEDOMS[group])
         if word == "free":
-            return Order(free=tuple(linkage.link_name(link + 1) for link in found[0][0]))
+            return Order(free=tuple(linkage.link_name(link + 1) for link in result[0][0]))
         if word == "held":
-            return Order(held=tuple(parts.names[own[k]] for k in found[0][1]))
-        for links, places in found:
-            blocks.append(_block(linkage, links, [own[k] for k in places], [pairs[k] for k in places], group))
+            return Order(held=tuple(parts.names[numbers[k]] for k in result[0][1]))
+        for links, places in result:
+            blocks.append(
+                _block(linkage, links, [numbers[k] for k in places], [pairs[k] for k in places], group)
+            )
             for link in links:
                 known[link] = True
     return Order(tuple(blocks))
@@ -177,11 +187,12 @@ def _block(
 ) -> Block:
     count = len(linkage.joints)
     joints, rods = [edge for edge in edges if edge < count], [edge - count for edge in edges if edge >= count]
-    one_loop = len(edges) == len(links) + 1 and all(sum(link in pair for pair in pairs) == 2 for link in links)
+    one_loop = len(edges) == len(links) + 1 and all(
+        sum(link in pair for pair in pairs) == 2 for link in links
+    )
     simple = all(len(linkage.joints[joint].columns) == 1 for joint in joints)
     if group == "planar" and one_loop and len(links) == 2 and not rods and simple:
         solver: Literal["dyad", "loop", "links"] = "dyad"
     else:
         solver = "loop" if one_loop else "links"
     return Block(tuple(link + 1 for link in links), tuple(joints), tuple(rods), group, solver)
-

@@ -1,13 +1,12 @@
-"""What a net of several loops answers so far: its freedoms, its redundant constraints, its order of solving."""
+"""What a net of several loops answers so far: its freedoms and its redundant constraints."""
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING, NoReturn
 
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.loop.mobility import Mobility
-from sevenbar.kinematics.nets.order import Order, Parts, order_of
+from sevenbar.kinematics.nets.order import Parts
 from sevenbar.kinematics.nets.tree import Tree
 
 if TYPE_CHECKING:
@@ -26,14 +25,6 @@ class NetSolver:
     def __init__(self, linkage: Solvable) -> None:
         self._linkage = linkage
 
-    def order(self, column: int) -> Order:
-        """The order of solving with a column held."""
-        return order_of(self._linkage, column)
-
-    @cached_property
-    def _parts(self) -> Parts:
-        return Parts(self._linkage)
-
     def mobility(self, column: int) -> Mobility:
         """How freely the net moves about the drawn pose; the tree begins with a column's joint.
 
@@ -45,8 +36,9 @@ class NetSolver:
         _, _, rank, _, repeated, free = tree.core().freedoms()
         freedoms = sum(len(joint.row.freedoms) for joint in linkage.joints)
         lines, graph = [], linkage.graph
-        for edges, group in self._parts.whole:
-            links = {link for edge in edges for link in self._parts.between[edge]}
+        parts = Parts(linkage)
+        for edges, group in parts.whole:
+            links = {link for edge in edges for link in parts.between[edge]}
             cycles = sum(edge < len(linkage.joints) for edge in edges) - len(links) + 1
             lines += [
                 f"{line}, in cycle {cycle} of {_listed(linkage, links)}"
@@ -57,10 +49,12 @@ class NetSolver:
         lines += ["a constraint that repeats the others of its cycles"] * besides
         return Mobility(
             freedoms=freedoms,
-            gruebler=6 * (graph.ground - 1) - sum(6 - len(j.row.freedoms) for j in linkage.joints) - len(linkage.rods),
+            gruebler=6 * (graph.ground - 1)
+            - sum(6 - len(j.row.freedoms) for j in linkage.joints)
+            - len(linkage.rods),
             rank=rank,
             finite=len(free),
-            idle=tuple(f"turn of {rod.name} about the line of its two balls" for rod in linkage.rods),
+            idle=self.idle(),
             redundant=tuple(lines) if besides >= 0 else ("a constraint that repeats others",) * len(repeated),
         )
 

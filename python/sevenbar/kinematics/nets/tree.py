@@ -21,7 +21,7 @@ from sevenbar.kinematics.nets.chords import ChordRow, joint_rows, rod_row
 
 @dataclass
 class Tree:
-    """The steps of a net's tree, each a column, and the step that carries each link, `None` for the ground."""
+    """The steps of a net's tree, each a column; `carrier` is the step of each link, `None` of the ground."""
 
     linkage: Loop
     driven: int
@@ -36,7 +36,9 @@ class Tree:
     def __post_init__(self) -> None:
         graph = self.linkage.graph
         self.carrier[graph.ground] = None
-        remaining = sorted(graph.joints, key=lambda joint: (joint != self.driven, self._freedoms(joint), joint))
+        remaining = sorted(
+            graph.joints, key=lambda joint: (joint != self.driven, self._freedoms(joint), joint)
+        )
         while remaining:
             reach = (j for j in remaining if len({*graph.between[j]} & self.carrier.keys()) == 1)
             joint = next(reach, None)
@@ -51,7 +53,9 @@ class Tree:
         for joint in self.chords:
             if self.linkage.joints[joint].row.is_screw:
                 name = self.linkage.joints[joint].name
-                raise NotCoveredError(f"joint '{name}': a screw that closes a loop of screws is not covered in nets")
+                raise NotCoveredError(
+                    f"joint '{name}': a screw that closes a loop of screws is not covered in nets"
+                )
 
     def _freedoms(self, joint: int) -> int:
         row = self.linkage.joints[joint].row
@@ -62,23 +66,28 @@ class Tree:
         """Puts a joint, and the link that it leads to, into the tree."""
         before, after = self.linkage.graph.between[joint]
         outwards = before in self.carrier
-        own = self.linkage.joints[joint]
+        row, advance = self.linkage.joints[joint].row, self.linkage.joints[joint].advance
         first, second = (self.linkage.drawn_joint_on(joint, link) for link in (before, after))
         at = self.carrier[before if outwards else after]
-        steps = own.row.steps if outwards else own.row.steps[::-1]
+        steps = row.steps if outwards else row.steps[::-1]
         for step in steps:
             if step.driven:
                 continue
             frame = second if step.tilted else first
             # the link before against the link after moves the other way round
             axis = frame[:3, step.axis] if outwards else -frame[:3, step.axis]
-            letter = "H" if own.row.is_screw else step.letter
-            at = self._step(letter, own.advance if own.row.is_screw else 0.0, at, frame[:3, 3], axis)
+            letter = "H" if row.is_screw else step.letter
+            at = self._step(letter, advance if row.is_screw else 0.0, at, frame[:3, 3], axis)
         self.carrier[after if outwards else before] = at
 
     def _free(self, link: int) -> None:
         """Gives a link that only rods hold six steps of its own."""
-        ends = [end for rod in self.linkage.rods for own, end in zip(rod.between, rod.at, strict=True) if own == link]
+        ends = [
+            end
+            for rod in self.linkage.rods
+            for carrier, end in zip(rod.between, rod.at, strict=True)
+            if carrier == link
+        ]
         place, at = np.mean(ends, axis=0), None
         for letter in "PR":
             for axis in np.eye(3):
