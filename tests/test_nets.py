@@ -14,6 +14,7 @@ import sevenbar as sb
 from sevenbar.commands.cli import app
 from sevenbar.description.forms import from_description
 from sevenbar.errors import DescriptionError, NotCoveredError
+from sevenbar.kinematics.circuits.poses import joint_frames, poses
 
 
 def pin(at, *links, name=None):
@@ -411,9 +412,120 @@ def test_two_freedoms_and_none_are_told():
     assert held.mobility().finite == 0
 
 
+def circles(a, b, one, two):
+    """Where a circle of radius one about a meets that of radius two about b."""
+    a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
+    line = b - a
+    d = math.hypot(*line)
+    along = (one**2 - two**2 + d**2) / (2 * d)
+    square = one**2 - along**2
+    if square < 0:
+        return []
+    x, y = line / d
+    return [a + along * np.array([x, y]) + side * math.sqrt(square) * np.array([-y, x]) for side in (1, -1)]
+
+
+def carried(places, a, b, onto_a, onto_b):
+    """A place of a link, drawn at `places`, whose drawn places a, b are at onto_a, onto_b."""
+    turn = complex(*(onto_b - onto_a)) / complex(*np.subtract(b, a))
+    at = complex(*onto_a) + turn * complex(*np.subtract(places, a))
+    return np.array([at.real, at.imag])
+
+
+def watt_by_hand(angle):
+    """The lever's end in every mode, by four circles."""
+    at = [np.array(one["at"], dtype=float) for one in WATT]
+    turn = complex(math.cos(angle), math.sin(angle)) * complex(*at[1])
+    crank = np.array([turn.real, turn.imag])
+    result = []
+    for knee in circles(crank, at[3], math.dist(at[1], at[2]), math.dist(at[3], at[2])):
+        side = carried(at[4], at[3], at[2], at[3], knee)
+        result += circles(side, at[6], math.dist(at[4], at[5]), math.dist(at[6], at[5]))
+    return np.array(result)
+
+
+@pytest.mark.parametrize("angle", np.linspace(0, 6, 13))
+def test_modes_of_watt_are_those_of_circles_by_hand(angle):
+    linkage = net(WATT)
+    modes = linkage.assembly_modes(angle)
+    assert (modes.completeness, modes.residual.max(initial=0) < 1e-12) == ("closed-form", True)
+    frames = poses(linkage, modes.q)
+    lever = linkage.link_names.index("lever")
+    ends = (frames[:, lever] @ [220, 70, 0, 1])[:, :2]
+    want = watt_by_hand(angle)
+    assert len(ends) == len(want)
+    for end in want:
+        assert np.abs(ends - end).max(axis=1).min(initial=1) < 1e-10
+
+
+SLIDERS = [
+    # a crank, a coupler, a block on a rail; a rocker in a block of the coupler; a lever with a slide at its end
+    {"name": "crank", "kind": "R", "at": [0, 0, 0], "axis": [0, 0, 1], "between": ["frame", "crank"]},
+    {"name": "knee", "kind": "R", "at": [20, 30, 0], "axis": [0, 0, 1], "between": ["crank", "coupler"]},
+    {"name": "pin", "kind": "R", "at": [120, 10, 0], "axis": [0, 0, 1], "between": ["coupler", "block"]},
+    {"name": "rail", "kind": "P", "at": [120, 10, 0], "axis": [1, 0.1, 0], "between": ["frame", "block"]},
+    {"name": "swing", "kind": "R", "at": [60, -60, 0], "axis": [0, 0, 1], "between": ["frame", "rocker"]},
+    {"name": "slot", "kind": "P", "at": [70, 20, 0], "axis": [0.2, 1, 0], "between": ["rocker", "sleeve"]},
+    {"name": "eye", "kind": "R", "at": [70, 20, 0], "axis": [0, 0, 1], "between": ["sleeve", "coupler"]},
+]
+
+
+def test_every_mode_closes_every_joint_and_the_drawing_is_one():
+    for linkage in (net(WATT), net(KLANN), sb.from_axes(SLIDERS, ground="frame", drive="crank")):
+        drawn = linkage.assembly_modes(0.0)
+        assert np.abs(drawn.q).max(axis=1).min() < 1e-9
+        for angle in (-0.2, 0.0, 0.15):
+            q = linkage.assembly_modes(angle).q
+            assert len(q)
+            before, after = joint_frames(linkage, poses(linkage, q))
+            for joint, own in enumerate(linkage.joints):
+                moved = before[:, joint] @ own.motion(q[:, linkage.places[joint]])
+                assert np.abs(moved - after[:, joint]).max() < 1e-9 * linkage.size
+
+
+def test_modes_are_the_same_however_a_net_is_written():
+    plain = net(WATT).assembly_modes(0.4)
+    turned = complex(math.cos(1.1), math.sin(1.1))
+    other = []
+    for one in WATT[::-1]:
+        at = 2.5 * turned * complex(*one["at"]) + complex(300, -70)
+        other.append({**one, "at": (at.real, at.imag), "links": one["links"][::-1]})
+    # each joint counts the other way round
+    again = net(other, drive="crank").assembly_modes(-0.4)
+    names = ["crank", "rocker", "lever"]
+    for modes, sign in ((plain, 1), (again, -1)):
+        columns = [modes.columns.index(name) for name in names]
+        values = sign * modes.q[:, columns]
+        rows = np.exp(1j * values)
+        if sign == 1:
+            want = rows
+    assert len(want) == len(rows)
+    for row in want:
+        assert np.abs(rows - row).max(axis=1).min() < 1e-10
+    mirrored = [{**one, "at": (-one["at"][0], one["at"][1])} for one in WATT]
+    assert len(net(mirrored).assembly_modes(-0.4)) == len(plain)
+
+
+def test_a_slide_may_drive_and_values_count_from_the_drawing():
+    joints = [dict(one) for one in SLIDERS]
+    joints[3]["value"] = 12.0
+    linkage = sb.from_axes(joints, ground="frame", drive="rail")
+    assert blocks(linkage) == [["crank", "coupler"], ["rocker", "sleeve"]]
+    modes = linkage.assembly_modes(12.0)
+    drawn = np.zeros(len(linkage.columns))
+    drawn[linkage.columns.index("rail")] = 12.0
+    assert np.abs(modes.q - drawn).max(axis=1).min() < 1e-9
+    assert np.allclose(modes.q[:, linkage.columns.index("rail")], 12.0)
+
+
+def test_modes_that_no_dyads_make_up_are_refused_with_the_links():
+    with pytest.raises(NotCoveredError, match="are no dyad: they are solved together"):
+        net(STEPHENSON).assembly_modes(0.1)
+
+
 def test_what_a_net_does_not_answer_yet_says_what_it_does():
     linkage = net(WATT)
-    for asked in (linkage.motion, lambda: linkage.assembly_modes(0.3), lambda: linkage.circuit(np.zeros(7))):
+    for asked in (linkage.motion, lambda: linkage.circuit(np.zeros(7))):
         with pytest.raises(NotCoveredError, match="a net of several loops"):
             asked()
     assert linkage.plane is None
@@ -437,8 +549,9 @@ def test_analyze_prints_freedoms_and_blocks(tmp_path):
     answer = json.loads(runner.invoke(app, ["analyze", str(file), "--json"]).stdout)
     assert [block["links"] for block in answer["order"]] == [["coupler", "rocker"], ["link", "lever"]]
     assert answer["mobility"]["freedoms"] == 1
-    refused = runner.invoke(app, ["modes", str(file)])
-    assert refused.exit_code != 0
+    modes = json.loads(runner.invoke(app, ["modes", str(file), "--at", "10deg", "--json"]).stdout)
+    assert (modes["completeness"], len(modes["modes"])) == ("closed-form", 4)
+    assert runner.invoke(app, ["plot", str(file), "--out", str(tmp_path / "figures")]).exit_code != 0
 
 
 def test_rows_of_a_rod_keep_its_length():

@@ -175,6 +175,19 @@ class Net:
     def freedoms(
         self,
     ) -> tuple[list[float], int, int, list[float], list[list[float]], list[list[float]]]: ...
+    def modes(
+        self,
+        dyads: Sequence[
+            tuple[
+                tuple[float, float, float],
+                Sequence[tuple[str, tuple[float, float, float]]],
+                tuple[int, int],
+                tuple[int | None, int | None],
+            ]
+        ],
+        driven: int,
+        value: float,
+    ) -> list[tuple[list[float], list[tuple[list[list[float]], list[float]]], float]]: ...
 
 def biconnected_parts(links: int, between: Sequence[tuple[int, int]], root: int) -> list[list[int]]: ...
 def net_blocks(

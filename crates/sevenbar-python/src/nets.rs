@@ -3,8 +3,8 @@
 use crate::{CoreError, in_rows};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use sevenbar_core::nets::{self, Edge, Move, Row, Step, Unbalanced};
-use sevenbar_core::rigid::Vec3;
+use sevenbar_core::nets::{self, Dyad, Edge, Move, Pair, Row, Stage, Step, Unbalanced};
+use sevenbar_core::rigid::{Pose, Vec3};
 
 /// A tree of one-freedom steps closed by rows.
 #[pyclass(frozen, module = "sevenbar._core")]
@@ -21,8 +21,29 @@ fn row((kind, on, [first, second], number): RawRow) -> PyResult<Row> {
         "length" => Row::Length { on, at: [first, second], length: number },
         "along" => Row::Along { on, at: first, v: second },
         "angle" => Row::Angle { on, u: first, v: second, cosine: number },
-        other => return Err(CoreError::new_err(format!("'{other}' is no row; give length, along, angle"))),
+        other => {
+            return Err(CoreError::new_err(format!(
+                "'{other}' is no row; give length, along, angle"
+            )));
+        }
     })
+}
+
+/// A dyad: its normal, each joint's letter R P with its place or its direction, the steps of its links and those at which it hangs.
+type RawDyad = (Vec3, [(char, Vec3); 3], [usize; 2], [Option<usize>; 2]);
+
+/// Values of the columns, the pose (rotation, translation) to which each step leads, the greatest error of a row.
+type RawMode = (Vec<f64>, Vec<([[f64; 3]; 3], Vec3)>, f64);
+
+fn stage((normal, joints, links, known): RawDyad) -> Stage {
+    let pairs = joints.map(|(letter, v)| {
+        if letter == 'R' {
+            Pair::Hinge(v)
+        } else {
+            Pair::Slide(v)
+        }
+    });
+    Stage { dyad: Dyad { normal, pairs }, links, known }
 }
 
 #[pymethods]
@@ -40,12 +61,17 @@ impl Net {
         size: f64,
     ) -> PyResult<Self> {
         let vectors = |array: &PyReadonlyArray2<'_, f64>| -> Vec<Vec3> {
-            in_rows(array).chunks(3).map(|v| std::array::from_fn(|k| v.get(k).copied().unwrap_or(0.0))).collect()
+            in_rows(array)
+                .chunks(3)
+                .map(|v| std::array::from_fn(|k| v.get(k).copied().unwrap_or(0.0)))
+                .collect()
         };
         let (advances, origins, axes) = (in_rows(&advances), vectors(&origins), vectors(&axes));
         let count = letters.len();
         if [advances.len(), parents.len(), origins.len(), axes.len()] != [count; 4] {
-            return Err(CoreError::new_err("give an advance, a parent, an origin and an axis for each letter"));
+            return Err(CoreError::new_err(
+                "give an advance, a parent, an origin and an axis for each letter",
+            ));
         }
         let mut steps = Vec::with_capacity(count);
         for (k, letter) in letters.chars().enumerate() {
@@ -53,7 +79,11 @@ impl Net {
                 'R' => Move::Turn,
                 'P' => Move::Slide,
                 'H' => Move::Screw(advances[k]),
-                other => return Err(CoreError::new_err(format!("'{other}' is no step; give R, P or H"))),
+                other => {
+                    return Err(CoreError::new_err(format!(
+                        "'{other}' is no step; give R, P or H"
+                    )));
+                }
             };
             if parents[k].is_some_and(|p| p >= k) {
                 return Err(CoreError::new_err("the parent of a step is one before it"));
@@ -70,12 +100,52 @@ impl Net {
     /// The freedoms about the pose that is drawn.
     fn freedoms(&self, py: Python<'_>) -> RawFreedoms {
         let found = py.detach(|| nets::freedoms(&self.0));
-        (found.drawn, found.drawn_rank, found.rank, found.pose, found.repeated, found.free)
+        (
+            found.drawn,
+            found.drawn_rank,
+            found.rank,
+            found.pose,
+            found.repeated,
+            found.free,
+        )
+    }
+
+    /// All modes of dyads, each after those at which it hangs, with a step held at a value [rad, or relative to the size].
+    fn modes(
+        &self,
+        py: Python<'_>,
+        dyads: Vec<RawDyad>,
+        driven: usize,
+        value: f64,
+    ) -> PyResult<Vec<RawMode>> {
+        let stages: Vec<Stage> = dyads.into_iter().map(stage).collect();
+        let steps = stages
+            .iter()
+            .flat_map(|s| s.links.into_iter().chain(s.known.into_iter().flatten()));
+        if steps.chain([driven]).any(|step| step >= self.0.steps.len()) {
+            return Err(CoreError::new_err("a dyad is on a step that is not there"));
+        }
+        let found = py.detach(|| nets::modes(&self.0, &stages, driven, value));
+        let pose = |p: Pose| (p.rotation, p.translation);
+        Ok(found
+            .into_iter()
+            .map(|mode| {
+                (
+                    mode.values,
+                    mode.poses.into_iter().map(pose).collect(),
+                    mode.residual,
+                )
+            })
+            .collect())
     }
 }
 
 fn edges(between: Vec<[usize; 2]>, rows: Vec<usize>) -> Vec<Edge> {
-    between.into_iter().zip(rows).map(|(between, rows)| Edge { between, rows }).collect()
+    between
+        .into_iter()
+        .zip(rows)
+        .map(|(between, rows)| Edge { between, rows })
+        .collect()
 }
 
 /// The edges of each biconnected part of a graph, the parts from the root outwards.

@@ -223,6 +223,8 @@ class Linkage(Solvable):
         column = self.input_column(input)
         value = joint_number("theta", theta, self, column)
         agreeing = self.agreeing(agree)
+        if self.net:
+            return self._net.modes(column, value)
         if self._has_closed_form(method):
             return self._closed_form.modes(column, value)
         self._refuse_unheld()

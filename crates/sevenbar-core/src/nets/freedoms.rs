@@ -4,23 +4,15 @@
 //!
 //! Source: docs/theory_nets.md, (5).
 
-use super::rows::closure;
-use super::tree::Net;
-use crate::loops::{least_squares, singular_values};
+use super::net::{NO_RANK, Net};
+use crate::loops::singular_values;
 use crate::random::Random;
-
-/// Singular values below this part of the greatest are zero: in nets of many kinds the least of the others was 8e-3.
-const NO_RANK: f64 = 1e-8;
 
 /// Moves from the drawn pose, each as long [rad, or relative to the size] as all columns together, and how often a move is halved that does not
 /// close again.
 const MOVES: usize = 6;
 const MOVE: f64 = 0.15;
 const HALVED: usize = 4;
-
-/// Steps of Newton's method, and the closure error [rad, or relative to the size] at which they have arrived.
-const MOST_STEPS: usize = 20;
-const CLOSED: f64 = 1e-13;
 
 /// Numbers of the random moves, the same in each run.
 const SEED: u64 = 0x5EED;
@@ -72,7 +64,10 @@ fn at_pose(net: &Net, pose: &[f64], drawn: Vec<f64>) -> Freedoms {
     let (errors, columns) = net.closure(pose);
     let (values, vectors) = singular_values(&columns);
     let greatest = values.first().copied().unwrap_or(0.0);
-    let rank = values.iter().filter(|&&v| v > NO_RANK * greatest && v > 0.0).count();
+    let rank = values
+        .iter()
+        .filter(|&&v| v > NO_RANK * greatest && v > 0.0)
+        .count();
     // of as many columns as there are rows, so that a row that nothing moves has a direction of its own
     let rows: Vec<Vec<f64>> = (0..errors.len())
         .map(|r| {
@@ -108,37 +103,10 @@ fn moved(net: &Net, from: &[f64], free: &[Vec<f64>], random: &mut Random) -> Opt
     None
 }
 
-impl Net {
-    /// `e` and, column by column, `A` at values of the columns, slides relative to the size.
-    pub fn closure(&self, pose: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
-        closure(self, &self.place(pose))
-    }
-
-    /// The closed pose that Newton's shortest steps lead to; `None` where they lead to none.
-    pub fn closed(&self, rough: &[f64]) -> Option<Vec<f64>> {
-        let mut pose = rough.to_vec();
-        for _ in 0..MOST_STEPS {
-            let (errors, columns) = self.closure(&pose);
-            let greatest = errors.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
-            if greatest < CLOSED {
-                return Some(pose);
-            }
-            if !greatest.is_finite() {
-                return None;
-            }
-            let by = least_squares(&columns, &errors, NO_RANK);
-            for (x, d) in pose.iter_mut().zip(by) {
-                *x -= d;
-            }
-        }
-        None
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::rows::Row;
-    use super::super::tree::{Move, Step};
+    use super::super::steps::{Move, Step};
     use super::*;
     use crate::rigid::{Vec3, norm, sub};
 
@@ -191,9 +159,19 @@ mod tests {
         };
         let steps = vec![
             pin(None, 0.1, -0.2),
-            Step { parent: Some(0), moves: Move::Screw(0.4), origin: [1.0, 0.3, 0.2], axis: tilted },
+            Step {
+                parent: Some(0),
+                moves: Move::Screw(0.4),
+                origin: [1.0, 0.3, 0.2],
+                axis: tilted,
+            },
             Step { parent: None, moves: Move::Slide, origin: [0.0; 3], axis: tilted },
-            Step { parent: Some(2), moves: Move::Turn, origin: [0.5, 2.0, 1.0], axis: [1.0, 0.0, 0.0] },
+            Step {
+                parent: Some(2),
+                moves: Move::Turn,
+                origin: [0.5, 2.0, 1.0],
+                axis: [1.0, 0.0, 0.0],
+            },
         ];
         let on = [Some(1), Some(3)];
         let rows = vec![

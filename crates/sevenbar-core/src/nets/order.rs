@@ -17,7 +17,11 @@ pub struct Edge {
 impl Edge {
     /// The link at its other end.
     fn other(&self, link: usize) -> usize {
-        if self.between[0] == link { self.between[1] } else { self.between[0] }
+        if self.between[0] == link {
+            self.between[1]
+        } else {
+            self.between[0]
+        }
     }
 }
 
@@ -107,7 +111,11 @@ impl Search<'_> {
 
 /// The blocks of edges among links of so many freedoms each, those first that others wait for; known links have none.
 pub fn blocks(edges: &[Edge], known: &[bool], freedoms: usize) -> Result<Vec<Block>, Unbalanced> {
-    let mut links: Vec<usize> = edges.iter().flat_map(|e| e.between).filter(|&l| !known[l]).collect();
+    let mut links: Vec<usize> = edges
+        .iter()
+        .flat_map(|e| e.between)
+        .filter(|&l| !known[l])
+        .collect();
     links.sort_unstable();
     links.dedup();
     let matching = Matching::of(edges, known, freedoms);
@@ -115,7 +123,11 @@ pub fn blocks(edges: &[Edge], known: &[bool], freedoms: usize) -> Result<Vec<Blo
     if !short.is_empty() {
         return Err(Unbalanced::Held(short));
     }
-    let idle: Vec<usize> = links.iter().copied().filter(|&l| matching.of_link[l].len() < freedoms).collect();
+    let idle: Vec<usize> = links
+        .iter()
+        .copied()
+        .filter(|&l| matching.of_link[l].len() < freedoms)
+        .collect();
     if !idle.is_empty() {
         return Err(Unbalanced::Free(idle));
     }
@@ -129,7 +141,10 @@ pub fn blocks(edges: &[Edge], known: &[bool], freedoms: usize) -> Result<Vec<Blo
     Ok(circles
         .into_iter()
         .map(|mut links| {
-            let mut own: Vec<usize> = links.iter().flat_map(|&l| matching.of_link[l].iter().copied()).collect();
+            let mut own: Vec<usize> = links
+                .iter()
+                .flat_map(|&l| matching.of_link[l].iter().copied())
+                .collect();
             own.sort_unstable();
             own.dedup();
             links.sort_unstable();

@@ -6,7 +6,7 @@
 //!
 //! Source: docs/theory_nets.md, (4).
 
-use super::tree::{Net, Placed, Screw};
+use super::steps::Screw;
 use crate::rigid::{Pose, Vec3, add, cross, dot, scale, sub};
 
 /// A step whose link a row is on; `None` is the ground.
@@ -47,7 +47,7 @@ pub enum Row {
 }
 
 /// A force and its moment about the origin.
-struct Wrench {
+pub(super) struct Wrench {
     moment: Vec3,
     force: Vec3,
 }
@@ -61,7 +61,7 @@ impl Wrench {
         Self { moment: scale(self.moment, -1.0), force: scale(self.force, -1.0) }
     }
 
-    fn power(&self, screw: &Screw) -> f64 {
+    pub fn power(&self, screw: &Screw) -> f64 {
         dot(self.moment, screw.turn) + dot(self.force, screw.shift)
     }
 }
@@ -75,7 +75,7 @@ impl Row {
     }
 
     /// Its value [length, or none], and its gradient as a wrench on each of the two links.
-    fn evaluated(&self, a: &Pose, b: &Pose) -> (f64, [Wrench; 2]) {
+    pub(super) fn evaluated(&self, a: &Pose, b: &Pose) -> (f64, [Wrench; 2]) {
         match *self {
             Self::Length { at, length, .. } => {
                 let (p, q) = (a.carry(at[0]), b.carry(at[1]));
@@ -102,29 +102,7 @@ impl Row {
     }
 
     /// Whether it is a length, of which its value is a part of the size.
-    fn is_length(&self) -> bool {
+    pub(super) fn is_length(&self) -> bool {
         !matches!(self, Self::Angle { .. })
     }
-}
-
-/// `e` of every row, lengths relative to the size, and `A` column by column; slides are relative to the size, too.
-pub(super) fn closure(net: &Net, placed: &Placed) -> (Vec<f64>, Vec<Vec<f64>>) {
-    let mut errors = Vec::with_capacity(net.rows.len());
-    let mut columns = vec![Vec::with_capacity(net.rows.len()); net.steps.len()];
-    for row in &net.rows {
-        let on = row.on();
-        let [a, b] = on.map(|step| step.map_or(Pose::STILL, |k| placed.poses[k]));
-        let (value, wrenches) = row.evaluated(&a, &b);
-        let unit = if row.is_length() { 1.0 / net.size } else { 1.0 };
-        errors.push(value * unit);
-        for (c, column) in columns.iter_mut().enumerate() {
-            let seen = on.iter().zip(&wrenches).map(|(step, wrench)| {
-                let carried = step.is_some_and(|k| net.carries(c, k));
-                if carried { wrench.power(&placed.screws[c]) } else { 0.0 }
-            });
-            let scale = if net.slides(c) { net.size } else { 1.0 };
-            column.push(seen.sum::<f64>() * unit * scale);
-        }
-    }
-    (errors, columns)
 }

@@ -103,6 +103,8 @@ def poses(linkage: Loop, q: Floats) -> Floats:
 
     That of the ground, the last link, is the report frame itself.
     """
+    if linkage.net is not None:
+        return _poses_of_net(linkage, q)
     now = np.broadcast_to(linkage.base, (len(q), 4, 4))
     result = np.empty((len(q), len(linkage.joints), 4, 4))
     for i, link in enumerate(linkage.links):
@@ -110,6 +112,23 @@ def poses(linkage: Loop, q: Floats) -> Floats:
         result[:, i] = frame
         now = product(frame, link)
     result[:, -1] = np.eye(4)
+    return result
+
+
+def _poses_of_net(linkage: Loop, q: Floats) -> Floats:
+    """The same of a net, along a tree of its joints from the ground outwards."""
+    graph = linkage.graph
+    result = np.broadcast_to(np.eye(4), (len(q), graph.ground, 4, 4)).copy()
+    reached = {graph.ground}
+    for joint in graph.tree:
+        before, after = graph.between[joint]
+        moved = linkage.joints[joint].motion(q[:, linkage.places[joint]])
+        first, second = linkage.frames[joint]
+        if before in reached:
+            result[:, after - 1] = result[:, before - 1] @ first @ moved @ inverse(second)
+        else:
+            result[:, before - 1] = result[:, after - 1] @ second @ inverse(moved) @ inverse(first)
+        reached |= {before, after}
     return result
 
 
@@ -130,11 +149,15 @@ def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
     `frames` (n, links, 4, 4) are those of the links, as `poses` gives them. A joint that slides is where it
     is drawn on both, whatever it reads there.
     """
-    before, after = np.empty((2, *frames.shape))
-    before[:, 0], after[:, -1] = linkage.base, linkage.ground
-    after[:, :-1] = frames[:, :-1]
-    for i, link in enumerate(linkage.links):
-        before[:, i + 1] = product(frames[:, i], link)
+    if linkage.net is None:
+        before, after = np.empty((2, *frames.shape))
+        before[:, 0], after[:, -1] = linkage.base, linkage.ground
+        after[:, :-1] = frames[:, :-1]
+        for i, link in enumerate(linkage.links):
+            before[:, i + 1] = product(frames[:, i], link)
+    else:
+        links = np.array(linkage.graph.between) - 1
+        before, after = (frames[:, links[:, side]] @ linkage.frames[:, side] for side in (0, 1))
     for i, joint in enumerate(linkage.joints):
         if joint.value:
             side = after if joint.backwards else before

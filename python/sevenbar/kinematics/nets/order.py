@@ -71,7 +71,8 @@ class Parts:
     @property
     def names(self) -> list[str]:
         """The names of the edges."""
-        return [part.name for part in (*self.linkage.joints, *self.linkage.rods)]
+        joints, rods = self.linkage.joints, self.linkage.rods
+        return [joint.name for joint in joints] + [rod.name for rod in rods]
 
     @cached_property
     def whole(self) -> list[tuple[list[int], Group]]:
@@ -131,7 +132,7 @@ class Parts:
             np.linalg.norm(project @ (centre - frame[:3, 3]))
             for project, frame in zip(across, frames, strict=True)
         ]
-        return rank == 3 and max(off) < SAME * self.linkage.size
+        return bool(rank == 3 and max(off) < SAME * self.linkage.size)
 
     def rows(self, edge: int, group: Group) -> int:
         """How many freedoms of one link against the other an edge takes."""

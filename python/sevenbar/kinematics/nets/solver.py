@@ -1,4 +1,4 @@
-"""What a net of several loops answers so far: its freedoms and its redundant constraints."""
+"""What a net of several loops answers so far: its freedoms, its redundant constraints, modes of dyads."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING, NoReturn
 
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.loop.mobility import Mobility
+from sevenbar.kinematics.nets.modes import net_modes
 from sevenbar.kinematics.nets.order import Parts
 from sevenbar.kinematics.nets.tree import Tree
 
 if TYPE_CHECKING:
+    from sevenbar.kinematics.circuits.modes import Modes
     from sevenbar.kinematics.circuits.motion import Solvable
 
 #: Three constraints of a planar or spherical cycle repeat others.
@@ -58,6 +60,10 @@ class NetSolver:
             redundant=tuple(lines) if besides >= 0 else ("a constraint that repeats others",) * len(repeated),
         )
 
+    def modes(self, column: int, value: float) -> Modes:
+        """Every assembly mode at one value of a column; of nets of dyads."""
+        return net_modes(self._linkage, column, value)
+
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""
         return tuple(f"turn of {rod.name} about the line of its two balls" for rod in self._linkage.rods)
@@ -65,8 +71,8 @@ class NetSolver:
     def refuse(self) -> NoReturn:
         """What a net does not answer yet."""
         raise NotCoveredError(
-            "a net of several loops: its freedoms, redundant constraints and order of solving are found; "
-            "modes, motion and all that follows from them are of single loops"
+            "a net of several loops: its freedoms, redundant constraints, order of solving and the modes of "
+            "dyads are found; motion and all that follows from it are of single loops"
         )
 
 

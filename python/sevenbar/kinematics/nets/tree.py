@@ -17,14 +17,19 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.nets.chords import ChordRow, joint_rows, rod_row
+from sevenbar.kinematics.nets.order import Order
 
 
 @dataclass
 class Tree:
-    """The steps of a net's tree, each a column; `carrier` is the step of each link, `None` of the ground."""
+    """The steps of a net's tree, each a column; `carrier` is the step of each link, `None` of the ground.
+
+    `driven` is a joint; joints of the blocks of `order` follow it in this order.
+    """
 
     linkage: Loop
     driven: int
+    order: Order = field(default_factory=Order)
     letters: str = ""
     advances: list[float] = field(default_factory=list)
     parents: list[int | None] = field(default_factory=list)
@@ -36,9 +41,13 @@ class Tree:
     def __post_init__(self) -> None:
         graph = self.linkage.graph
         self.carrier[graph.ground] = None
-        remaining = sorted(
-            graph.joints, key=lambda joint: (joint != self.driven, self._freedoms(joint), joint)
-        )
+        block_of = {joint: i for i, block in enumerate(self.order.blocks) for joint in block.joints}
+
+        def rank(joint: int) -> tuple[int, int, int]:
+            first = -1 if joint == self.driven else block_of.get(joint, 0)
+            return first, self._freedoms(joint), joint
+
+        remaining = sorted(graph.joints, key=rank)
         while remaining:
             reach = (j for j in remaining if len({*graph.between[j]} & self.carrier.keys()) == 1)
             joint = next(reach, None)

@@ -1,35 +1,18 @@
-//! Where the links of a net stand: a tree of one-freedom steps from the ground outwards, each about its axis as drawn.
+//! A net as a value: a tree of steps and the rows that close it; `e` and `A = de/dq` at a pose, and the closed pose next to one.
 //!
-//! At the drawn pose all values are zero, and every link's frame is that of the ground: `(R_k, p_k) = (R_parent, p_parent) Z_k(q_k)`.
-//!
-//! Source: docs/theory_nets.md, (1) to (3).
+//! Source: docs/theory_nets.md, (1) to (4).
 
 use super::rows::Row;
-use crate::rigid::{Pose, Vec3, cross, dot, scale, sub};
+use super::steps::{Move, Screw, Step};
+use crate::loops::least_squares;
+use crate::rigid::{Pose, cross, scale};
 
-/// How a step moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Move {
-    /// About the axis.
-    Turn,
-    /// Along it.
-    Slide,
-    /// About it, and along it by this advance [length] for a radian.
-    Screw(f64),
-}
+/// Singular values below this part of the greatest are zero: in nets of many kinds the least of the others was 8e-3.
+pub(super) const NO_RANK: f64 = 1e-8;
 
-/// A step of one freedom: a link, or a body between two freedoms of one joint, moved against the one before it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
-    /// The step before it; `None` for one on the ground.
-    pub parent: Option<usize>,
-    /// How it moves.
-    pub moves: Move,
-    /// A place on its axis as drawn.
-    pub origin: Vec3,
-    /// The direction of its axis as drawn, of length 1.
-    pub axis: Vec3,
-}
+/// Steps of Newton's method, and the closure error [rad, or relative to the size] at which they have arrived.
+const MOST_STEPS: usize = 20;
+const CLOSED: f64 = 1e-13;
 
 /// A tree of steps, each a column, and the rows that close it.
 #[derive(Clone, Debug)]
@@ -40,13 +23,6 @@ pub struct Net {
     pub rows: Vec<Row>,
     /// The size [length] of which places are parts in every tolerance.
     pub size: f64,
-}
-
-/// The screw of a column at a pose: what turns about its axis, and where the origin goes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Screw {
-    pub turn: Vec3,
-    pub shift: Vec3,
 }
 
 /// A net at a pose: the pose of what each step moves, and each column's screw.
@@ -81,7 +57,7 @@ impl Net {
                 turn: scale(axis, turn),
                 shift: std::array::from_fn(|k| turn * moment[k] + along * axis[k]),
             });
-            placed.poses.push(before.then(&step.motion(turn * value, along * value)));
+            placed.poses.push(before.then(&step.moved(value)));
         }
         placed
     }
@@ -97,30 +73,59 @@ impl Net {
         }
         false
     }
-}
 
-impl Step {
-    /// By an angle about its axis and a length along it.
-    fn motion(&self, angle: f64, along: f64) -> Pose {
-        let (s, c) = angle.sin_cos();
-        let [x, y, z] = self.axis;
-        let t = 1.0 - c;
-        let rotation = [
-            [t * x * x + c, t * x * y - s * z, t * x * z + s * y],
-            [t * x * y + s * z, t * y * y + c, t * y * z - s * x],
-            [t * x * z - s * y, t * y * z + s * x, t * z * z + c],
-        ];
-        let turned = rotation.map(|row| dot(row, self.origin));
-        let back = sub(self.origin, turned);
-        let translation = std::array::from_fn(|k| back[k] + along * self.axis[k]);
-        Pose { rotation, translation }
+    /// `e` of every row, lengths relative to the size, and `A` column by column, at values of the columns, slides relative to the size, too.
+    pub fn closure(&self, values: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let placed = self.place(values);
+        let mut errors = Vec::with_capacity(self.rows.len());
+        let mut columns = vec![Vec::with_capacity(self.rows.len()); self.steps.len()];
+        for row in &self.rows {
+            let on = row.on();
+            let [a, b] = on.map(|step| step.map_or(Pose::STILL, |k| placed.poses[k]));
+            let (value, wrenches) = row.evaluated(&a, &b);
+            let unit = if row.is_length() { 1.0 / self.size } else { 1.0 };
+            errors.push(value * unit);
+            for (c, column) in columns.iter_mut().enumerate() {
+                let seen = on.iter().zip(&wrenches).map(|(step, wrench)| {
+                    let carried = step.is_some_and(|k| self.carries(c, k));
+                    if carried {
+                        wrench.power(&placed.screws[c])
+                    } else {
+                        0.0
+                    }
+                });
+                let scale = if self.slides(c) { self.size } else { 1.0 };
+                column.push(seen.sum::<f64>() * unit * scale);
+            }
+        }
+        (errors, columns)
+    }
+
+    /// The closed pose that Newton's shortest steps lead to; `None` where they lead to none.
+    pub fn closed(&self, rough: &[f64]) -> Option<Vec<f64>> {
+        let mut pose = rough.to_vec();
+        for _ in 0..MOST_STEPS {
+            let (errors, columns) = self.closure(&pose);
+            let greatest = errors.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+            if greatest < CLOSED {
+                return Some(pose);
+            }
+            if !greatest.is_finite() {
+                return None;
+            }
+            let by = least_squares(&columns, &errors, NO_RANK);
+            for (x, d) in pose.iter_mut().zip(by) {
+                *x -= d;
+            }
+        }
+        None
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigid::norm;
+    use crate::rigid::{norm, sub};
 
     #[test]
     fn a_link_turns_about_its_axis_as_drawn_and_carries_the_links_beyond() {

@@ -1,0 +1,154 @@
+//! All modes of a net at one value of its input, block by block: `e(q) = 0` with the input held.
+//!
+//! Source: docs/theory_nets.md, (7).
+
+use super::dyads::Dyad;
+use super::net::Net;
+use super::rows::On;
+use super::steps::Move;
+use crate::loops::least_squares;
+use crate::rigid::{Pose, cross, dot, most_perpendicular_axis, sub, unit};
+
+/// A dyad of a net: the steps that carry its two links, and those that carry the known links at which it hangs.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage {
+    /// Its joints as drawn.
+    pub dyad: Dyad,
+    /// The steps of its links.
+    pub links: [usize; 2],
+    /// Those of the known links.
+    pub known: [On; 2],
+}
+
+/// A pose of a net: a value for each column [rad, or relative to the size], where each step leads, the greatest error of a row.
+#[derive(Clone, Debug)]
+pub struct Mode {
+    /// The columns.
+    pub values: Vec<f64>,
+    /// The steps.
+    pub poses: Vec<Pose>,
+    /// The error [rad, or relative to the size].
+    pub residual: f64,
+}
+
+/// Singular values below this part of the greatest are zero: two modes that nearly meet are still corrected.
+const NO_RANK: f64 = 1e-10;
+
+/// Steps of Newton's method that take the rounding of the closed form off, and the error [rad, or relative to the size] of a mode.
+const STEPS: usize = 2;
+const CLOSES: f64 = 1e-9;
+
+/// All modes of a net that dyads make up, each stage after those that it hangs at, with a step held at a value.
+pub fn modes(net: &Net, stages: &[Stage], driven: usize, value: f64) -> Vec<Mode> {
+    let mut start = vec![Pose::STILL; net.steps.len()];
+    start[driven] = net.steps[driven].moved(if net.slides(driven) {
+        value * net.size
+    } else {
+        value
+    });
+    let mut partial = vec![start];
+    for stage in stages {
+        let mut longer = Vec::new();
+        for poses in &partial {
+            let known = stage.known.map(|on| on.map_or(Pose::STILL, |k| poses[k]));
+            for both in stage.dyad.poses([&known[0], &known[1]]) {
+                let mut next = poses.clone();
+                for (step, pose) in stage.links.into_iter().zip(both) {
+                    next[step] = pose;
+                }
+                longer.push(next);
+            }
+        }
+        partial = longer;
+    }
+    partial
+        .iter()
+        .map(|poses| settled(net, net.values(poses), driven, value))
+        .filter(|mode| mode.residual < CLOSES)
+        .collect()
+}
+
+/// The mode that a few of Newton's steps lead to, with a step held.
+fn settled(net: &Net, mut values: Vec<f64>, driven: usize, value: f64) -> Mode {
+    values[driven] = value;
+    for _ in 0..STEPS {
+        let (errors, mut columns) = net.closure(&values);
+        columns[driven].fill(0.0);
+        for (x, by) in values.iter_mut().zip(least_squares(&columns, &errors, NO_RANK)) {
+            *x -= by;
+        }
+        values[driven] = value;
+    }
+    let (errors, _) = net.closure(&values);
+    let residual = errors.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
+    Mode { poses: net.place(&values).poses, values, residual }
+}
+
+impl Net {
+    /// The values of the columns for which steps lead to these poses.
+    fn values(&self, poses: &[Pose]) -> Vec<f64> {
+        self.steps
+            .iter()
+            .zip(poses)
+            .map(|(step, pose)| {
+                let before = step.parent.map_or(Pose::STILL, |p| poses[p]);
+                let moved = before.inverse().then(pose);
+                match step.moves {
+                    Move::Slide => dot(sub(moved.carry(step.origin), step.origin), step.axis) / self.size,
+                    Move::Turn | Move::Screw(_) => {
+                        let across = unit(cross(step.axis, most_perpendicular_axis(step.axis)));
+                        let turned = moved.turn(across);
+                        dot(step.axis, cross(across, turned)).atan2(dot(across, turned))
+                    }
+                }
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::dyads::Pair;
+    use super::super::rows::Row;
+    use super::super::steps::Step;
+    use super::*;
+
+    #[test]
+    fn a_watt_six_bar_has_the_product_of_its_dyads_modes() {
+        let z = [0.0, 0.0, 1.0];
+        let at = [
+            [0.0, 0.0, 0.0],
+            [1.0, 4.0, 0.0],
+            [11.0, 8.0, 0.0],
+            [10.0, 0.0, 0.0],
+            [15.0, 6.0, 0.0],
+            [17.5, 20.0, 0.0],
+            [20.0, 0.0, 0.0],
+        ];
+        let pin = |parent, origin| Step { parent, moves: Move::Turn, origin, axis: z };
+        // crank, coupler, rocker, link, lever
+        let steps = vec![
+            pin(None, at[0]),
+            pin(Some(0), at[1]),
+            pin(None, at[3]),
+            pin(Some(2), at[4]),
+            pin(None, at[6]),
+        ];
+        let closing = |a, b, at| {
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|v| Row::Along { on: [Some(a), Some(b)], at, v })
+        };
+        let mut rows = closing(1, 2, at[2]).to_vec();
+        rows.extend(closing(3, 4, at[5]));
+        let net = Net { steps, rows, size: 40.0 };
+        let dyad = |a, b, c| Dyad { normal: z, pairs: [Pair::Hinge(a), Pair::Hinge(b), Pair::Hinge(c)] };
+        let stages = [
+            Stage { dyad: dyad(at[1], at[2], at[3]), links: [1, 2], known: [Some(0), None] },
+            Stage { dyad: dyad(at[4], at[5], at[6]), links: [3, 4], known: [Some(2), None] },
+        ];
+        let found = modes(&net, &stages, 0, 0.0);
+        assert_eq!(found.len(), 4);
+        assert!(found.iter().all(|m| m.residual < 1e-15));
+        // the drawing is one of them
+        assert!(found.iter().any(|m| m.values.iter().all(|x| x.abs() < 1e-12)));
+    }
+}

@@ -1,0 +1,108 @@
+"""All modes of a net of dyads at one value of its input, in closed form.
+
+Source: docs/theory_nets.md, (7).
+"""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.errors import NotCoveredError
+from sevenbar.kinematics.circuits.modes import Modes
+from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.rigid import inverse, pose
+from sevenbar.kinematics.nets.chords import Triple
+from sevenbar.kinematics.nets.order import Block, Order, order_of
+from sevenbar.kinematics.nets.tree import Tree
+
+#: A dyad as the core takes it.
+RawDyad = tuple[Triple, list[tuple[str, Triple]], tuple[int, int], tuple[int | None, int | None]]
+
+
+def net_modes(linkage: Loop, column: int, value: float) -> Modes:
+    """Every assembly mode at one value of a column [rad, or length] of a net of dyads."""
+    driven = linkage.column_of(column).joint
+    order = order_of(linkage, column)
+    _refuse_others(linkage, driven, order)
+    tree = Tree(linkage, driven, order)
+    dyads = [_dyad(linkage, tree, block) for block in order.blocks]
+    scale = 1.0 if linkage.turns(column) else linkage.size
+    # the driven joint is the first step, which counts from where it is drawn
+    offset = (value - linkage.drawn_pose[column]) / scale
+    outwards = linkage.graph.between[driven][0] == linkage.graph.ground
+    raw = tree.core().modes(dyads, 0, offset if outwards else -offset)
+    frames = np.array([_frames(linkage, tree, poses) for _, poses, _ in raw])
+    q = np.array([_values(linkage, own) for own in frames]).reshape(-1, len(linkage.columns))
+    residual = np.array([error for _, _, error in raw]) * linkage.size
+    rank = np.lexsort(q.round(9).T[::-1])
+    return Modes(q[rank], residual[rank], "closed-form", linkage.columns, value)
+
+
+def _refuse_others(linkage: Loop, driven: int, order: Order) -> None:
+    """Refuses what dyads do not make up."""
+    where = ""
+    if linkage.graph.ground not in linkage.graph.between[driven]:
+        where = f"'{linkage.joints[driven].name}' drives two moving links"
+    elif order.free or order.held:
+        where = f"the count gives no order of solving ({', '.join((*order.free, *order.held))})"
+    else:
+        for block in order.blocks:
+            if block.solver != "dyad":
+                where = f"{_listed(linkage, block)} are no dyad: they are solved together"
+                break
+    if where:
+        raise NotCoveredError(
+            f"modes of a net are found where dyads make it up, driven at the ground; here {where}"
+        )
+
+
+def _dyad(linkage: Loop, tree: Tree, block: Block) -> RawDyad:
+    first, second = block.links
+    between = linkage.graph.between
+    inner = next(j for j in block.joints if {*between[j]} == {first, second})
+    ends = [next(j for j in block.joints if link in between[j] and j != inner) for link in block.links]
+    normal = None
+    pairs = []
+    for joint in (ends[0], inner, ends[1]):
+        frame = linkage.drawn_joint_on(joint, between[joint][0])
+        turns = linkage.joints[joint].kind == "R"
+        normal = frame[:3, 2] if turns else normal
+        pairs.append(("R" if turns else "P", _three(frame[:3, 3 if turns else 2])))
+    if normal is None:
+        raise NotCoveredError(f"three slides in a row, {_listed(linkage, block)}, turn nothing")
+    known = [sum(between[joint]) - link for joint, link in zip(ends, block.links, strict=True)]
+    # every moving link has a step
+    links = cast("tuple[int, int]", (tree.carrier[first], tree.carrier[second]))
+    return _three(normal), pairs, links, (tree.carrier[known[0]], tree.carrier[known[1]])
+
+
+def _listed(linkage: Loop, block: Block) -> str:
+    return ", ".join(linkage.link_name(link) for link in block.links)
+
+
+def _frames(linkage: Loop, tree: Tree, poses: list[tuple[list[list[float]], list[float]]]) -> Floats:
+    """The frames (links, 4, 4) of all links, by where each step leads."""
+    result = np.broadcast_to(np.eye(4), (linkage.graph.ground, 4, 4)).copy()
+    for link, step in tree.carrier.items():
+        if step is not None:
+            result[link - 1] = pose(*poses[step])
+    return result
+
+
+def _values(linkage: Loop, frames: Floats) -> list[float]:
+    """The value of each joint, a hinge or a slide, by the frames (links, 4, 4) of all links."""
+    result = []
+    for joint, (before, after) in enumerate(linkage.graph.between):
+        on = [frames[link - 1] @ linkage.joint_on(joint, link) for link in (before, after)]
+        moved = inverse(on[0]) @ on[1]
+        turns = linkage.joints[joint].kind == "R"
+        result.append(float(np.arctan2(moved[1, 0], moved[0, 0]) if turns else moved[2, 3]))
+    return result
+
+
+def _three(vector: Floats) -> Triple:
+    x, y, z = vector.tolist()
+    return x, y, z
