@@ -25,7 +25,7 @@ def net_page(linkage: Linkage) -> Page:
     facts.also(format=1, name=linkage.heading, links=list(linkage.link_names))
     count = {
         "links": linkage.graph.ground,
-        "joints": len(linkage.joints),
+        "joints": linkage.graph.joints.stop,
         "rods": len(linkage.rods),
         "ground": linkage.link_names[-1],
     }

@@ -32,8 +32,7 @@ def net_modes(linkage: Loop, column: int, value: float) -> Modes:
     scale = 1.0 if linkage.turns(column) else linkage.size
     # the driven joint is the first step, which counts from where it is drawn
     offset = (value - linkage.drawn_pose[column]) / scale
-    outwards = linkage.graph.between[driven][0] == linkage.graph.ground
-    raw = tree.core().modes(dyads, 0, offset if outwards else -offset)
+    raw = tree.core().modes(dyads, 0, offset)
     frames = np.array([_frames(linkage, tree, poses) for _, poses, _ in raw])
     q = np.array([_values(linkage, own) for own in frames]).reshape(-1, len(linkage.columns))
     residual = np.array([error for _, _, error in raw]) * linkage.size

@@ -69,6 +69,11 @@ class Parts:
         return [(a - 1, b - 1) for a, b in pairs]
 
     @property
+    def first_rod(self) -> int:
+        """The number of the first rod among the edges: how many joints there are."""
+        return self.linkage.graph.joints.stop
+
+    @property
     def names(self) -> list[str]:
         """The names of the edges."""
         joints, rods = self.linkage.joints, self.linkage.rods
@@ -82,13 +87,13 @@ class Parts:
         return [(edges, self._group(edges)) for edges in parts]
 
     def _group(self, edges: Sequence[int]) -> Group:
-        joints = [edge for edge in edges if edge < len(self.linkage.joints)]
+        joints = [edge for edge in edges if edge < self.first_rod]
         links = {link for edge in edges for link in self.between[edge]}
         if not joints or links != {link for joint in joints for link in self.between[joint]}:
             return "spatial"
         if self._is_planar(joints):
             return "planar"
-        return "spherical" if len(joints) == len(edges) and self._is_spherical(joints) else "spatial"
+        return "spherical" if joints == list(edges) and self._is_spherical(joints) else "spatial"
 
     @cached_property
     def _frames(self) -> Floats:
@@ -121,9 +126,9 @@ class Parts:
 
     def _is_spherical(self, joints: Sequence[int]) -> bool:
         """Whether all are hinges whose axes meet in one point."""
-        frames = [self._frames[joint] for joint in joints if self.linkage.joints[joint].kind == "R"]
-        if len(frames) < len(joints):
+        if any(self.linkage.joints[joint].kind != "R" for joint in joints):
             return False
+        frames = self._frames[list(joints)]
         # the point nearest to all axes
         across = [np.eye(3) - np.outer(frame[:3, 2], frame[:3, 2]) for frame in frames]
         sides = [project @ frame[:3, 3] for project, frame in zip(across, frames, strict=True)]
@@ -136,7 +141,7 @@ class Parts:
 
     def rows(self, edge: int, group: Group) -> int:
         """How many freedoms of one link against the other an edge takes."""
-        if edge >= len(self.linkage.joints):
+        if edge >= self.first_rod:
             return 1
         row = self.linkage.joints[edge].row
         if group == "planar":
@@ -176,7 +181,7 @@ def order_of(linkage: Loop, column: int) -> Order:
             return Order(held=tuple(parts.names[numbers[k]] for k in result[0][1]))
         for links, places in result:
             blocks.append(
-                _block(linkage, links, [numbers[k] for k in places], [pairs[k] for k in places], group)
+                _block(parts, links, [numbers[k] for k in places], [pairs[k] for k in places], group)
             )
             for link in links:
                 known[link] = True
@@ -184,14 +189,14 @@ def order_of(linkage: Loop, column: int) -> Order:
 
 
 def _block(
-    linkage: Loop, links: list[int], edges: list[int], pairs: list[tuple[int, int]], group: Group
+    parts: Parts, links: list[int], edges: list[int], pairs: list[tuple[int, int]], group: Group
 ) -> Block:
-    count = len(linkage.joints)
+    count = parts.first_rod
     joints, rods = [edge for edge in edges if edge < count], [edge - count for edge in edges if edge >= count]
     one_loop = len(edges) == len(links) + 1 and all(
         sum(link in pair for pair in pairs) == 2 for link in links
     )
-    simple = all(len(linkage.joints[joint].columns) == 1 for joint in joints)
+    simple = all(len(parts.linkage.joints[joint].columns) == 1 for joint in joints)
     if group == "planar" and one_loop and len(links) == 2 and not rods and simple:
         solver: Literal["dyad", "loop", "links"] = "dyad"
     else:

@@ -41,7 +41,7 @@ class NetSolver:
         parts = Parts(linkage)
         for edges, group in parts.whole:
             links = {link for edge in edges for link in parts.between[edge]}
-            cycles = sum(edge < len(linkage.joints) for edge in edges) - len(links) + 1
+            cycles = sum(edge < parts.first_rod for edge in edges) - len(links) + 1
             lines += [
                 f"{line}, in cycle {cycle} of {_listed(linkage, links)}"
                 for cycle in range(1, cycles + 1)
