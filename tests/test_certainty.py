@@ -31,10 +31,11 @@ def test_a_small_sample_holds_and_the_page_has_every_family(tmp_path, monkeypatc
         assert f"| {name} | {family.quick} | 0 |" in text
 
 
+@pytest.mark.parametrize("share", [1 / 32, pytest.param(1 / 8, marks=pytest.mark.proof)])
 @pytest.mark.parametrize("name", command.FAMILIES)
-def test_a_few_of_each_family_hold(name):
+def test_a_few_of_each_family_hold(name, share):
     family = command.FAMILIES[name]
-    count = math.ceil(family.quick / 8)
+    count = math.ceil(share * family.quick)
     row = judged(family, 2, 0, count)
     # a change point is reported some 1e-5 rad off, too, as docs/not-covered.md says
     others = [what for _, what in row.differences if not what.startswith("change-point with limits")]

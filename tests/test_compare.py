@@ -14,6 +14,7 @@ import sevenbar as sb
 from evidence.accuracy import reference_rssr
 from evidence.fuzz.random_linkages import Dimensions
 from sevenbar.errors import RequestError
+from sevenbar.measuring.candidates import SHIFTS
 from sevenbar.measuring.compare import compare, ends_of
 from sevenbar.measuring.extremes import Extent, compare_extremes
 from sevenbar.measuring.measured import Measured, MeasuredExtremes
@@ -117,6 +118,27 @@ def test_the_zeros_of_a_test_bench_are_found_to_rounding(words):
     assert found.chosen.offset == pytest.approx(offset, abs=1e-11)
     assert found.chosen.residual < 1e-12
     np.testing.assert_allclose(found.measured["angle"], found.computed["angle"], atol=1e-10)
+
+
+def test_a_circuit_far_from_the_data_keeps_the_phase_of_the_first_search():
+    inputs = np.linspace(0.1, 6.3, 60)
+    angle = PAPER.reference().outputs(inputs + 0.4)[1]
+    measured = table(input=inputs, angle=angle)
+    best, other = compare(sb.load("rssr"), measured, align=["phase", "offset"]).candidates
+    assert best.phase == pytest.approx(0.4, abs=1e-11)
+    assert 0.01 < other.residual < 0.1
+    steps = other.phase * SHIFTS / math.tau
+    assert abs(steps - round(steps)) < 1e-9
+
+
+def test_a_circuit_that_closes_nowhere_stands_behind_one_however_far_from_the_data():
+    linkage = sb.four_bar(crank=90, coupler=40, rocker=85, ground=100)
+    low, high = linkage.motion().circuits[0].input_range
+    inputs = np.linspace(low, high, 9)[1:-1]
+    found = compare(linkage, table(input=inputs, angle=1 + 1e-3 * np.sin(inputs)))
+    assert [c.circuit for c in found.candidates] == [0, 0, 1, 1]
+    assert [c.open_share for c in found.candidates] == [0, 0, 1, 1]
+    assert found.candidates[1].residual > found.candidates[2].residual
 
 
 def test_a_phase_of_any_size_is_found_from_velocities_alone():

@@ -1,13 +1,12 @@
 """The bodies of a linkage as meshes and CAD: read back from the files by trimesh and build123d."""
 
 import math
+from functools import cached_property
 from itertools import combinations, product
 
-import build123d
 import numpy as np
 import pytest
 import trimesh
-from OCP.BRepAdaptor import BRepAdaptor_Surface
 
 import sevenbar as sb
 from gallery_sample import FEW, sampled
@@ -19,13 +18,17 @@ MILLIMETRES = {"mm": 1.0, "in": 25.4}
 
 def step_parts(path):
     """The parts of a STEP assembly by name."""
+    import build123d  # takes seconds
+
     return {part.label: part for part in build123d.import_step(path).children}
 
 
 def bores(part):
     """Axes (point, direction) of the cylindrical holes of a part, and their radii."""
+    from build123d import GeomType
+
     found = []
-    for face in part.faces().filter_by(build123d.GeomType.CYLINDER):
+    for face in part.faces().filter_by(GeomType.CYLINDER):
         axis = face.axis_of_rotation
         point, along = np.array(tuple(axis.position)), np.array(tuple(axis.direction))
         middle = np.array(tuple(face.position_at(0.5, 0.5)))
@@ -59,12 +62,35 @@ def joint_lines(linkage, circuit, row):
     return lines
 
 
-@pytest.mark.parametrize("name", sampled(FEW))
-def test_step_holds_sound_solids_whose_holes_are_in_line(name, tmp_path):
-    linkage = sb.load(name)
-    motion = linkage.motion(24)
-    export(motion, "step", tmp_path / "a.step")
-    parts = step_parts(tmp_path / "a.step")
+class Exported:
+    """A linkage of the gallery with its files, each written and read once."""
+
+    def __init__(self, name, folder):
+        self.name, self.folder = name, folder
+        self.linkage = sb.load(name)
+        self.motion = self.linkage.motion(90)
+
+    @cached_property
+    def solids(self):
+        """The parts of the STEP file by name."""
+        export(self.motion, "step", self.folder / "a.step")
+        return step_parts(self.folder / "a.step")
+
+    @cached_property
+    def meshes(self):
+        """The parts of the GLB file by name."""
+        export(self.motion, "glb", self.folder / "a.glb")
+        return loaded_glb(self.folder / "a.glb")[1]
+
+
+# a parameter of the module: tests of one linkage follow one another, in one process
+@pytest.fixture(scope="module", params=sampled(FEW))
+def exported(request, tmp_path_factory):
+    return Exported(request.param, tmp_path_factory.mktemp(request.param))
+
+
+def test_step_holds_sound_solids_whose_holes_are_in_line(exported):
+    linkage, motion, parts = exported.linkage, exported.motion, exported.solids
     count = len(linkage.joints)
     links = [f"link_{k}" for k in range(1, count)] + ["ground"]
     shafts = {f"shaft_{joint.name}" for joint in linkage.joints if joint.kind in "RPCH"}
@@ -91,6 +117,9 @@ def test_step_holds_sound_solids_whose_holes_are_in_line(name, tmp_path):
 
 def test_the_balls_and_bores_of_the_paper_s_linkage_are_where_it_puts_them(tmp_path):
     alpha = 0.5
+    from build123d import GeomType
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+
     linkage = sb.load("rssr")
     export(linkage, "step", tmp_path / "a.step", at=alpha, circuit=1)
     parts = step_parts(tmp_path / "a.step")
@@ -99,7 +128,7 @@ def test_the_balls_and_bores_of_the_paper_s_linkage_are_where_it_puts_them(tmp_p
     ball_b = np.array([700.0, 550 * math.cos(beta), 550 * math.sin(beta)])
 
     def centres(part):
-        spheres = part.faces().filter_by(build123d.GeomType.SPHERE)
+        spheres = part.faces().filter_by(GeomType.SPHERE)
         places = [BRepAdaptor_Surface(face.wrapped).Sphere().Location() for face in spheres]
         return [np.array([place.X(), place.Y(), place.Z()]) for place in places]
 
@@ -127,21 +156,17 @@ def loaded_glb(path):
     return scene, found
 
 
-@pytest.mark.parametrize("name", sampled(FEW))
-def test_glb_holds_watertight_parts_of_the_cad_s_volume(name, tmp_path):
-    linkage = sb.load(name)
-    motion = linkage.motion(24)
-    export(motion, "glb", tmp_path / "a.glb")
-    export(motion, "step", tmp_path / "a.step")
-    _, meshes = loaded_glb(tmp_path / "a.glb")
-    solids = step_parts(tmp_path / "a.step")
+def test_glb_holds_watertight_parts_of_the_cad_s_volume(exported):
+    from build123d import CenterOf
+
+    meshes, solids = exported.meshes, exported.solids
     assert set(meshes) == set(solids)
     for part, mesh in meshes.items():
         assert mesh.is_watertight
         assert mesh.body_count == 1
         # 48 flats round a rod take 0.3 % of it, and the same of a hole
         assert mesh.volume * 1e9 == pytest.approx(solids[part].volume, rel=0.015)
-        middle = np.array(tuple(solids[part].center(build123d.CenterOf.MASS)))
+        middle = np.array(tuple(solids[part].center(CenterOf.MASS)))
         assert np.linalg.norm(1000 * mesh.center_mass - middle) < 2e-3 * np.linalg.norm(1000 * mesh.extents)
 
 
@@ -189,10 +214,8 @@ MEET = {
 }
 
 
-@pytest.mark.parametrize("name", sampled(FEW))
-def test_parts_do_not_run_into_each_other(name, tmp_path):
-    export(sb.load(name).motion(90), "glb", tmp_path / "a.glb")
-    _, parts = loaded_glb(tmp_path / "a.glb")
+def test_parts_do_not_run_into_each_other(exported):
+    parts = exported.meshes
     met = set()
     for one, two in combinations(sorted(parts), 2):
         a, b = parts[one], parts[two]
@@ -201,7 +224,7 @@ def test_parts_do_not_run_into_each_other(name, tmp_path):
         common = trimesh.boolean.intersection([a, b], engine="manifold")
         if not common.is_empty and abs(common.volume) > 1e-4 * min(a.volume, b.volume):
             met.add((one, two))
-    assert met <= MEET.get(name, set())
+    assert met <= MEET.get(exported.name, set())
 
 
 @pytest.mark.parametrize("unit", ["um", "m", "ft"])

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import math
+from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -483,6 +485,17 @@ def test_a_piston_at_its_dead_centre_has_no_frequency() -> None:
     page = Console(width=100, file=io.StringIO())
     page.print(free_report(()).text((still, circuit.equilibria())))
     assert "none" in page.file.getvalue()  # type: ignore[attr-defined]
+
+
+def test_table_and_figure_of_a_report_are_of_the_motion(tmp_path: Path) -> None:
+    circuit, given, *_ = pendulum()
+    fall = circuit.free_motion(0.5, start=0.0, samples=6, **given)
+    free_report(["svg"]).write((fall, circuit.equilibria(**given)), tmp_path)
+    with (tmp_path / "free.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["time_s"]) for row in rows] == fall.time.tolist()
+    assert [float(row["kinetic_J"]) for row in rows] == fall.kinetic.tolist()
+    assert "free motion" in (tmp_path / "free.svg").read_text("utf-8")
 
 
 def test_a_circuit_on_which_no_mass_moves_is_refused() -> None:

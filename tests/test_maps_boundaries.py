@@ -15,6 +15,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
+from sevenbar.design.maps import atlas
 from sevenbar.design.maps.atlas import Map, motion_map
 from sevenbar.design.maps.plane import Kind, LoopPlane
 from sevenbar.design.maps.rssr_plane import NEARLY_REAL, critical_gaps
@@ -54,6 +55,10 @@ SLOW = {
     ),
 }
 
+#: As exact as users have them; the others have chords ten times as far from their boundaries.
+EXACT = ("the paper's crank and rocker", "crank and coupler", "the paper's axes")
+COARSE = atlas.RSSR._replace(fine=200, tolerance=1e-5)
+
 #: Maps are made once.
 _MADE: dict[str, Map] = {}
 
@@ -61,7 +66,11 @@ _MADE: dict[str, Map] = {}
 def made(name: str) -> Map:
     case = (FAST | SLOW)[name]
     if name not in _MADE:
-        _MADE[name] = motion_map(sb.rssr(**case.dimensions), case.over, input=case.input, follow=case.follow)
+        with pytest.MonkeyPatch.context() as patch:
+            if name not in EXACT:
+                patch.setattr(atlas, "RSSR", COARSE)
+            rssr = sb.rssr(**case.dimensions)
+            _MADE[name] = motion_map(rssr, case.over, input=case.input, follow=case.follow)
     return _MADE[name]
 
 
@@ -127,7 +136,7 @@ def signed_area(loop):
 @pytest.mark.parametrize("name", cases())
 def test_regions_fill_the_window_and_their_outlines_run_anticlockwise(name):
     of = made(name)
-    assert sum(of.areas.values()) == pytest.approx(1.0, abs=1e-8)
+    assert sum(of.areas.values()) == pytest.approx(1.0, abs=1e-2 * of.tolerance)
     for region in of.regions:
         assert signed_area(region.outline) > 0
         assert all(signed_area(hole) < 0 for hole in region.holes)
@@ -325,7 +334,7 @@ def test_the_speed_changes_no_motion_type():
 
 
 def test_a_planar_four_bar_of_the_general_way_follows_grashof():
-    of = motion_map(sb.load("planar_4r"), {"length_1": (10, 150), "length_3": (10, 200)}, grid=13)
+    of = motion_map(sb.load("planar_4r"), {"length_1": (10, 150), "length_3": (10, 200)}, grid=9)
     points = np.random.default_rng(2).uniform(0, 1, (3_000, 2))
     crank, rocker = of.values(points).T
     sides = np.stack([crank, np.full_like(crank, 100.0), rocker, np.full_like(crank, 90.0)])

@@ -5,6 +5,8 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.design.points import nearest_path_point
+from sevenbar.design.points.cycle import cycle_of
+from sevenbar.design.points.nearest import _foot
 from sevenbar.errors import RequestError
 
 CUBE = [(-200.0, 200.0)] * 3
@@ -78,6 +80,39 @@ def test_without_inputs_small_moves_of_the_point_bring_its_path_no_nearer(seven_
     assert value(found.at) == pytest.approx(found.rms, rel=1e-4)
     for step in np.concatenate([np.eye(3), -np.eye(3)]) * 0.5:
         assert value(found.at + step) > found.rms
+
+
+@pytest.mark.parametrize(("unit", "size"), [("mm", 1.0), ("m", 1e-3)])
+def test_nearest_places_between_rows_are_where_the_path_goes_across(unit, size):
+    lengths = {"crank": 50 * size, "coupler": 90 * size, "rocker": 80 * size, "ground": 100 * size}
+    cycle = cycle_of(sb.four_bar(**lengths, length_unit=unit).motion(), 2, order="position", rows=90)
+    random = np.random.default_rng(1)
+    at = np.array([60.0, 40.0, 0.0]) * size
+    path = cycle.rates.of("position", at)
+    wanted = path[random.integers(0, 90, 200)] + random.normal(size=(200, 3)) * [60 * size, 60 * size, 0]
+    rates = cycle.at(_foot(cycle, wanted, at))
+    away, velocity = rates.of("position", at) - wanted, rates.of("velocity", at)
+    lengths = np.linalg.norm(away, axis=1) * np.linalg.norm(velocity, axis=1)
+    assert abs((away * velocity).sum(axis=1) / lengths).max() < 1e-11
+    to_rows = np.linalg.norm(path[:, None] - wanted, axis=2).min(axis=0)
+    assert (np.linalg.norm(away, axis=1) <= to_rows * (1 + 1e-12)).all()
+
+
+def test_a_place_beyond_the_centre_of_curvature_has_no_farthest_place_for_its_nearest():
+    motion = sb.four_bar(crank=50, coupler=90, rocker=80, ground=100).motion()
+    at = np.array([60.0, 40.0, 0.0])
+    fine = cycle_of(motion, 2, order="acceleration").rates
+    velocity, bend = fine.of("velocity", at), fine.of("acceleration", at)
+    square = (velocity**2).sum(axis=1, keepdims=True)
+    across = bend - velocity * (bend * velocity).sum(axis=1, keepdims=True) / square
+    radius = square * across / (across**2).sum(axis=1, keepdims=True)
+    wanted = fine.of("position", at) + 1.05 * radius
+    cycle = cycle_of(motion, 2, order="position", rows=90)
+    rates = cycle.at(_foot(cycle, wanted, at))
+    away = rates.of("position", at) - wanted
+    # half the second derivative of the squared distance by time
+    curved = (rates.of("velocity", at) ** 2 + away * rates.of("acceleration", at)).sum(axis=1)
+    assert curved.min() > 0
 
 
 def test_a_box_in_the_way_is_kept(seven_r, odd_rows):

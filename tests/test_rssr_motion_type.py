@@ -69,9 +69,9 @@ class Case:
     courses: list[Course]
 
 
-@pytest.fixture(scope="module", params=["some", "many"])
+@pytest.fixture(scope="module", params=[100, pytest.param(750, marks=pytest.mark.proof)])
 def cases(request: pytest.FixtureRequest) -> list[Case]:
-    count = {"some": 50, "many": 750}[request.param]
+    count = request.param
     made = []
     for description in random_linkages(count, count):
         linkage, reference = description.linkage(), description.reference()
