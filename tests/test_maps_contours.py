@@ -10,7 +10,8 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.design.maps.atlas import motion_map
-from sevenbar.design.maps.heights import EXACT, measure_heights
+from sevenbar.design.maps.contours import EXACT, EXACT_FORCES, MOST_READ, Net, traced
+from sevenbar.design.maps.heights import measure_heights
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.measures import MEASURES
 
@@ -56,6 +57,51 @@ def test_the_measure_has_the_value_of_the_contour_at_its_points(of, name, take):
             looked += abs(value - line.level) <= 2 * EXACT * step
             assert abs(value - line.level) <= 0.5 * step
     assert looked >= 0.95 * 4 * len(heights.contours)
+
+
+def test_contours_of_forces_are_right_to_their_part_of_the_step():
+    of = motion_map(sb.load("rssr_press"), {"L1": (230, 280), "L3": (500, 600)}, grid=5)
+    (heights,) = measure_heights(of, ["peak_torque"], levels=[500.0, 1000.0, 1500.0])
+    assert {line.level for line in heights.contours} == {500.0, 1000.0, 1500.0}
+    for line in heights.contours:
+        places = line.places[:: max(1, len(line.places) // 4)]
+        (values,) = of.plane.values_at(places, [heights.measure], "highest").T
+        assert np.abs(values - line.level).max() <= 2 * EXACT_FORCES * 500
+
+
+def crossed(of, low, high, levels):
+    """Contours of a function of x on one square, and at how many places it is read between."""
+    nodes = np.array([[low, 0.0], [high, 0.0], [high, 1.0], [low, 1.0]])
+    net = Net(nodes, np.zeros(4, dtype=int), np.array([[0, 1, 2], [0, 2, 3]]))
+    read = []
+
+    def value(places):
+        read.extend(places.tolist())
+        return of(places[:, 0])
+
+    return list(traced(net, of(nodes[:, 0]), levels, value)), len(read)
+
+
+def test_what_is_read_for_one_level_serves_the_others():
+    def steep(x):
+        return 100 / np.sqrt(x)
+
+    levels = list(np.arange(200.0, 1000.0, 100.0))
+    lines, count = crossed(steep, 0.01, 1.0, levels)
+    assert [line.level for line in lines] == levels
+    for line in lines:
+        assert np.abs(steep(line.places[:, 0]) - line.level).max() <= EXACT * 100
+    # three sides that every level crosses
+    assert count <= 6
+
+
+@pytest.mark.parametrize(
+    "of", [lambda x: np.where(x < 0.3, 0.0, 9.0), lambda x: np.where(x < 0.3, 9, np.nan)]
+)
+def test_a_contour_ends_its_search_where_the_measure_jumps_or_has_no_value(of):
+    lines, count = crossed(lambda x: np.where(x == 1.0, 0.0, of(x)), 0.0, 1.0, [2.0, 4.0])
+    assert count <= 3 * 2 * MOST_READ
+    assert all(((line.places >= 0) & (line.places <= 1)).all() for line in lines)
 
 
 @pytest.mark.parametrize("name", ["swing", "transmission_lowest"])

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from time import perf_counter
-from typing import NamedTuple
 
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.maps.atlas import LOOP, Map
-from sevenbar.design.maps.outline import Region, joined
+from sevenbar.design.maps.contours import EXACT, EXACT_FORCES, Contour, Net, traced
+from sevenbar.design.maps.outline import Region
 from sevenbar.design.maps.plane import Take
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.motion import Motion
@@ -27,16 +26,6 @@ LEVELS = 9
 #: Where some values grow without bound, levels are taken between these percentiles.
 CUT = (2.0, 96.0)
 
-#: A contour's points are right to this share of the step between levels.
-EXACT = 1e-3
-
-#: Most values taken for one point of a contour: false position gains a digit or two with each.
-MOST_TRIES = 8
-
-#: Between ends of one sign that differ by more than this factor a value grows as towards a boundary without
-#: bound, and one over it is more even.
-STEEP = 2.0
-
 #: Boundaries are sampled so many times in a cell of the grid, and so many times more in narrow places.
 ALONG, DENSER = 2, 8
 
@@ -48,23 +37,18 @@ INSIDE, BEND = 3e-5, 7.5e-3
 #: inside as boundaries bend between them, by the square, up to so far [share]: hardly to be seen.
 DENSE, MOST_INSIDE = 61, 1e-3
 
-#: Places of a measure's contours, as a part of those at which it is taken before: a rough count.
-IN_CONTOURS = 0.9
+#: Places of a measure's contours, as a part of those at which it is taken before: a rough count; and how many
+#: times as long each takes, since steep measures crowd them at boundaries, where motions are sharp.
+IN_CONTOURS, DEARER = 0.4, 3.0
+
+#: About how many places are timed before it is stated how long a map takes.
+TIMED = 24
 
 #: Rounds in which narrow places are given more samples.
 ROUNDS = 3
 
 #: A triangle lies in its region when points this far from its sides [share of the way to its middle] do.
 SHRUNK = 0.02
-
-
-@dataclass(frozen=True, eq=False)
-class Contour:
-    """A line on which a measure has the value `level`: places (n, 2) [shares], within regions of one kind."""
-
-    level: float
-    kind: int
-    places: Floats
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,18 +99,25 @@ def measure_heights(
     wanted = None if levels is None else levels_of(levels)
     net = _net(of)
     place = of.shares_of(np.array([[of.design.x, of.design.y]]))
-    (own,), seconds = _timed(lambda: of.plane.values_at(place, chosen, take))
-    count = round((1 + IN_CONTOURS * len(chosen)) * len(net.nodes))
-    ahead(count, count * seconds)
-    of.plane.expect(count)
-    table = of.plane.values_at(net.nodes, chosen, take)
+    (own,) = of.plane.values_at(place, chosen, take)
+    nodes, in_contours = len(net.nodes), round(IN_CONTOURS * len(chosen) * len(net.nodes))
+    of.plane.expect(nodes + in_contours)
+    # some places all over the map show how long all of them take
+    first = np.arange(nodes) % max(nodes // TIMED, 1) == 0
+    table = np.empty((nodes, len(chosen)))
+    begin = perf_counter()
+    table[first] = of.plane.values_at(net.nodes[first], chosen, take)
+    each = (perf_counter() - begin) / max(first.sum(), 1)
+    ahead(nodes + in_contours, (nodes + DEARER * in_contours) * each)
+    table[~first] = of.plane.values_at(net.nodes[~first], chosen, take)
     linkage = of.linkage
     output = linkage.columns[linkage.other_column(linkage.columns.index(of.input))]
     result = []
     for measure, values, here in zip(chosen, table.T, own.tolist(), strict=True):
         steps = wanted if wanted is not None else _round_levels(values)
-        read = partial(_read, of, measure, take)
-        contours = tuple(_contours(of, net, values, steps, read))
+        exact = EXACT_FORCES if is_of_forces(measure.name) else EXACT
+        lines = traced(net, values, steps, partial(_read, of, measure, take), exact)
+        contours = tuple(part for line in lines for part in _inside(of, line))
         unit, design = measure.unit(linkage, output), None if math.isnan(here) else here
         result.append(Heights(measure, take, unit, tuple(steps), contours, net.nodes, values, design))
     return tuple(result)
@@ -135,13 +126,6 @@ def measure_heights(
 def usual_lines(measures: Iterable[Measure]) -> int | None:
     """Lines of a map's grid, where its measures say so: forces take their time at every linkage."""
     return LOOP.lines if any(is_of_forces(measure.name) for measure in measures) else None
-
-
-def _timed(work: Callable[[], Floats]) -> tuple[Floats, float]:
-    """What work gives, and how long it takes [s] when it is done again: the first time imports count."""
-    work()
-    start = perf_counter()
-    return work(), perf_counter() - start
 
 
 def _read(of: Map, measure: Measure, take: Take, places: Floats) -> Floats:
@@ -203,14 +187,6 @@ def _round_levels(values: Floats) -> list[float]:
     low, high = np.percentile(finite, CUT)
     ticks = MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
     return [float(tick) for tick in ticks if finite.min() < tick < finite.max()]
-
-
-class Net(NamedTuple):
-    """Places (n, 2) [shares], their kinds (n,), and triangles between places of one kind (m, 3)."""
-
-    nodes: Floats
-    kinds: Integers
-    triangles: Integers
 
 
 def _net(of: Map) -> Net:
@@ -303,86 +279,11 @@ def _beside(loop: Floats, step: float, inside: float) -> Floats:
     return np.asarray(np.clip(start[piece] + part[:, None] * along[piece] + inside * left[piece], 0.0, 1.0))
 
 
-def _contours(
-    of: Map, net: Net, values: Floats, levels: Sequence[float], read: Callable[[Floats], Floats]
-) -> Iterable[Contour]:
-    """The contour lines of a measure over triangles, each point brought to its level by false position."""
-    whole = net.triangles[np.isfinite(values[net.triangles]).all(axis=1)]
-    spacing = min(np.diff(levels), default=abs(levels[0]) if levels else 1.0) or 1.0
-    for level in levels:
-        high = values >= level
-        pieces: dict[int, list[tuple[tuple[int, int], tuple[int, int]]]] = defaultdict(list)
-        mixed = whole[(high[whole].sum(axis=1) % 3) > 0]
-        for corners in mixed.tolist():
-            # the corner that stands alone, and the other two, anticlockwise
-            alone = next(i for i in range(3) if high[corners[i - 1]] == high[corners[i - 2]])
-            a, b, c = corners[alone], corners[alone - 2], corners[alone - 1]
-            first, second = (min(a, b), max(a, b)), (min(a, c), max(a, c))
-            # what is higher stays on the left
-            pieces[int(net.kinds[a])].append((first, second) if high[a] else (second, first))
-        edges = sorted({edge for own in pieces.values() for piece in own for edge in piece})
-        result = _crossed(read, level, EXACT * spacing, net.nodes, values, edges)
-        places = dict(zip(edges, result, strict=True))
-        for kind, own in sorted(pieces.items()):
-            for line in joined(np.array([[places[first], places[second]] for first, second in own])):
-                yield from _inside(of, level, kind, line)
-
-
-def _inside(of: Map, level: float, kind: int, places: Floats) -> Iterable[Contour]:
+def _inside(of: Map, line: Contour) -> Iterable[Contour]:
     """The parts of a line that lie in regions of its kind."""
-    inside = of.numbers_at(places) == kind
+    inside = of.numbers_at(line.places) == line.kind
     starts = np.flatnonzero(inside & ~np.concatenate([[False], inside[:-1]]))
     ends = np.flatnonzero(inside & ~np.concatenate([inside[1:], [False]]))
     for start, end in zip(starts, ends, strict=True):
         if end > start:
-            yield Contour(level, kind, places[start : end + 1])
-
-
-def _crossed(
-    read: Callable[[Floats], Floats],
-    level: float,
-    exact: float,
-    nodes: Floats,
-    values: Floats,
-    edges: Sequence[tuple[int, int]],
-) -> Floats:
-    """Where edges between nodes cross a level (n, 2): false position with the Illinois rule.
-
-    On steep edges it is that of 1 / level - 1 / value, times the level squared.
-    """
-    if not edges:
-        return np.empty((0, 2))
-    ends = np.array(edges)
-    start, along = nodes[ends[:, 0]], nodes[ends[:, 1]] - nodes[ends[:, 0]]
-    low, high = np.zeros(len(ends)), np.ones(len(ends))
-    both = values[ends]
-    least, most = np.abs(both).min(axis=1), np.abs(both).max(axis=1)
-    steep = (both[:, 0] * both[:, 1] > 0) & (most > STEEP * least)
-
-    def rest_of(found: Floats, own: Integers) -> Floats:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(
-                np.where(steep[own] & (found * level > 0), level - level**2 / found, found - level)
-            )
-
-    below, above = (rest_of(both[:, end], np.arange(len(ends))) for end in (0, 1))
-    part = low - below * (high - low) / (above - below)
-    open_ = np.arange(len(ends))
-    before = np.zeros(len(ends), dtype=np.int64)
-    for _ in range(MOST_TRIES):
-        if not open_.size:
-            break
-        found = read(start[open_] + part[open_, None] * along[open_])
-        # without a value there is nothing to gain
-        far = np.abs(found - level) > exact
-        open_, rest = open_[far], rest_of(found[far], open_[far])
-        same = (rest > 0) == (below[open_] > 0)
-        low[open_] = np.where(same, part[open_], low[open_])
-        high[open_] = np.where(same, high[open_], part[open_])
-        side = np.where(same, 1, -1)
-        slower = np.where(side == before[open_], 0.5, 1.0)
-        before[open_] = side
-        above[open_] = np.where(same, slower * above[open_], rest)
-        below[open_] = np.where(same, rest, slower * below[open_])
-        part[open_] = low[open_] - below[open_] * (high - low)[open_] / (above - below)[open_]
-    return np.asarray(start + part[:, None] * along)
+            yield replace(line, places=line.places[start : end + 1])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -120,19 +120,17 @@ class Plane(ABC):
             self.kinds.append(kind)
         return self.kinds.index(kind)
 
-    def motions(self, points: Floats) -> list[Motion | None]:
-        """The motion at each point, `None` where there is none."""
+    def motions(self, points: Floats) -> Iterator[Motion | None]:
+        """The motion at each point, `None` where there is none; each counts when its turn is over."""
         self._planned = max(self._planned, self._done + len(points))
-        result: list[Motion | None] = []
         for share in points:
             values = {axis.name: float(axis.value(s)) for axis, s in zip(self.axes, share, strict=True)}
             try:
                 linkage = self.draft.with_values(values).linkage
-                result.append(linkage.motion(self.samples, input=self.input))
+                yield linkage.motion(self.samples, input=self.input)
             except (DescriptionError, RequestError, NotCoveredError):
-                result.append(None)
+                yield None
             self.count(1)
-        return result
 
 
 def measure_of(motion: Motion | None, measure: Measure, take: Take) -> float:
