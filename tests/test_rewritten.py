@@ -1,6 +1,7 @@
 """One linkage written in twenty and more ways: every answer that must agree does (`python -m evidence.rewritten`)."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -129,8 +130,10 @@ def answers(
     )
 
 
-def unexplained(drawn: Answers, written: Answers) -> list[str]:
-    way = Way("anew", sb.load("rssr"), "crank", "rocker")
+ANEW = Way("anew", sb.load("rssr"), "crank", "rocker")
+
+
+def unexplained(drawn: Answers, written: Answers, way: Way = ANEW) -> list[str]:
     return [
         line.partition(":")[0]
         for line in differences(way, drawn, written)
@@ -145,6 +148,28 @@ def test_that_slides_run_off_explains_how_far_they_were_followed_and_nothing_els
     more = answers([1.0, 2.0], closes=0.0, runs_off=True, dead_centres=4)
     assert unexplained(drawn, more) == ["dead centres"]
     assert unexplained(drawn, answers([1.0], closes=0.0, runs_off=True)) == ["circuits"]
+
+
+def test_that_slides_run_off_explains_how_fast_the_output_gets_on_the_way_and_no_more() -> None:
+    def slow(lowest: float, **more: object) -> Answers:
+        one = answers([1.0], closes=0.0, **more)
+        one.circuits[0]["lowest velocity"] = lowest
+        return one
+
+    assert unexplained(slow(0.93, runs_off=True), slow(0.85, runs_off=True)) == []
+    assert unexplained(slow(0.93, runs_off=True), slow(0.85)) == ["open circuit, lowest velocity"]
+
+
+def test_that_an_output_is_held_explains_its_refusal_from_another_joint_on_and_no_other() -> None:
+    def refused(end: str, idle: int) -> Answers:
+        return Answers({"refused": "RequestError", "idle": idle}, [], [], {}, False, refused=end)
+
+    drawn = answers([1.0], idle=1)
+    rolled = replace(ANEW, same_ground=False)
+    assert unexplained(drawn, refused("output", 1), rolled) == []
+    assert unexplained(drawn, refused("output", 1)) == ["refused"]
+    assert unexplained(drawn, refused("input", 1), rolled) == ["refused"]
+    assert unexplained(drawn, refused("output", 2), rolled) == ["refused"]
 
 
 def test_that_not_all_was_followed_hides_no_circuit_away_from_change_points() -> None:

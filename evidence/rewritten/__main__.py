@@ -44,7 +44,8 @@ def compared(one: Drawing, seed: int) -> Compared:
                 answers = answers_of(way)
             except SevenbarError as error:
                 idle = len(way.linkage.idle)
-                answers = Answers({"refused": type(error).__name__, "idle": idle}, [], [], {}, False)
+                words: dict[str, object] = {"refused": type(error).__name__, "idle": idle}
+                answers = Answers(words, [], [], {}, False, refused=str(error).partition(":")[0])
             if first is None:
                 first = answers
                 found.moves = bool(answers.circuits)

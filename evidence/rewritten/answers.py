@@ -44,6 +44,8 @@ class Answers:
     plain: list[Numbers] = field(default_factory=list)
     #: Whether it reports a surface of poses that no circuit shows.
     surface: bool = False
+    #: The argument that was refused, where none but an error came.
+    refused: str = ""
 
     def near(self, other: Answers, way: Way) -> float:
         """How nearly numbers of the two agree."""

@@ -27,6 +27,7 @@ COUNTS = frozenset(
 NUMBERS = ("closes", "extent of the input", "extent of the output", "swing", "time ratio")
 OF_CIRCUITS = frozenset(f"circuit, {name}" for name in NUMBERS)
 OF_OPEN = frozenset(f"{OPEN} circuit, {name}" for name in NUMBERS)
+EXTREMES_OF_OPEN = frozenset(f"{OPEN} circuit, {name} velocity" for name in ("lowest", "highest"))
 
 
 @dataclass(frozen=True)
@@ -131,7 +132,7 @@ REASONS = (
     ),
     Reason(
         "slides run to infinity, and are followed to a distance from where they are written",
-        OF_OPEN,
+        OF_OPEN | EXTREMES_OF_OPEN,
         lambda _, drawn, written: drawn.runs_off and written.runs_off,
     ),
     Reason(
@@ -151,6 +152,15 @@ REASONS = (
         COUNTS | {COMPLETENESS, UNFOLLOWED, "finite", "idle", "refused"},
         lambda way, drawn, written: (
             not way.same_ground and {drawn.words.get("idle"), written.words.get("idle")} == {0, 1}
+        ),
+    ),
+    Reason(
+        "of two joints that move a link idly the last is free, else the first; outputs held are refused",
+        frozenset(("refused",)),
+        lambda way, drawn, written: (
+            not way.same_ground
+            and {drawn.refused, written.refused} == {"output", ""}
+            and drawn.words.get("idle") == written.words.get("idle") == 1
         ),
     ),
 )
