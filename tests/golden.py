@@ -47,6 +47,9 @@ LOADED = ("engine", "rssr_press", "seven_r_bodies")
 SINGLE = {
     "analyze_rocker": ("analyze", "rssr", "--input", "rocker", "--json"),
     "analyze_ranges": ("analyze", "seven_r", "--ranges"),
+    "analyze_net": ("analyze", "examples/watt.toml"),
+    "analyze_net_json": ("analyze", "examples/watt.toml", "--json"),
+    "modes_net": ("modes", "examples/watt.toml", "--at", "10deg"),
     "analyze_chinese": ("analyze", "planar_4r", "--lang", "zh"),
     "modes_slider": ("modes", "rssp", "--input", "slider", "--at=-20mm"),
     "axodes_between": ("axodes", "planar_4r", "--link", "2", "--relative-to", "1"),

@@ -79,7 +79,9 @@ def _listed(key: dict[str, Any]) -> str:
         kind = key.get("items", {})
         return "names" if kind.get("type") == "string" else "tables" if kind else "rows"
     inner = items[0]
-    return f"{len(items)} times {_listed(inner)}" if inner["type"] == "array" else f"{len(items)} numbers"
+    if inner["type"] == "array":
+        return f"{len(items)} times {_listed(inner)}"
+    return f"{len(items)} {'names' if inner['type'] == 'string' else 'numbers'}"
 
 
 def written_schema(pages: Path, _: str) -> str:

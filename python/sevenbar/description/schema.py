@@ -62,10 +62,10 @@ def json_schema() -> dict[str, Any]:
     net = NetForm.model_json_schema(schema_generator=TomlSchema)
     # links by name: of one loop, which may have all that a loop has, or of a net
     forms, of_net = schema["$defs"], net["$defs"]
-    for form, word in (("JointForm", "between"), ("PointForm", "link")):
-        named = of_net[f"Net{form}"]["properties"][word]
-        known = forms[form]["properties"].get(word)
-        forms[form]["properties"][word] = named if known is None else {"anyOf": [known, named]}
+    forms["JointForm"]["properties"]["between"] = of_net["NetJointForm"]["properties"]["between"]
+    link = forms["PointForm"]["properties"]["link"]
+    link["type"] = [link["type"], of_net["NetPointForm"]["properties"]["link"]["type"]]
+    link["description"] += ", or by name"
     forms |= {name: of_net[name] for name in ("PinForm", "NetRodForm")}
     rods = schema["properties"]["rod"]["items"]
     schema["properties"]["rod"]["items"] = {"anyOf": [rods, {"$ref": "#/$defs/NetRodForm"}]}
