@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from evidence.rewritten.families import lattice
+from evidence.rewritten.ways import ways
 from sevenbar.reporting.how_found import how_found
 
 SAMPLES = 96
@@ -543,6 +545,46 @@ def test_circuits_that_touch_do_not_break_off_in_any_frame(written: str) -> None
     assert (motion.completeness, motion.search.unfollowed) == ("counted", 0)
     assert all(circuit.closed for circuit in motion)
     assert [point.ways for point in motion.change_points] == [4] * 7
+
+
+def in_whole_numbers(index: int, name: str) -> sb.Motion:
+    """The motion of a loop on the lattice, written as the name says."""
+    one = lattice(index, seed=1)
+    (way,) = (way for way in ways(one, np.random.default_rng(1)) if way.name == name)
+    return way.linkage.motion(36, input=way.input, output=way.output)
+
+
+@pytest.mark.parametrize("name", ["as drawn", "turned 1", "mirrored and turned"])
+def test_three_curves_through_one_pose_are_all_followed_in_any_frame(name: str) -> None:
+    # two lie in a plane and the third leaves it, and steps that begin in the plane stay there
+    motion = in_whole_numbers(628, name)
+    assert all(circuit.closed for circuit in motion)
+    assert sorted(point.ways for point in motion.change_points) == [4, 4, 6]
+    assert sorted(len(circuit.dead_centres) for circuit in motion) == [4, 6, 6, 22]
+
+
+@pytest.mark.parametrize("name", ["as drawn", "axes reversed", "places moved, turned", "as rows"])
+def test_curves_that_touch_so_closely_that_rounding_hides_them_from_afar_do_not_break_off(name: str) -> None:
+    motion = in_whole_numbers(539, name)
+    assert len(motion.circuits) == 4
+    assert all(circuit.closed for circuit in motion)
+    assert [point.ways for point in motion.change_points] == [4, 4]
+
+
+@pytest.mark.parametrize("name", ["as drawn", "mirrored", "axes reversed", "turned and moved off"])
+def test_an_output_that_turns_back_in_a_pose_of_whole_numbers_and_next_to_it_does_both(name: str) -> None:
+    # by 3.6e-6 rad, within a step that ends in that pose
+    motion = in_whole_numbers(1198, name)
+    assert sorted(len(circuit.dead_centres) for circuit in motion) == [6, 8, 14]
+
+
+@pytest.mark.parametrize("name", ["as drawn", "mirrored", "as rows"])
+def test_an_output_that_turns_back_where_its_rate_is_rounding_does_so_once(name: str) -> None:
+    motion = in_whole_numbers(1416, name)
+    turning_back = [circuit for circuit in motion if circuit.input_range is not None]
+    assert [len(circuit.dead_centres) for circuit in turning_back] == [6, 6]
+    for circuit in turning_back:
+        assert circuit.swing == pytest.approx(1.854590436, abs=1e-8)
 
 
 def test_a_circuit_runs_on_where_a_ball_crosses_the_last_axis() -> None:

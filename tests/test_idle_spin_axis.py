@@ -124,3 +124,18 @@ def test_axes_that_the_line_keeps_away_from_stay_as_they_were():
     assert sb.load("rssr").spin_axes.keys() == {"ball_a"}
     linkage, _ = slider_crank(1.0, 3.0, from_slide=False)
     np.testing.assert_allclose(linkage.spin_axes["ball_a"], [0.0, 0.0, 1.0], atol=1e-15)
+
+
+def test_slides_in_one_direction_are_idle_across_turns_about_it_from_either_end():
+    up, along = (0, 1, 0), (1, 0, 0)
+    places = [(-2, 0, -1), (0, -2, 1), (1, 1, 1), (-1, -2, 0), (1, 0, -2), (-1, -1, 0)]
+    axes = [up, along, along, along, up, (0, 0, 1)]
+    joints = [
+        {"name": f"j{k + 1}", "kind": kind, "at": list(at), "axis": list(axis)}
+        for k, (kind, at, axis) in enumerate(zip("RPRCRR", places, axes, strict=True))
+    ]
+    for order, links in ((joints, "2 and 3"), (joints[::-1], "3 and 4")):
+        motion = sb.from_axes(order).motion(24, input="j1", output="j6")
+        assert motion.motion_type == "rigid"
+        (idle,) = motion.mobility.idle
+        assert idle.startswith(f"slide of links {links} together along the common direction of j")

@@ -12,7 +12,8 @@ import pytest
 
 import sevenbar as sb
 from evidence.rewritten.__main__ import compared
-from evidence.rewritten.families import families
+from evidence.rewritten.families import families, lattice
+from evidence.rewritten.ways import ways
 from sevenbar.errors import RequestError
 from sevenbar.reporting.facts import meaning
 from textbook_loops import linkage
@@ -138,6 +139,17 @@ def test_a_neighbour_that_is_met_once_moves_on_two_circuits(off):
     assert motion.mobility.rank == 6
     assert motion.mobility.met_twice == 0
     assert "twice" not in meaning(motion)
+
+
+@pytest.mark.parametrize("name", ["as drawn", "turned 2"])
+def test_a_joint_that_rests_along_one_motion_is_not_held_where_another_moves_it(name):
+    # a kite on which the crank may turn with its coupler folded on it, and three joints that rest
+    one = lattice(1095, seed=1)
+    (way,) = (way for way in ways(one, np.random.default_rng(1)) if way.name == name)
+    motion = way.linkage.motion(36, input=way.input, output=way.output)
+    assert motion.motion_type == "change-point"
+    assert [circuit.closed for circuit in motion] == [True, True]
+    assert [point.circuits for point in motion.change_points] == [(0, 1), (0, 1)]
 
 
 def test_loops_that_are_overconstrained_meet_nothing_twice():

@@ -75,6 +75,11 @@ def _unfollowed(one: Answers) -> bool:
     return bool(one.words.get(UNFOLLOWED))
 
 
+def _idle(one: Answers) -> int:
+    count = one.words.get("idle", 0)
+    return count if isinstance(count, int) else 0
+
+
 def _sure(drawn: Answers, written: Answers) -> set[object]:
     return {drawn.words.get(COMPLETENESS), written.words.get(COMPLETENESS)}
 
@@ -150,8 +155,18 @@ REASONS = (
     Reason(
         "beside the ground the turn of a link is a motion of all others as one body",
         COUNTS | {COMPLETENESS, UNFOLLOWED, "finite", "idle", "refused"},
+        lambda way, drawn, written: not way.same_ground and abs(_idle(drawn) - _idle(written)) == 1,
+    ),
+    Reason(
+        "in poses that stand alone an RSSR is at a change point by its closed form, rigid written otherwise",
+        frozenset(("motion type",)),
         lambda way, drawn, written: (
-            not way.same_ground and {drawn.words.get("idle"), written.words.get("idle")} == {0, 1}
+            not way.same_ground
+            and not drawn.circuits
+            and not written.circuits
+            and bool(drawn.words.get("change points"))
+            and {drawn.words.get("motion type"), written.words.get("motion type")}
+            == {"change-point", "rigid"}
         ),
     ),
     Reason(
@@ -160,7 +175,7 @@ REASONS = (
         lambda way, drawn, written: (
             not way.same_ground
             and {drawn.refused, written.refused} == {"output", ""}
-            and drawn.words.get("idle") == written.words.get("idle") == 1
+            and _idle(drawn) == _idle(written) == 1
         ),
     ),
 )

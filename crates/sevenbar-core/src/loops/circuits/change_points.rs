@@ -153,8 +153,9 @@ pub(super) fn change_point(
     }
     found.partner = partners(&found.rays, found.lost);
     let hidden = found.rays.iter().map(|r| r.hidden).fold(0.0, f64::max);
-    if hidden < widest / LEAST_RADIUS {
-        found.cut = found.cut.max(hidden);
+    let farthest = widest / LEAST_RADIUS;
+    if hidden < farthest || place.may_touch() {
+        found.cut = found.cut.max(hidden.min(farthest));
     }
     if place.may_touch() {
         let early = found

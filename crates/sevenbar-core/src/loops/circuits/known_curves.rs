@@ -295,7 +295,7 @@ impl Curves {
             if branches && (by_arcs() || contains(chain, &curve, &self.arcs)) {
                 continue;
             }
-            let lost = curve.ends_by(End::Singular) && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
+            let lost = curve.nodes.iter().all(|n| n.inverse_norm > LOST);
             if curve.nodes.len() < 3 || curve.ends_by(End::Open) || lost {
                 self.not_followed.push(start.0);
             } else if !self.is_known(chain, &curve) {

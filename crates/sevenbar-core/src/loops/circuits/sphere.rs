@@ -2,10 +2,10 @@
 //!
 //! Source: docs/theory.md, (19) to (22).
 
-use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::chain::{Chain, Configuration, Placed};
 use crate::loops::equation::dense::{COLUMNS, Columns, dot, least_squares, length, singular_values};
 use crate::loops::equation::rotations::squared_up;
-use crate::loops::mobility::singular_place::{LAST_STEP, MOST_STEPS, Place, STEADY};
+use crate::loops::mobility::singular_place::{LAST_STEP, MOST_STEPS, Place, STEADY, power};
 use crate::loops::modes::polish::CLOSED;
 use crate::random::Random;
 use crate::stopping;
@@ -30,7 +30,7 @@ const WANDERING: f64 = 1e-2;
 /// Longest step of Newton's method on a sphere [parts of the radius]: it cannot cross the sphere.
 const LONGEST_STEP: f64 = 0.3;
 
-/// Where curves may touch, the first steps of Newton's method see only what is seen to first order, so that the direction is kept: the
+/// Where curves may touch, the first steps of Newton's method close only what is seen to first order, and keep the direction: the
 /// rest is of a higher order than the error with which a start closes.
 const FIRST_STEPS: usize = 3;
 
@@ -191,7 +191,6 @@ pub(super) fn on_sphere(
     let first = if place.may_touch() { FIRST_STEPS } else { 0 };
     for step in 0..MOST_STEPS {
         stopping::piece();
-        let zero = if step < first { radius } else { chain.no_rank() };
         let placed = chain.place(&at);
         let off = chain.difference(&place.at, &at);
         let seen: Vec<f64> = place.free.iter().map(|f| dot(f, &off)).collect();
@@ -199,23 +198,22 @@ pub(super) fn on_sphere(
         if !(distance > INNERMOST * radius && length(&off) < OUTERMOST * radius) {
             return None;
         }
-        let mut outward = [0.0; COLUMNS];
-        for (x, free) in seen.iter().zip(&place.free) {
-            for c in 0..COLUMNS {
-                outward[c] += x / distance * free[c];
+        let (columns, right) = if step < first {
+            let aimed: Vec<f64> = place.free.iter().map(|f| radius * dot(f, direction)).collect();
+            along(chain, place, &placed, &seen, &aimed)
+        } else {
+            let mut outward = [0.0; COLUMNS];
+            for (x, free) in seen.iter().zip(&place.free) {
+                for c in 0..COLUMNS {
+                    outward[c] += x / distance * free[c];
+                }
             }
-        }
-        let columns: Vec<Vec<f64>> = (0..chain.columns)
-            .map(|c| {
-                let mut column = placed.screws[c].to_vec();
-                column.push(outward[c]);
-                column
-            })
-            .collect();
-        let mut right: Vec<f64> = placed.error.iter().map(|e| -e).collect();
-        right.push(radius - distance);
+            let column = |c: usize| placed.screws[c].iter().copied().chain([outward[c]]).collect();
+            let right = placed.error.iter().map(|e| -e).chain([radius - distance]);
+            ((0..chain.columns).map(column).collect(), right.collect())
+        };
         let mut by = [0.0; COLUMNS];
-        by[..chain.columns].copy_from_slice(&least_squares(&columns, &right, zero));
+        by[..chain.columns].copy_from_slice(&least_squares(&columns, &right, chain.no_rank()));
         let size = length(&by);
         // where curves touch, each step is at most half the one before
         if !size.is_finite() || (step >= WANDERING_AFTER && size > WANDERING * radius) {
@@ -234,6 +232,23 @@ pub(super) fn on_sphere(
     }
     let closed = if chain.is_redundant() { chain.agree } else { CLOSED };
     (before < STEADY && chain.residual(&chain.place(&at)) < closed).then_some(at)
+}
+
+/// The equations of a step that closes what is seen to first order at a place, and takes what is free from `seen` to where it is `aimed`.
+fn along(
+    chain: &Chain,
+    place: &Place,
+    placed: &Placed,
+    seen: &[f64],
+    aimed: &[f64],
+) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let column = |c: usize| {
+        let powers = place.seen.iter().map(|row| power(row, &placed.screws[c]));
+        powers.chain(place.free.iter().map(|f| f[c])).collect()
+    };
+    let left = place.seen.iter().map(|row| -power(row, &placed.error));
+    let right = left.chain(aimed.iter().zip(seen).map(|(a, s)| a - s));
+    ((0..chain.columns).map(column).collect(), right.collect())
 }
 
 /// Unit vectors in the free directions of a place from which Newton's method begins.

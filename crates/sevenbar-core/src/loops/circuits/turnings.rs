@@ -60,29 +60,46 @@ pub(crate) fn turnings(curve: &Curve, chain: &Chain, column: usize) -> Vec<Turni
     found
 }
 
-/// Forgets places in a row, two by two, between which a column does not move: rates that are rounding have no sign.
+/// Of places in a row between which a column does not move leaves one where it turns back: rates that are rounding have no sign, and it
+/// does where it comes from the side to which it goes. Where an open curve ends in such a place, rates are asked.
 fn forget_unmoved(curve: &Curve, found: &mut Vec<Turning>, column: usize) {
-    let gained = if curve.is_closed() {
-        curve.gained()[column]
-    } else {
-        f64::INFINITY
-    };
-    while found.len() > 1 {
-        let count = found.len();
-        let moved = |k: usize| {
-            let [one, next] = [k, (k + 1) % count].map(|k| found[k].node.at.values[column]);
-            (next - one + if k + 1 < count { 0.0 } else { gained }).abs()
-        };
-        let Some(least) = (0..count).min_by(|&a, &b| moved(a).total_cmp(&moved(b))) else {
-            break;
-        };
-        if moved(least) > UNMOVED {
-            break;
+    let value = |t: &Turning| t.node.at.values[column];
+    let (closed, gained) = (curve.is_closed(), curve.gained()[column]);
+    let mut rows: Vec<Vec<Turning>> = Vec::new();
+    for turning in found.drain(..) {
+        match rows.last_mut() {
+            Some(row) if (value(&row[row.len() - 1]) - value(&turning)).abs() < UNMOVED => row.push(turning),
+            _ => rows.push(vec![turning]),
         }
-        let next = (least + 1) % count;
-        found.remove(least.max(next));
-        found.remove(least.min(next));
     }
+    let last = rows.len().saturating_sub(1);
+    if closed && last > 0 && (value(&rows[0][0]) + gained - value(&rows[last][0])).abs() < UNMOVED {
+        // round the place where the curve begins
+        let first = rows.remove(0);
+        rows[last - 1].extend(first);
+    }
+    let ends = curve.ends().map(|at| at.values[column]);
+    let values: Vec<f64> = rows.iter().map(|row| value(&row[0])).collect();
+    found.extend(rows.into_iter().enumerate().filter_map(|(k, row)| {
+        let here = values[k];
+        let before = match k.checked_sub(1) {
+            Some(k) => values[k],
+            None if closed => values[values.len() - 1] - gained,
+            None => ends[0],
+        };
+        let after = match values.get(k + 1) {
+            Some(&next) => next,
+            None if closed => values[0] + gained,
+            None => ends[1],
+        };
+        let sides = [before - here, after - here];
+        let turns = if sides.iter().any(|side| side.abs() < UNMOVED) {
+            !row.len().is_multiple_of(2)
+        } else {
+            sides[0] * sides[1] > 0.0
+        };
+        turns.then(|| row[row.len() / 2])
+    }));
 }
 
 /// The same, where a column turns back at a change point as its rates beside have it, the first of them that is not `still`.
@@ -152,19 +169,24 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
                 _ => marks.push((s, rate)),
             }
         }
-        if marks.len() < 2 {
+        // one stretch, or a second whose sign is rounding where a node lies in a zero
+        if marks.len() < 2 || (marks.len() == 2 && marks.iter().any(|mark| mark.1.abs() < AT_REST)) {
             // two zeros that no place seen lies between
-            let Some(dip) = dip(chain, (a, b), column, &seen) else {
+            if let Some(dip) = dip(chain, (a, b), column, &seen) {
+                marks = vec![seen[0], dip, seen[PLACES]];
+            } else if marks.len() < 2 {
                 continue;
-            };
-            marks = vec![seen[0], dip, seen[PLACES]];
+            }
         }
         // both ends are known, and the places between are checked
         let count = marks.len();
+        let counts =
+            |n: &Node, mark: (f64, f64)| mark.1.abs() < AT_REST || n.rates[0][column].abs() >= AT_REST;
         for (k, mark) in marks.iter_mut().enumerate() {
-            *mark = if k == 0 {
+            // an end whose rate is rounding has no sign where a place has one
+            *mark = if k == 0 && counts(a, *mark) {
                 (0.0, a.rates[0][column])
-            } else if k + 1 == count {
+            } else if k + 1 == count && counts(b, *mark) {
                 (a.step, b.rates[0][column])
             } else {
                 let rate = curve::ahead(chain, a, mark.0).map_or(mark.1, |n| n.rates[0][column]);
@@ -191,7 +213,12 @@ fn dip(
     column: usize,
     seen: &[(f64, f64); PLACES + 1],
 ) -> Option<(f64, f64)> {
-    let sign = seen[0].1.signum();
+    // a rate of zero has no sign
+    let greatest = seen
+        .iter()
+        .map(|s| s.1)
+        .max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+    let sign = greatest.signum();
     let rate = |k: usize| sign * seen[k].1;
     let falls_in = |k: usize| match k {
         0 => sign * a.rates[1][column] < 0.0,
@@ -206,7 +233,8 @@ fn dip(
     for _ in 0..DIP_STEPS {
         let node = curve::ahead(chain, a, s)?;
         let [rate, slope, bend] = node.rates.map(|order| sign * order[column]);
-        if rate < 0.0 {
+        // at a zero in a node the sign is rounding
+        if rate < -AT_REST {
             return Some((s, sign * rate));
         }
         // where the series is least, its value is `rate - gain`

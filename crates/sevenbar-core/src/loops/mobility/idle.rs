@@ -72,9 +72,9 @@ fn beside_each_other(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
     let mut taken = vec![false; count];
     // the ground cannot spin, so the last joint and the first are no such pair
     let neighbours = (0..count.saturating_sub(1)).map(|i| (i, i + 1));
-    let across = (0..count.saturating_sub(2))
-        .filter(|&i| passes_on(&kinds[i..i + 3], &links[i..i + 2]))
-        .map(|i| (i, i + 2));
+    let across = (2..count)
+        .flat_map(|apart| (0..count - apart).map(move |i| (i, i + apart)))
+        .filter(|&(i, next)| pass_on(&kinds[i..=next], &links[i..next]));
     for (i, next) in neighbours.chain(across) {
         let link = links[i + 1..next]
             .iter()
@@ -98,22 +98,27 @@ fn beside_each_other(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
     found
 }
 
-/// Whether a joint between two others carries an axis of theirs into itself, as the slide of a cylindrical joint does: it takes no part
-/// in what the two do.
-fn passes_on(kinds: &[Kind], links: &[Pose]) -> bool {
+/// Whether the joints between the first and the last carry an axis of theirs into itself, as the slide of a cylindrical joint does, and
+/// turns about parallel axes do a slide's: they take no part in what the two do.
+fn pass_on(kinds: &[Kind], links: &[Pose]) -> bool {
+    let last = kinds.len() - 1;
     // the axes of the two are one where their screws depend
-    let (own, link) = if kinds[0] == Kind::Ball {
-        (kinds[2], &links[1])
-    } else {
-        (kinds[0], &links[0])
-    };
-    let other = match own {
+    let backwards = kinds[0] == Kind::Ball;
+    let other = match kinds[if backwards { last } else { 0 }] {
         Kind::Turn => Kind::Slide,
         Kind::Slide => Kind::Turn,
         _ => return false,
     };
-    let [x, y, _] = link.turn([0.0, 0.0, 1.0]);
-    kinds[1] == other && x.hypot(y) < PARALLEL
+    let between = if backwards {
+        &links[1..]
+    } else {
+        &links[..last - 1]
+    };
+    let parallel = |link: &Pose| {
+        let [x, y, _] = link.turn([0.0, 0.0, 1.0]);
+        x.hypot(y) < PARALLEL
+    };
+    kinds[1..last].iter().all(|&kind| kind == other) && between.iter().all(parallel)
 }
 
 /// Whether the screws of two neighbours depend on each other in every pose: looked at in a few poses at random.

@@ -51,14 +51,18 @@ pub(crate) const STEADY: f64 = 1e-9;
 
 const UNSTEADY: f64 = 1e-6;
 
-/// A part of the greatest slope below which nothing is solved for.
+/// A part of the greatest slope below which nothing is solved for; the second where no constraint is redundant, as slopes fall with the
+/// square of the distance to where curves touch.
 const NO_SLOPE: f64 = 1e-9;
+const NO_SLOPE_IN_TOUCH: f64 = 1e-12;
 
 /// A place where the screws lose rank, and the closure there.
 pub(crate) struct Place {
     pub at: Configuration,
     /// Free directions, of unit length and square to each other.
     pub free: Vec<Columns>,
+    /// The wrenches that see a motion.
+    pub seen: Vec<Vec<f64>>,
     /// The value and the second-order form, by rows, of each part of the closure that the screws leave and that is not redundant.
     pub forms: Vec<(f64, Vec<f64>)>,
     /// Closure error that no form explains.
@@ -190,7 +194,12 @@ pub(super) fn settled_at_rank(chain: &Chain, rough: &Configuration, rank: usize)
                 right[split.seen.len() + w * split.free.len() + f] = -power(row, &slope);
             }
         }
-        let step = least_squares(&columns, &right, NO_SLOPE);
+        let zero = if chain.is_redundant() {
+            NO_SLOPE
+        } else {
+            NO_SLOPE_IN_TOUCH
+        };
+        let step = least_squares(&columns, &right, zero);
         let mut by = [0.0; COLUMNS];
         by[..chain.columns].copy_from_slice(&step);
         let size = length(&by);
@@ -245,6 +254,7 @@ pub(super) fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place 
     Place {
         at: *at,
         free: split.free,
+        seen: split.seen,
         forms: found,
         open: f64::sqrt(open),
         agree: chain.agree,
@@ -276,6 +286,6 @@ impl Split {
     }
 }
 
-pub(super) fn power(row: &[f64], twist: &Twist) -> f64 {
+pub(crate) fn power(row: &[f64], twist: &Twist) -> f64 {
     row.iter().zip(twist).map(|(a, b)| a * b).sum()
 }

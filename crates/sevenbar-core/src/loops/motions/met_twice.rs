@@ -21,18 +21,27 @@ pub(super) struct Held {
     pub curves: Curves,
 }
 
-/// The loop with a joint held that rests along a motion through a pose, and that motion; `None` where there is none.
+/// The loop with a joint held that rests along a motion through a pose, and that motion; `None` where there is none. Of several such joints
+/// the one that leaves most to be followed: one that rests along this motion alone would keep others that it meets away.
 pub(super) fn held_at(linkage: &Loop, pose: &Configuration) -> Option<Held> {
     let chain = linkage.reduced.chain.as_ref()?;
     let (at, joints) = joints_at_rest(chain, pose);
-    joints.into_iter().find_map(|still| {
-        let held = holding(linkage, still)?;
-        let own = held.reduced.chain.as_ref()?;
+    let mut most: Option<Held> = None;
+    for still in joints {
+        let Some(held) = holding(linkage, still) else {
+            continue;
+        };
+        let Some(own) = &held.reduced.chain else {
+            continue;
+        };
         let mut curves = Curves::new(&[0]);
         curves.take(own, &[without(chain, still.joint, &at)], 0);
         curves.finish(own);
-        (!curves.curves.is_empty()).then_some(Held { still, linkage: held, curves })
-    })
+        if curves.curves.len() > most.as_ref().map_or(0, |m| m.curves.curves.len()) {
+            most = Some(Held { still, linkage: held, curves });
+        }
+    }
+    most
 }
 
 /// The motions through poses from which none could be followed.
