@@ -9,8 +9,21 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.measures import MEASURES, measures_named, rows_of
+from sevenbar.kinematics.measures import (
+    DERIVED_MEASURES,
+    EXTENT_MEASURES,
+    FORCE_MEASURES,
+    MEASURES,
+    NAMED,
+    Measure,
+    measures_named,
+    rows_of,
+)
+from sevenbar.sweep.batches import batched
+from sevenbar.sweep.ordinary import analysed
+from sevenbar.sweep.plan import SweepPlan
 
 
 def test_the_papers_crank_rocker_is_measured_as_table_1_has_it() -> None:
@@ -30,6 +43,31 @@ def test_columns_tell_units_by_what_the_output_does() -> None:
     assert velocity.column(turning, turning.drive.output) == "velocity_highest_rad_s"
     assert swing.column(sliding, sliding.drive.output) == "swing_mm"
     assert velocity.column(sliding, sliding.drive.output) == "velocity_highest_mm_s"
+
+
+@pytest.mark.parametrize(("name", "length"), [("rssr", "L1"), ("seven_r", "length_7")])
+def test_a_measure_is_its_row_in_batches_too(name, length, monkeypatch) -> None:
+    row = Measure(
+        *("strokes", "circuit", "ratio", lambda circuit: (circuit.time_ratio or math.nan) ** 2, "its square"),
+        batch=lambda many: many.raw.time_ratio**2,
+    )
+    monkeypatch.setitem(NAMED, "strokes", row)
+    linkage = sb.load(name)
+    own = Draft.of_linkage(linkage).dimension(length).value
+    plan = SweepPlan.of(linkage, {length: [own, 0.99 * own]}, ["strokes", "time_ratio"])
+    values = plan.space.values(0, plan.space.count)
+    (block,), rest = batched(plan, values, 1)
+    assert not len(rest)
+    one_by_one = analysed(plan, values, 0, np.arange(plan.space.count)).columns["strokes"]
+    assert block.columns["strokes"].tolist() == pytest.approx(one_by_one.tolist(), nan_ok=True)
+
+
+def test_a_measure_without_a_batch_column_is_of_each_linkage_by_itself() -> None:
+    without = [name for name, measure in NAMED.items() if measure.batch is None]
+    assert without == [*FORCE_MEASURES, *EXTENT_MEASURES, *DERIVED_MEASURES]
+    plan = SweepPlan.of(sb.load("rssr"), {"L1": [200.0, 250.0]}, ["swing", "usable"])
+    blocks, rest = batched(plan, plan.space.values(0, 2), 1)
+    assert (blocks, rest.tolist()) == ([], [0, 1])
 
 
 def test_a_linkage_that_cannot_be_assembled_keeps_its_row() -> None:

@@ -35,7 +35,7 @@ def test_a_screw_that_turns_on_without_end_is_a_spindle_and_no_rocker():
     assert (circuit.motion_type, circuit.closed) == ("double-spindle", False)
     assert circuit.input_range[1] - circuit.input_range[0] > 10 * math.tau
     batch = loop_motions([linkage], 0, 1, 24, 1)
-    assert set(batch.columns["circuit_type"]) == {"double-spindle"}
+    assert set(batch.circuit_types) == {"double-spindle"}
 
 
 def test_the_motion_is_that_of_the_slider_crank_of_turns():

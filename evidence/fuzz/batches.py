@@ -8,6 +8,7 @@ import sevenbar as sb
 from evidence.fuzz.checks import Broken, hold
 from evidence.fuzz.rssrs import Floats, description
 from sevenbar.description.forms import from_description
+from sevenbar.kinematics.measures import MEASURES
 from sevenbar.kinematics.solvers.batches import (
     CODES,
     INVALID,
@@ -58,16 +59,17 @@ def of_rssrs(dimensions: Floats, side: str) -> list[str]:
     _measured(motions, kept)
     turns = np.isin(motions.types[motions.linkage].astype(str), ("crank-rocker", "double-crank"))
     # branches that pass each other within rounding have rates without a digit
-    passing = motions.columns["transmission_lowest"] < PASSING
+    columns = _columns(motions)
+    passing = columns["transmission_lowest"] < PASSING
     for name in ("velocity_lowest", "velocity_highest", "acceleration_lowest", "jerk_highest"):
-        finite = np.isfinite(motions.columns[name])
+        finite = np.isfinite(columns[name])
         hold(
             ((finite == turns) | (turns & passing))[kept].all(),
             f"{name} is there where the input rocks, or not where it turns",
         )
     least, greatest = (
-        motions.columns["transmission_lowest"][kept],
-        motions.columns["transmission_highest"][kept],
+        columns["transmission_lowest"][kept],
+        columns["transmission_highest"][kept],
     )
     hold(
         ((least >= 0) & (least <= greatest) & (greatest <= 90 + 1e-9)).all(),
@@ -125,14 +127,20 @@ def _rising(row: Floats, count: int, what: str, top: float = 2 * np.pi) -> None:
         hold(((row[:count] >= 0) & (row[:count] < top)).all(), f"{what}: a limit outside a turn")
 
 
+def _columns(motions: Motions) -> dict[str, np.ndarray]:
+    """The measures (c,) of circuits that batches have, by name."""
+    return {m.name: m.batch(motions) for m in MEASURES.values() if m.batch and m.per == "circuit"}
+
+
 def _measured(motions: Motions, kept: np.ndarray) -> None:
     """Measures are finite or NaN, lowest and highest together."""
-    for name, values in motions.columns.items():
+    columns = _columns(motions)
+    for name, values in columns.items():
         if values.dtype == object:
             continue
         if np.isinf(values[kept]).any():
             raise Broken(f"{name} is infinite")
     for rate in ("velocity", "acceleration", "jerk"):
-        low, high = (motions.columns[f"{rate}_{end}"][kept] for end in ("lowest", "highest"))
+        low, high = (columns[f"{rate}_{end}"][kept] for end in ("lowest", "highest"))
         hold((np.isnan(low) == np.isnan(high)).all(), f"one end of {rate}")
         hold((~(low > high)).all(), f"{rate}: the lowest above the highest")

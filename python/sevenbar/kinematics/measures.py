@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
+import numpy as np
+import numpy.typing as npt
+
 from sevenbar.errors import RequestError, no_joint, shown, suggestion
 from sevenbar.forces.sizing import Bearing, CycleLoads
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -20,6 +23,7 @@ from sevenbar.kinematics.numbers.gradients import MeasureSlopes, advantage_slope
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 from sevenbar.kinematics.ranges.extent_slopes import extent_slopes
+from sevenbar.kinematics.solvers.batches import Motions
 from sevenbar.kinematics.transmission.slopes import transmission_slopes
 
 #: What a measure is a number of: of angles and lengths by the output.
@@ -55,6 +59,8 @@ class Measure:
 
     `value` takes the Motion, or the Circuit; angles come in degrees, as people read them, other numbers as
     the motion has them. It gives `None` where the measure has no meaning. No value is outside the `bounds`.
+    `batch`, where the core measures many at once, takes their Motions and gives the column of linkages (n,)
+    or circuits (c,); with `of_type` an RSSR's `Classified` has enough, which takes no circuits.
     """
 
     name: str
@@ -64,6 +70,8 @@ class Measure:
     title: str
     bounds: tuple[float, float] = ANY
     family: Family = "motion"
+    batch: Callable[[Any], npt.NDArray[Any]] | None = None
+    of_type: bool = False
 
     def __reduce__(self) -> tuple[Callable[..., Measure], tuple[Any, ...]]:
         """Pickled by its name, since the functions of `MEASURES` have none; a caller's with its function."""
@@ -122,18 +130,29 @@ def _ends(
     highest: str,
     bounds: tuple[float, float] = ANY,
     family: Family = "motion",
+    *,
+    batched: bool = True,
 ) -> list[Measure]:
-    """The lowest and the highest of what a circuit has under a name, with their titles."""
+    """The lowest and the highest of what a circuit has under a name, with their titles.
+
+    `batched`: the core's batches have them under that name, too.
+    """
 
     def value(end: str, circuit: Circuit) -> float | None:
         extremes: Extremes | None = getattr(circuit, name)
         result = None if extremes is None else getattr(extremes, end)
         return math.degrees(result) if result is not None and quantity == "angle" else result
 
-    titles = {"lowest": lowest, "highest": highest}
+    def column(place: int, motions: Motions) -> npt.NDArray[Any]:
+        result = getattr(motions.raw, name)[:, place]
+        return np.degrees(result) if quantity == "angle" else np.asarray(result)
+
     return [
-        Measure(f"{name}_{end}", "circuit", quantity, partial(value, end), title, bounds, family)
-        for end, title in titles.items()
+        Measure(
+            *(f"{name}_{end}", "circuit", quantity, partial(value, end), title, bounds, family),
+            partial(column, place) if batched else None,
+        )
+        for end, place, title in (("lowest", 0, lowest), ("highest", 2, highest))
     ]
 
 
@@ -199,21 +218,38 @@ def _usable_share(circuit: Circuit) -> float | None:
         return None
 
 
-#: Every measure of the motion that has a name: the core's batches have them, too.
+#: Every measure of the motion that has a name.
 MEASURES: dict[str, Measure] = _by_name(
-    Measure("motion_type", "linkage", "word", lambda m: m.motion_type, "motion type"),
-    Measure("circuits", "linkage", "count", lambda m: len(m.circuits), "number of circuits"),
-    Measure("limits", "linkage", "count", lambda m: len(m.limits), "number of limits of the input"),
-    Measure("circuit_type", "circuit", "word", lambda c: c.motion_type, "the circuit's own motion type"),
-    Measure("turns", "circuit", "count", lambda c: c.turns, "turns of the input until the circuit closes"),
-    Measure("swing", "circuit", "output", _swing, "range of a rocking output", SIZE),
     Measure(
-        "time_ratio",
-        "circuit",
-        "ratio",
-        lambda c: c.time_ratio,
-        "slower stroke over the quicker",
-        (1.0, math.inf),
+        *("motion_type", "linkage", "word", lambda m: m.motion_type, "motion type"),
+        batch=lambda many: many.types,
+        of_type=True,
+    ),
+    Measure(
+        *("circuits", "linkage", "count", lambda m: len(m.circuits), "number of circuits"),
+        batch=lambda many: many.circuits.astype(np.float64),
+    ),
+    Measure(
+        *("limits", "linkage", "count", lambda m: len(m.limits), "number of limits of the input"),
+        batch=lambda many: np.isfinite(many.limits).sum(axis=1).astype(np.float64),
+        of_type=True,
+    ),
+    Measure(
+        *("circuit_type", "circuit", "word", lambda c: c.motion_type, "the circuit's own motion type"),
+        batch=lambda many: many.circuit_types,
+    ),
+    Measure(
+        *("turns", "circuit", "count", lambda c: c.turns, "turns of the input until the circuit closes"),
+        batch=lambda many: many.raw.turns.astype(np.float64),
+    ),
+    Measure(
+        *("swing", "circuit", "output", _swing, "range of a rocking output", SIZE),
+        batch=lambda many: np.degrees(many.raw.swing) if many.output_turns else many.raw.swing,
+    ),
+    Measure(
+        *("time_ratio", "circuit", "ratio", lambda c: c.time_ratio, "slower stroke over the quicker"),
+        bounds=(1.0, math.inf),
+        batch=lambda many: many.raw.time_ratio,
     ),
     *_ends(
         *("transmission", "angle", "least transmission angle", "greatest transmission angle"),
@@ -249,11 +285,12 @@ EXTENT_MEASURES: dict[str, Measure] = _by_name(
     ),
 )
 
-#: Measures that follow from others of a circuit, and are in no batch of the core.
+#: Measures that follow from others of a circuit.
 DERIVED_MEASURES: dict[str, Measure] = _by_name(
     *_ends(
         *("advantage", "advantage", "least mechanical advantage", "greatest mechanical advantage"),
         family="advantage",
+        batched=False,
     ),
 )
 

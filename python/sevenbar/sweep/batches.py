@@ -15,8 +15,8 @@ from sevenbar.kinematics.solvers.batches import (
     INVALID,
     RSSR_ROWS,
     WORDS,
+    Classified,
     Motions,
-    MotionTypes,
     loop_motions,
     rssr_motions,
     rssr_rows,
@@ -24,10 +24,7 @@ from sevenbar.kinematics.solvers.batches import (
 )
 from sevenbar.kinematics.transmission.angle import coupling_of
 from sevenbar.sweep.block import NO_CIRCUIT, Block
-from sevenbar.sweep.plan import OF_TYPES, SweepPlan
-
-#: Measures that the core's batches of general loops have not.
-OF_COUPLERS = {"transmission_lowest", "transmission_highest"}
+from sevenbar.sweep.plan import SweepPlan
 
 #: Sizes [file's units] between which nothing is refused by the description; others are checked one by one.
 LEAST, GREATEST = 1e-50, 1e50
@@ -63,7 +60,7 @@ def _of_rssrs(plan: SweepPlan, values: Floats, threads: int) -> Block:
     # no length is negative
     fits &= (dimensions[[RSSR_ROWS.index(name) for name in ("L1", "L2", "L3")]] >= LEAST).all(axis=0)
     which = np.flatnonzero(fits)
-    if OF_TYPES.issuperset(plan.measures):
+    if all(measure.of_type for measure in plan.measured):
         block = _of_types(plan, dimensions[:, which], threads)
     else:
         motions = rssr_motions(dimensions[:, which], plan.input, speed[which], threads)
@@ -76,7 +73,8 @@ def _of_loops(plan: SweepPlan, values: Floats, threads: int) -> Block | None:
     linkages: list[Linkage] = []
     which: list[int] = []
     first, last = (plan.draft.linkage.columns.index(name) for name in (plan.input, plan.output))
-    angles = bool(OF_COUPLERS & set(plan.measures))
+    # which the core's batches of general loops have not
+    angles = any(measure.family == "transmission" for measure in plan.measured)
     for index, row in enumerate(values.T):
         try:
             linkage = plan.draft_of(row).linkage
@@ -107,40 +105,37 @@ def _of_types(plan: SweepPlan, dimensions: Floats, threads: int) -> Block:
     """A row for each linkage, of what follows from its dimensions without its circuits."""
     codes, limits = rssr_types(dimensions, plan.input, threads)
     linkage = np.flatnonzero(codes != INVALID)
-    columns = _of_linkages(plan, linkage, WORDS[codes], limits)
+    columns = _of_linkages(plan, Classified(WORDS[codes], limits), linkage)
     return Block.measured(linkage, np.full(len(linkage), NO_CIRCUIT), columns)
 
 
 def _of_circuits(plan: SweepPlan, motions: Motions) -> Block:
     """A row for each linkage, or for each of its circuits where one of the measures is of circuits."""
-    own = [measure for measure in plan.measured if measure.per == "circuit"]
-    if not own:
+    if not plan.per_circuit:
         linkage = np.flatnonzero(motions.clear)
-        circuit = np.full(len(linkage), NO_CIRCUIT)
-    else:
-        without = np.flatnonzero(motions.clear & (motions.circuits == 0))
-        selected = np.flatnonzero(motions.clear[motions.linkage])
-        linkage = np.concatenate([motions.linkage[selected], without])
-        circuit = np.concatenate([motions.circuit[selected], np.full(len(without), NO_CIRCUIT)])
-    columns = _of_linkages(plan, linkage, motions.types, motions.limits)
-    if "circuits" in plan.measures:
-        columns["circuits"] = motions.circuits[linkage].astype(np.float64)
-    for measure in own:
-        column = motions.columns[measure.name][selected]
-        missing = None if column.dtype == object else np.nan
-        columns[measure.name] = np.concatenate([column, np.full(len(without), missing, column.dtype)])
+        return Block.measured(
+            linkage, np.full(len(linkage), NO_CIRCUIT), _of_linkages(plan, motions, linkage)
+        )
+    without = np.flatnonzero(motions.clear & (motions.circuits == 0))
+    selected = np.flatnonzero(motions.clear[motions.linkage])
+    linkage = np.concatenate([motions.linkage[selected], without])
+    circuit = np.concatenate([motions.circuit[selected], np.full(len(without), NO_CIRCUIT)])
+    columns = _of_linkages(plan, motions, linkage)
+    for measure in plan.measured:
+        if measure.per == "circuit" and measure.batch:
+            column = measure.batch(motions)[selected]
+            missing = None if column.dtype == object else np.nan
+            columns[measure.name] = np.concatenate([column, np.full(len(without), missing, column.dtype)])
     return Block.measured(linkage, circuit, columns)
 
 
-def _of_linkages(
-    plan: SweepPlan, linkage: Integers, types: MotionTypes, limits: Floats
-) -> dict[str, npt.NDArray[Any]]:
-    """Columns (r,) of motion type and limits, of the linkage of each row."""
-    columns: dict[str, npt.NDArray[Any]] = {}
-    if "motion_type" in plan.measures:
-        columns["motion_type"] = types[linkage]
-    if "limits" in plan.measures:
-        columns["limits"] = np.isfinite(limits).sum(axis=1)[linkage].astype(np.float64)
+def _of_linkages(plan: SweepPlan, motions: Classified, linkage: Integers) -> dict[str, npt.NDArray[Any]]:
+    """Columns (r,) of the measures of the linkage of each row, and its limits."""
+    columns: dict[str, npt.NDArray[Any]] = {
+        measure.name: measure.batch(motions)[linkage]
+        for measure in plan.measured
+        if measure.per == "linkage" and measure.batch
+    }
     for place, name in enumerate(plan.limit_names):
-        columns[name] = np.degrees(limits[linkage, place])
+        columns[name] = np.degrees(motions.limits[linkage, place])
     return columns

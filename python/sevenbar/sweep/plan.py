@@ -19,7 +19,7 @@ from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.measures import MEASURES, Measure, is_of_forces, measures_named
+from sevenbar.kinematics.measures import NAMED, Measure, is_of_forces, measures_named
 from sevenbar.kinematics.solvers.batches import simd_level
 from sevenbar.sweep.axes import Given
 from sevenbar.sweep.checked import OWN, checksum
@@ -37,15 +37,12 @@ MOST_IN_A_PART = 2**20
 #: Limits of an RSSR's input: the zeros of a quartic.
 MOST_LIMITS = 4
 
-#: Measures of an RSSR that follow from its dimensions without its circuits.
-OF_TYPES = frozenset({"motion_type", "limits"})
-
 
 @dataclass(frozen=True)
 class SweepPlan:
     """A sweep as requested: which linkages, which measures, how many linkages to a part.
 
-    `measures` are names, or measures that have none of the known names. `input` and `output` are columns.
+    `measures` are names of those that batches have, others themselves. `input` and `output` are columns.
     """
 
     draft: Draft
@@ -88,14 +85,14 @@ class SweepPlan:
         if part_size is None:
             part_size = _part_size(draft, result)
         size = whole_number("part_size", part_size, 1, MOST_IN_A_PART, "a count of linkages")
-        names = tuple(m.name if MEASURES.get(m.name) is m else m for m in result)
+        names = tuple(m.name if m.batch else m for m in result)
         bare = replace(draft)  # without what it has cached
         return SweepPlan(bare, space, names, motion.samples, motion.input, motion.output, size)
 
     @property
     def measured(self) -> tuple[Measure, ...]:
         """The measures themselves."""
-        return tuple(MEASURES[m] if isinstance(m, str) else m for m in self.measures)
+        return tuple(NAMED[m] if isinstance(m, str) else m for m in self.measures)
 
     @property
     def of_forces(self) -> bool:
@@ -173,9 +170,9 @@ def _part_size(draft: Draft, measures: Sequence[Measure]) -> int:
     """Linkages of a part, by how long they take: never by the machine, since resumed parts must fit."""
     if _of_forces(measures):
         return PART_OF_FORCES
-    if draft.linkage.form != "rssr" or not all(MEASURES.get(m.name) is m for m in measures):
+    if draft.linkage.form != "rssr" or not all(m.batch for m in measures):
         return PART_OF_LOOPS
-    return PART_OF_TYPES if OF_TYPES.issuperset(m.name for m in measures) else PART_OF_CIRCUITS
+    return PART_OF_TYPES if all(m.of_type for m in measures) else PART_OF_CIRCUITS
 
 
 def _of_forces(measures: Sequence[Measure]) -> bool:

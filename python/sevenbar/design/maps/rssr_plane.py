@@ -108,13 +108,13 @@ class RssrPlane(Plane):
 
     def values_at(self, points: Floats, measures: Sequence[Measure], take: Take) -> Floats:
         """Measures at each point (n, measures), NaN where there is none."""
+        if not all(measure.batch and measure.per == "circuit" for measure in measures):
+            return super().values_at(points, measures, take)
         speed = np.full(len(points), self._speed)
         for axis, shares in zip(self.axes, points.T, strict=True):
             if axis.dimension.place[0] == "drive":
                 speed = axis.value(shares)
         motions = rssr_motions(self.dimensions(points), self._side, speed, THREADS)
-        if not all(measure.name in motions.columns and measure.per == "circuit" for measure in measures):
-            return super().values_at(points, measures, take)
         self.count(len(points))
         pick = np.fmin if take == "lowest" else np.fmax
         selected = (
@@ -122,7 +122,8 @@ class RssrPlane(Plane):
         )
         result = np.full((len(points), len(measures)), np.nan)
         for column, measure in enumerate(measures):
-            values = motions.columns[measure.name][selected]
+            assert measure.batch is not None
+            values = measure.batch(motions)[selected]
             pick.at(
                 result[:, column], motions.linkage[selected], np.where(np.isfinite(values), values, np.nan)
             )

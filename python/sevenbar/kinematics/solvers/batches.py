@@ -54,22 +54,30 @@ def rssr_rows(own: Mapping[str, Floats | float], count: int, *, follows: bool) -
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Motions(Printed):
+class Classified(Printed):
+    """What n linkages can do: `types` (n,) are words; `limits` (n, m) [rad, or length] rise, then NaN."""
+
+    types: MotionTypes
+    limits: Floats
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Motions(Classified):
     """The results of the motions of n linkages.
 
     `clear` (n,) says which are classified here; of the others, that have a reason to give or must be followed
-    further, nothing else means anything. `types` (n,) are words; `limits` (n, m) [rad, or length] rise, NaN
-    after the last. `linkage` (c,) has the linkage of each circuit, `circuit` (c,) its number there; `columns`
-    (c,) its measures by name as `measures.MEASURES` has them, NaN where there is none.
+    further, nothing else means anything. `linkage` (c,) has the linkage of each circuit, `circuit` (c,) its
+    number there, `circuit_types` (c,) its own type; `raw` is what the core measures of it. Measures by name
+    are made of it by their rows: `measures.Measure.batch`.
     """
 
     clear: Booleans
-    types: MotionTypes
-    limits: Floats
     circuits: Integers
     linkage: Integers
     circuit: Integers
-    columns: Mapping[str, npt.NDArray[Any]]
+    circuit_types: MotionTypes
+    raw: _core.RawMeasures
+    output_turns: bool = True
 
 
 def simd_level() -> str:
@@ -95,10 +103,10 @@ def rssr_motions(dimensions: Floats, side: str, speed: Floats, threads: int) -> 
     raw = _core.measure_rssr(dimensions, side, np.asarray(speed, np.float64), threads)
     codes, limits, counts = raw.codes, raw.limits, raw.circuits
     linkage, circuit = _numbered(counts)
-    # a circuit of an RSSR has the type of all of them
-    columns = _columns(raw.measures, WORDS[codes[linkage]], turns=True)
     clear = (codes != INVALID) & (codes != CHANGE_POINT)
-    return Motions(clear, WORDS[codes], limits, counts, linkage, circuit, columns)
+    types = WORDS[codes]
+    # a circuit of an RSSR has the type of all of them
+    return Motions(types, limits, clear, counts, linkage, circuit, types[linkage], raw.measures)
 
 
 def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int, threads: int) -> Motions:
@@ -125,10 +133,10 @@ def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int
     linkage, circuit = _numbered(raw.circuits)
     types = np.array(raw.motion_types, dtype=object)
     own = np.array(raw.circuit_types, dtype=object)
-    columns = _columns(raw.measures, own, turns=linkages[0].turns(output))
     clear = (raw.status == DRIVEN) & (raw.circuits > 0)
     limits = _limits(raw, linkage, linkages, turns=linkages[0].turns(input))
-    return Motions(clear, types, limits, raw.circuits, linkage, circuit, columns)
+    turns = linkages[0].turns(output)
+    return Motions(types, limits, clear, raw.circuits, linkage, circuit, own, raw.measures, turns)
 
 
 def _numbered(counts: Integers) -> tuple[Integers, Integers]:
@@ -152,24 +160,6 @@ def _limits(raw: _core.LoopBatch, linkage: Integers, linkages: Sequence[Loop], *
     for row, values in zip(limits, result, strict=True):
         row[: len(values)] = values
     return limits
-
-
-def _columns(raw: _core.RawMeasures, types: MotionTypes, *, turns: bool) -> dict[str, npt.NDArray[Any]]:
-    """Measures (c,) of circuits of some types, by name; `turns`: the output does."""
-    columns: dict[str, npt.NDArray[Any]] = {
-        "turns": raw.turns.astype(np.float64),
-        "swing": np.degrees(raw.swing) if turns else raw.swing,
-        "time_ratio": raw.time_ratio,
-        "circuit_type": types,
-    }
-    for name, ends in (
-        ("velocity", raw.velocity),
-        ("acceleration", raw.acceleration),
-        ("jerk", raw.jerk),
-        ("transmission", np.degrees(raw.transmission)),
-    ):
-        columns[f"{name}_lowest"], columns[f"{name}_highest"] = ends[:, 0], ends[:, 2]
-    return columns
 
 
 #: The numbers of an RSSR with axes at any angle, in the order of the core's rows.
