@@ -62,6 +62,7 @@ def test_the_pages_of_theory_are_numbered():
         "theory_free",
         "theory_many",
         "theory_measures",
+        "theory_nets",
     ]
 
 

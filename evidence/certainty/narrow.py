@@ -20,6 +20,7 @@ from evidence.certainty.family import Family, Judge
 from evidence.certainty.limits import planar_limits, spherical_limits, widest
 from evidence.fuzz.checks import hold
 from evidence.fuzz.edges import SingularPose, singular_pose
+from sevenbar.kinematics.loop.geometry import loop_frames
 
 PART = "Narrow circuits"
 
@@ -64,7 +65,7 @@ def moved(pose: SingularPose, epsilon: float) -> sb.Linkage:
     for link in links[:number]:
         frame = frame @ link
     links[number][:3, 3] += epsilon * frame[2, :3]
-    return dataclasses.replace(linkage, links=links)
+    return dataclasses.replace(linkage, frames=loop_frames(linkage.base, links, linkage.ground))
 
 
 def reach(pose: SingularPose) -> float:

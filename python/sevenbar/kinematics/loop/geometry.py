@@ -202,6 +202,8 @@ _PARTS: Mapping[str, tuple[type, str]] = {
     "description": (Mapping, "a description"),
     "loading": (Loading, "a loading"),
     "stops": (Stops, "the stops"),
+    "link_names": (tuple, "a tuple of names"),
+    "rods": (tuple, "a tuple of rods"),
 }
 
 
@@ -250,10 +252,12 @@ class Loop(Drawable):
         for name, (kind, what) in _PARTS.items():
             if not isinstance(value := getattr(self, name), kind):
                 check_kind(name, value, kind, f"{what}; {_MADE_WITH}")
-        for name, one in (("joints", Joint), ("points", Point)):
+        for name, one in (("joints", Joint), ("points", Point), ("rods", Rod)):
             for i, part in enumerate(getattr(self, name)):
                 if not isinstance(part, one):
                     check_kind(f"{name}[{i}]", part, one, f"a {one.__name__.lower()}; {_MADE_WITH}")
+        if self.net is not None:
+            check_kind("net", self.net, Graph, f"a graph; {_MADE_WITH}")
         n = len(self.joints)
         shapes = {"frames": (n, 2, 4, 4), "point_frames": (self.graph.ground, 4, 4)}
         for name, shape in shapes.items():
