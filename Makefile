@@ -12,8 +12,12 @@ BIN := $(VENV)/bin
 NEWEST_WHEEL = $$(ls -t "$(DIST)"/sevenbar-*.whl | head -1)
 # a stale Cargo.lock is mended on a desk and refused in CI
 LOCKED := $(if $(CI),--locked)
+# by another name, since a line with $(MAKE) itself is run by make -n, too
+AGAIN_MAKE = $(MAKE) --no-print-directory
 # on all cores
 PYTEST = $(BIN)/pytest -n auto --dist worksteal
+# and one more process, since tests in a browser wait more than they work
+PROCESSES = $$(($$(getconf _NPROCESSORS_ONLN) + 1))
 # with the folders, so that a file taken away counts as a change
 RUST := Cargo.toml Cargo.lock $(shell find crates)
 # a build is due, too, where somebody removed the compiled core
@@ -34,13 +38,16 @@ demo: $(VENV)/.installed  ## Analyse the two papers' linkages; tables and figure
 	$(BIN)/sevenbar analyze rssr --out demo --force
 	$(BIN)/sevenbar analyze seven_r --out demo/seven_r --force
 
+# lints of one process each beside tests on all cores
 .PHONY: check
-check: lint rust-test  ## The lints and the fast tests, for every change
-	$(PYTEST) -m "not slow and not proof"
+check: $(VENV)/.installed-dev  ## The lints and the fast tests, for every change
+	@$(AGAIN_MAKE) lint rust-test >$(VENV)/lints.txt 2>&1 & lints=$$!; \
+	  $(PYTEST) -m "not slow and not proof"; tests=$$?; \
+	  wait $$lints; lints=$$?; cat $(VENV)/lints.txt; [ $$tests = 0 ] && [ $$lints = 0 ]
 
 .PHONY: test
 test: $(VENV)/.installed-dev have-chromium rust-test  ## Every test but the proofs of an hour
-	$(PYTEST)
+	$(PYTEST) -n $(PROCESSES)
 
 .PHONY: proof
 proof: $(VENV)/.installed-dev  ## The longest: ten thousand random loops against a search, and the like
@@ -48,7 +55,7 @@ proof: $(VENV)/.installed-dev  ## The longest: ten thousand random loops against
 
 # import-linter without its cache, which has passed for a module that was gone
 .PHONY: lint
-lint: $(VENV)/.installed-dev  ## Formatting, lints, types, the stub of the core, layers
+lint: $(VENV)/.installed-dev $(VENV)/.stub-checked  ## Formatting, lints, types, the stub of the core, layers
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || \
 	  { echo "rustfmt or clippy is missing; add them: rustup component add rustfmt clippy" >&2; exit 1; }
 	cargo fmt --check
@@ -56,7 +63,6 @@ lint: $(VENV)/.installed-dev  ## Formatting, lints, types, the stub of the core,
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/mypy
-	$(BIN)/stubtest --mypy-config-file pyproject.toml sevenbar._core
 	$(BIN)/lint-imports --no-logo --no-cache
 
 .PHONY: rust-test
@@ -171,6 +177,11 @@ $(VENV)/.installed: $(VENV)/.maturin $(RUST) $(LOST)
 $(VENV)/.installed-dev: $(VENV)/.maturin $(RUST) $(LOST)
 	$(BIN)/maturin develop --release $(LOCKED) --extras dev
 	@touch $(VENV)/.installed $@
+
+# half a minute, so anew only where the core or its stub has changed
+$(VENV)/.stub-checked: $(VENV)/.installed-dev python/sevenbar/_core.pyi pyproject.toml
+	$(BIN)/stubtest --mypy-config-file pyproject.toml sevenbar._core
+	@touch $@
 
 # with what the notebooks and the examples of docstrings use
 $(VENV)/.installed-docs: $(VENV)/.maturin $(RUST) $(LOST)

@@ -15,7 +15,7 @@ import pytest
 LIST = Path(__file__).with_name("slow_tests.txt")
 
 #: What the fast tests may take together [s of one processor].
-BUDGET = 90.0
+BUDGET = 65.0
 
 
 def listed():

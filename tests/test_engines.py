@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.description.gallery import names
+from gallery_sample import sampled
 from sevenbar.errors import EngineError
 from sevenbar.simulation.agreement import agreement
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
@@ -95,7 +95,9 @@ def test_the_paper_s_seven_r_in_exudyn_is_sevenbar_s_on_all_joints():
     assert run.difference("P position").greatest < 1e-9 * run.course.circuit.size
 
 
-@pytest.mark.parametrize("name", [name for name in names() if name not in ("rssr", "screw_drill")])
+@pytest.mark.parametrize(
+    "name", [name for name in sampled() if name.values[0] not in ("rssr", "screw_drill")]
+)
 def test_gallery_linkages_move_in_exudyn_as_sevenbar_says(name):
     run = simulate(sb.load(name), "exudyn", steps=FEW)
     assert turns(run) < 1e-9
@@ -126,7 +128,7 @@ def test_a_plate_on_the_ground_moves_and_drives_in_exudyn_as_sevenbar_says(input
     assert max(turns(run), slides(run), run.tilt, run.gap / run.course.circuit.size) < 1e-9
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", sampled())
 def test_gallery_linkages_move_in_mujoco_as_sevenbar_says(name):
     run = simulate(sb.load(name), "mujoco", steps=3600)
     # soft: two of them come near a change point, where a small gap moves the links far

@@ -2,7 +2,6 @@
 
 import csv
 import json
-import subprocess
 import sys
 
 import numpy as np
@@ -202,8 +201,7 @@ def test_a_missing_library_is_named_with_its_extra(motion, tmp_path, monkeypatch
 
 def test_the_command_says_what_it_wrote_and_ends_mistakes_with_2(tmp_path):
     def run(*arguments):
-        command = [sys.executable, "-m", "sevenbar.commands.cli", "export", *arguments]
-        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False)
+        return sevenbar("export", *arguments, cwd=tmp_path)
 
     done = run("rssr", "--to", "urdf", "--at", "30", "--samples", "24")
     assert (done.returncode, done.stderr) == (0, "")

@@ -18,7 +18,7 @@ import sevenbar as sb
 from evidence.accuracy.reference_loops import Loop
 from evidence.fuzz.random_linkages import Dimensions, mixed
 from evidence.fuzz.random_loops import OVERCONSTRAINED, SPECIAL, Case, bennett, drawn, general
-from sevenbar.description.gallery import names
+from gallery_sample import sampled
 from sevenbar.errors import RequestError
 
 #: Random linkages whose circuits are compared under half the step.
@@ -316,8 +316,7 @@ def same_circuits(linkage: sb.Linkage, samples: int, name: object, input: str | 
     assert len(set(partners)) == len(partners), name
 
 
-# bodies and loads move no circuit
-@pytest.mark.parametrize("name", [name for name in names() if not sb.load(name).loading.bodies])
+@pytest.mark.parametrize("name", sampled())
 def test_half_the_step_gives_the_same_circuits_of_the_gallery(name: str) -> None:
     for samples in (45, 180, 360):
         same_circuits(sb.load(name), samples, name)

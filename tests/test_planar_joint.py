@@ -201,8 +201,8 @@ def test_adams_measures_the_slides_of_a_planar_joint_and_says_that_it_cannot_dri
 
 @pytest.mark.parametrize("kinds", ["RERC", "RURE"])
 def test_all_derivatives_by_dimensions_of_a_loop_with_a_planar_joint_are_differences(kinds: str) -> None:
-    _, compared = compare_all(sb.from_axes(drawn(kinds, 1)))
-    assert compared > 400
+    _, compared = compare_all(sb.from_axes(drawn(kinds, 1)), every=3)
+    assert compared > 130
 
 
 @pytest.mark.parametrize("name", ["swash_plate", "as P, P and R"])

@@ -89,8 +89,8 @@ def test_a_slot_moves_as_a_slide_and_a_turn(kinds: str) -> None:
 
 @pytest.mark.parametrize("kinds", ["RUKRR", "LRURR", "RURRK"])
 def test_all_derivatives_by_the_places_of_a_slot_are_differences(kinds: str) -> None:
-    _, compared = compare_all(sb.from_axes(drawn(kinds, 1)))
-    assert compared > 400
+    _, compared = compare_all(sb.from_axes(drawn(kinds, 1)), every=3)
+    assert compared > 130
 
 
 @pytest.mark.parametrize("way", QUICK)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -21,6 +22,7 @@ from sevenbar.studio.pictures.shapes import mesh
 from sevenbar.studio.pictures.solids import SolidPlan, plan, poses, rgb
 
 
+@cache
 def planned(name: str, circuit: int = 0) -> tuple[Motion, Skeleton, SolidPlan]:
     motion = sb.load(name).motion()
     frame = skeleton.skeleton(motion, motion.circuits[circuit])

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from gallery_sample import sampled
 from sevenbar.arrays import Floats
-from sevenbar.description import gallery
 from sevenbar.description.draft import Draft
 from sevenbar.design.wish import wish_of_function
 from sevenbar.errors import RequestError
@@ -76,7 +76,7 @@ def answers_alike(motion: sb.Motion, other: sb.Motion) -> bool:
 
 
 @pytest.mark.parametrize("again", AGAIN)
-@pytest.mark.parametrize("name", gallery.names())
+@pytest.mark.parametrize("name", sampled())
 def test_a_linkage_is_copied_before_and_after_it_is_used(name, again):
     linkage = sb.load(name)
     twin = again(linkage)
@@ -90,7 +90,7 @@ def test_a_linkage_is_copied_before_and_after_it_is_used(name, again):
 
 
 @pytest.mark.parametrize("again", AGAIN)
-@pytest.mark.parametrize("name", gallery.names())
+@pytest.mark.parametrize("name", sampled())
 def test_a_copied_motion_tells_the_points_of_every_link(name, again):
     linkage = sb.load(name)
     for motion in (
