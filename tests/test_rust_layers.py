@@ -19,7 +19,7 @@ rssr: linkage pair free_side rates domain extremes frames motion circuits batch 
 
 survey: draw figures kind swing transmission cone wish readings pose tally judge cascade
 
-loops::equation: dense rotations flat screws chain kinds lanes complex_frame closure
+loops::equation: dense rotations flat screws closed chain kinds lanes complex_frame closure
 loops::rates: velocities turns points
 loops::mobility: rank idle singular_place at_rest
 loops::numbers: twists factors word numbered_loop slopes

@@ -63,7 +63,7 @@ macro_rules! operators {
 }
 
 /// Eight numbers as the compiler sees fit.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Plain(Reals);
 
 operators!(
@@ -122,12 +122,12 @@ impl Vector for Plain {
 
 /// One register of AVX-512.
 #[cfg(target_arch = "x86_64")]
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Wide(__m512d);
 
 /// Two registers of AVX2.
 #[cfg(target_arch = "x86_64")]
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Middle([__m256d; 2]);
 
 // SAFETY of all blocks below: the types are private and only [`dispatch`] names them, after it saw the unit

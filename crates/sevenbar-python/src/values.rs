@@ -126,7 +126,10 @@ pub(crate) struct RawFound {
 
 impl RawFound {
     pub fn new(py: Python<'_>, found: &Found) -> PyResult<Self> {
-        let wrenches = PyArray1::from_slice(py, found.redundant.as_flattened());
+        // force, then moment
+        let wrench = |w: &Vec<f64>| [w[3], w[4], w[5], w[0], w[1], w[2]];
+        let wrenches: Vec<f64> = found.redundant.iter().flat_map(wrench).collect();
+        let wrenches = PyArray1::from_vec(py, wrenches);
         Ok(Self {
             rank: found.rank,
             finite: found.finite,

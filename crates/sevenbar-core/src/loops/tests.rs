@@ -3,7 +3,8 @@
 use crate::loops::circuits::curve::{self, Curve};
 use crate::loops::circuits::join;
 use crate::loops::circuits::{follow, walked_again};
-use crate::loops::equation::chain::{Chain, Configuration, Joint};
+use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::{Closed, Joint};
 use crate::loops::equation::dense::{Columns, singular_values};
 use crate::loops::equation::rotations::{rotation, squared_up};
 use crate::loops::modes::finder::ModeFinder;

@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn every_kind_of_dyad_is_put_together_in_all_its_modes() {
         let places = [[0.2, -0.1, 0.0], [1.9, 1.3, 0.0], [3.4, -0.2, 0.0]];
-        let along = [[-0.6, 0.8, 0.0], [0.28, -0.96, 0.0], [0.8, 0.6, 0.0]];
+        let along = [[-0.6, 0.8, 0.0], [0.96, 0.28, 0.0], [0.8, 0.6, 0.0]];
         let known = [moved(0.21, 0.1, -0.05), moved(-0.13, -0.15, 0.22)];
         for (kinds, count) in [
             ("RRR", 2),

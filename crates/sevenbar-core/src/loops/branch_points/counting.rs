@@ -348,7 +348,8 @@ impl Account<'_> {
 mod tests {
     use super::super::survey::Infinite;
     use super::*;
-    use crate::loops::equation::chain::{Chain, Joint};
+    use crate::loops::equation::chain::Chain;
+    use crate::loops::equation::closed::Joint;
     use crate::loops::modes::finder::ModeFinder;
     use crate::loops::modes::starts::random_pose;
     use crate::random::Random;

@@ -1,6 +1,7 @@
 //! A chain with one of its unknowns as the input: where that unknown has a given complex value.
 
-use crate::loops::equation::chain::{Chain, Joint};
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::closed::Joint;
 use crate::loops::equation::closure::{Solution, UNKNOWNS};
 use crate::loops::modes::finder::{ModeFinder, Unknown};
 use num_complex::Complex64;

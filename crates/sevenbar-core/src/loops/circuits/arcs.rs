@@ -7,8 +7,9 @@ use super::found::Bound;
 use super::on_curve::lies_on;
 use super::turnings::begun_at;
 use super::walked_again;
-use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, Columns, dot, length, singular_values};
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::closed::{At, Closed};
+use crate::loops::equation::dense::{Array, dot, length, singular_values};
 use std::f64::consts::TAU;
 
 /// Rounds of arcs that lead to further change points; the curves of a linkage pass a few.
@@ -52,20 +53,20 @@ const ALONG: f64 = 0.99;
 type Ray = (usize, usize);
 
 /// A curve between two change points; none at an end that has another reason.
-struct Arc {
-    curve: Curve,
+struct Arc<S: Closed> {
+    curve: Curve<S>,
     /// Where it begins and ends.
     ends: [Option<Ray>; 2],
 }
 
 /// Change points and the arcs between them.
-pub(crate) struct Arcs {
-    pub points: Vec<ChangePoint>,
-    arcs: Vec<Arc>,
+pub(crate) struct Arcs<S: Closed = Chain> {
+    pub points: Vec<ChangePoint<S>>,
+    arcs: Vec<Arc<S>>,
     /// For each point and ray whether its arc is known, or there is none.
     done: Vec<Vec<bool>>,
     /// Where walks ended and there is none.
-    failed: Vec<Configuration>,
+    failed: Vec<At<S>>,
     /// How many poses were searched about which every pose is like them.
     alike: usize,
     /// How many spheres were searched for ways out.
@@ -81,7 +82,7 @@ pub(crate) struct Arcs {
     pub finite: usize,
 }
 
-impl Arcs {
+impl<S: Closed> Arcs<S> {
     /// None yet.
     pub fn new() -> Self {
         Self {
@@ -100,12 +101,12 @@ impl Arcs {
     }
 
     /// The change point that a pose is at.
-    pub fn at(&self, chain: &Chain, pose: &Configuration) -> Option<usize> {
+    pub fn at(&self, chain: &S, pose: &At<S>) -> Option<usize> {
         self.points.iter().position(|p| p.is_at(chain, pose))
     }
 
     /// Whether a mode is a place of an arc, or one of the points.
-    pub fn hold(&self, chain: &Chain, mode: &Configuration) -> bool {
+    pub fn hold(&self, chain: &S, mode: &At<S>) -> bool {
         self.at(chain, mode).is_some() || self.arcs.iter().any(|a| lies_on(chain, &a.curve, mode))
     }
 
@@ -141,22 +142,16 @@ impl Arcs {
         self.dropped + self.done.iter().flatten().filter(|done| !**done).count()
     }
 
-    pub fn stops(&self) -> Vec<Stop> {
+    pub fn stops(&self) -> Vec<Stop<S>> {
         self.points.iter().map(ChangePoint::stop).collect()
     }
 
     /// Whether there is a change point at or near a pose, known or now found.
-    pub fn learn(
-        &mut self,
-        chain: &Chain,
-        pose: &Configuration,
-        wished: &[usize],
-        stuck: bool,
-    ) -> Option<usize> {
+    pub fn learn(&mut self, chain: &S, pose: &At<S>, wished: &[usize], stuck: bool) -> Option<usize> {
         if let Some(known) = self.at(chain, pose) {
             return Some(known);
         }
-        let tried = |at: &Configuration| length(&chain.difference(at, pose)) < TRIED;
+        let tried = |at: &At<S>| length(&chain.difference(at, pose)) < TRIED;
         let degenerate = self.failed.len() >= MOST_FAILED || (self.alike >= MOST_ALIKE && !stuck);
         if degenerate || self.spheres >= MOST_SPHERES || self.failed.iter().any(tried) {
             return None;
@@ -182,7 +177,7 @@ impl Arcs {
     }
 
     /// Follows every ray of every point, and of those that they lead to; gives closed curves that passed the points by.
-    pub fn complete(&mut self, chain: &Chain, wished: &[usize]) -> Vec<Curve> {
+    pub fn complete(&mut self, chain: &S, wished: &[usize]) -> Vec<Curve<S>> {
         let mut passing = Vec::new();
         for _ in 0..MOST_ROUNDS {
             self.cut(chain);
@@ -193,7 +188,7 @@ impl Arcs {
             if rays.is_empty() || self.is_endless() {
                 break;
             }
-            let starts: Vec<Start> = rays.iter().map(|&(p, r)| self.points[p].rays[r].start).collect();
+            let starts: Vec<Start<S>> = rays.iter().map(|&(p, r)| self.points[p].rays[r].start).collect();
             let mut followed = follow::follow(chain, &starts, &self.stops());
             let count = self.points.len();
             for (&(p, r), curve) in rays.iter().zip(&mut followed) {
@@ -223,7 +218,7 @@ impl Arcs {
         passing
     }
 
-    fn take(&mut self, chain: &Chain, (point, ray): Ray, curve: Curve, passing: &mut Vec<Curve>) {
+    fn take(&mut self, chain: &S, (point, ray): Ray, curve: Curve<S>, passing: &mut Vec<Curve<S>>) {
         if std::mem::replace(&mut self.done[point][ray], true) {
             return;
         }
@@ -253,7 +248,7 @@ impl Arcs {
     }
 
     /// The one way out of a point, of those not followed, in whose direction a pose lies; `None` where several or none do.
-    fn ray_along(&self, chain: &Chain, point: usize, at: &Configuration) -> Option<usize> {
+    fn ray_along(&self, chain: &S, point: usize, at: &At<S>) -> Option<usize> {
         let off = chain.difference(&self.points[point].at, at);
         let along = |r: &usize| dot(&self.points[point].rays[*r].tangent(), &off) > ALONG * length(&off);
         let mut rays = (0..self.done[point].len())
@@ -263,12 +258,12 @@ impl Arcs {
     }
 
     /// Takes back arcs that run through points that were not known when they were followed.
-    fn cut(&mut self, chain: &Chain) {
+    fn cut(&mut self, chain: &S) {
         let points = self.stops().split_off(self.respected);
         self.respected = self.points.len();
         let done = &mut self.done;
         self.arcs.retain(|arc| {
-            let through = |n: &Node| is_at(chain, n, &points);
+            let through = |n: &Node<S>| is_at(chain, n, &points);
             // an arc that begins where it ends has one node
             let inner = arc.curve.nodes.get(1..arc.curve.nodes.len() - 1);
             let cut = inner.is_some_and(|nodes| nodes.iter().any(through));
@@ -292,7 +287,7 @@ impl Arcs {
     }
 
     /// The smooth curves that the arcs make together, on which the given column rises: in all, or at first where that says nothing.
-    pub fn joined(&self, chain: &Chain, rising: usize) -> Vec<Curve> {
+    pub fn joined(&self, chain: &S, rising: usize) -> Vec<Curve<S>> {
         let stops = self.stops();
         let mut used = vec![false; self.arcs.len()];
         let mut curves = Vec::new();
@@ -337,17 +332,17 @@ impl Arcs {
     }
 
     /// One curve of arcs, each entered at one of its ends, turns counted on.
-    fn join(&self, chain: &Chain, row: &[(usize, usize)], closed: bool, stops: &[Stop]) -> Curve {
-        let mut nodes: Vec<Node> = Vec::new();
+    fn join(&self, chain: &S, row: &[(usize, usize)], closed: bool, stops: &[Stop<S>]) -> Curve<S> {
+        let mut nodes: Vec<Node<S>> = Vec::new();
         let mut middle = 0;
         let mut why = [End::Closed; 2];
         for (n, &(k, entered)) in row.iter().enumerate() {
             let arc = &self.arcs[k];
             let turned = (entered == 1).then(|| walked_again::turned_round(chain, &arc.curve, stops));
             let curve = turned.as_ref().unwrap_or(&arc.curve);
-            let turns = nodes
-                .last()
-                .map_or([0.0; COLUMNS], |last| counted_on(chain, last, &curve.nodes[0]));
+            let turns = nodes.last().map_or(S::Columns::filled(0.0), |last| {
+                counted_on(chain, last, &curve.nodes[0])
+            });
             nodes.extend(curve.nodes.iter().map(|node| shifted(node, &turns)));
             if n == 0 {
                 middle = nodes.len() / 2;
@@ -371,12 +366,12 @@ impl Arcs {
     }
 
     /// The node of a change point that an arc runs into by a ray, its turns as in the arc's last node.
-    fn crossing(&self, chain: &Chain, end: Option<Ray>, last: Node) -> Node {
+    fn crossing(&self, chain: &S, end: Option<Ray>, last: Node<S>) -> Node<S> {
         let (point, ray) = end.unwrap_or_else(|| unreachable!());
         let point = &self.points[point];
         let mut at = point.at;
         let by = chain.difference(&last.at, &at);
-        for c in 0..COLUMNS {
+        for c in 0..S::COLUMNS {
             at.values[c] = last.at.values[c] + by[c];
         }
         let tangent = point.rays[ray].tangent().map(|t| -t);
@@ -385,18 +380,18 @@ impl Arcs {
 }
 
 /// Whether no place can be nearer to where a curve is not smooth, as rounding has it.
-fn is_blind(chain: &Chain, pose: &Configuration) -> bool {
+fn is_blind<S: Closed>(chain: &S, pose: &At<S>) -> bool {
     let (values, _) = singular_values(&chain.screws(pose));
-    chain.columns < 2 || values[chain.columns - 2] * BLIND < 1.0
+    chain.columns() < 2 || values[chain.columns() - 2] * BLIND < 1.0
 }
 
 /// Whether a node lies where walks end that run into one of some points.
-fn is_at(chain: &Chain, node: &Node, points: &[Stop]) -> bool {
-    let near = |p: &Stop| length(&chain.difference(&p.at, &node.at)) < p.radius;
+fn is_at<S: Closed>(chain: &S, node: &Node<S>, points: &[Stop<S>]) -> bool {
+    let near = |p: &Stop<S>| length(&chain.difference(&p.at, &node.at)) < p.radius;
     points.iter().any(near)
 }
 
-fn falls(curve: &Curve, column: usize) -> bool {
+fn falls<S: Closed>(curve: &Curve<S>, column: usize) -> bool {
     let (first, last) = (&curve.nodes[0], &curve.nodes[curve.nodes.len() - 1]);
     let gained = last.at.values[column] - first.at.values[column];
     if curve.is_closed() && gained.abs() > 1.0 {
@@ -407,9 +402,9 @@ fn falls(curve: &Curve, column: usize) -> bool {
 }
 
 /// Whole turns that bring a node next to another.
-fn counted_on(chain: &Chain, last: &Node, next: &Node) -> Columns {
-    std::array::from_fn(|c| {
-        if c < chain.columns && chain.is_turn(c) {
+fn counted_on<S: Closed>(chain: &S, last: &Node<S>, next: &Node<S>) -> S::Columns<f64> {
+    Array::from_fn(|c| {
+        if c < chain.columns() && chain.is_turn(c) {
             TAU * ((last.at.values[c] - next.at.values[c]) / TAU).round()
         } else {
             0.0
@@ -417,16 +412,16 @@ fn counted_on(chain: &Chain, last: &Node, next: &Node) -> Columns {
     })
 }
 
-fn shifted(node: &Node, turns: &Columns) -> Node {
+fn shifted<S: Closed>(node: &Node<S>, turns: &S::Columns<f64>) -> Node<S> {
     let mut out = *node;
-    for c in 0..COLUMNS {
+    for c in 0..S::COLUMNS {
         out.at.values[c] += turns[c];
     }
     out
 }
 
 /// Where a curve nearly loses rank without an end: a place of it at each least distance, of many the nearest.
-pub(super) fn narrow_places(curve: &Curve) -> Vec<Configuration> {
+pub(super) fn narrow_places<S: Closed>(curve: &Curve<S>) -> Vec<At<S>> {
     let norm = |k: usize| curve.nodes.get(k).map_or(0.0, |n| n.inverse_norm);
     let mut places: Vec<usize> = (0..curve.nodes.len())
         .filter(|&k| norm(k) > NARROW && norm(k) >= norm(k + 1) && (k == 0 || norm(k) >= norm(k - 1)))
@@ -439,7 +434,7 @@ pub(super) fn narrow_places(curve: &Curve) -> Vec<Configuration> {
 }
 
 /// Whether a curve is one that an arc is part of.
-pub(super) fn contains(chain: &Chain, curve: &Curve, arcs: &Arcs) -> bool {
+pub(super) fn contains<S: Closed>(chain: &S, curve: &Curve<S>, arcs: &Arcs<S>) -> bool {
     arcs.arcs
         .iter()
         .any(|a| lies_on(chain, curve, a.curve.plainest()))

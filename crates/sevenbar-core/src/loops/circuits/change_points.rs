@@ -11,8 +11,9 @@
 use super::curve::{Curve, Node};
 use super::follow::{Start, Stop};
 use super::sphere::{RADII, on_sphere, ways_out};
-use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, Columns, dot, length, singular_values};
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::closed::{At, Closed, copied};
+use crate::loops::equation::dense::{Array, combined, dot, length, singular_values};
 use crate::loops::mobility::singular_place::{Place, singular_place};
 
 /// Distance from the pose at which curves are cut [rad, or relative to the size]. Closer in, rounding turns their tangents by more than
@@ -61,12 +62,11 @@ const SAME_END: f64 = 1e-2;
 const ZEROS_OF_POSE: usize = 2;
 
 /// A way out of a pose.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ray {
+pub(crate) struct Ray<S: Closed> {
     /// Its pose on the sphere, and the direction outwards there.
-    pub start: Start,
+    pub start: Start<S>,
     /// From the change point to the way's poses on the sphere and on that of half the radius, each divided by its sphere's radius.
-    seen: [Columns; 2],
+    seen: [S::Columns<f64>; 2],
     /// Distance from the change point up to which it can be followed inwards [rad, or relative to the size].
     hidden: f64,
     /// The power of the distance with which the least singular value of the screws falls: 1 for each curve that crosses, 2 for each
@@ -74,11 +74,12 @@ pub(crate) struct Ray {
     power: f64,
 }
 
+copied!(Ray<S>);
+
 /// A pose at which the motion is not smooth.
-#[derive(Clone, Debug)]
-pub(crate) struct ChangePoint {
-    pub at: Configuration,
-    pub rays: Vec<Ray>,
+pub(crate) struct ChangePoint<S: Closed = Chain> {
+    pub at: At<S>,
+    pub rays: Vec<Ray<S>>,
     /// For each ray, the ray that continues it smoothly.
     pub partner: Vec<Option<usize>>,
     /// Distance from it at which curves that run into it are cut [rad, or relative to the size].
@@ -91,13 +92,13 @@ pub(crate) struct ChangePoint {
 
 /// The change point at or near a pose, if there is one, judged by the wished columns; `stuck` says that a walk could not go on there.
 /// `spheres` counts those on which its ways out are searched.
-pub(super) fn change_point(
-    chain: &Chain,
-    rough: &Configuration,
+pub(super) fn change_point<S: Closed>(
+    chain: &S,
+    rough: &At<S>,
     wished: &[usize],
     stuck: bool,
     spheres: &mut usize,
-) -> Option<ChangePoint> {
+) -> Option<ChangePoint<S>> {
     let place = singular_place(chain, rough)?;
     let counts = place.counts(wished, stuck);
     let let_pass = stuck && place.is_let_pass();
@@ -132,7 +133,7 @@ pub(super) fn change_point(
         *spheres += 1;
         let ways = ways_out(chain, &place, radius);
         found.finite = ways.finite;
-        let rays: Vec<Ray> = ways
+        let rays: Vec<Ray<S>> = ways
             .single
             .iter()
             .filter_map(|at| ray(chain, &place, at, radius))
@@ -168,9 +169,9 @@ pub(super) fn change_point(
 }
 
 /// The way out through a pose on the sphere; `None` if its curve does not run straight into the change point.
-fn ray(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> Option<Ray> {
+fn ray<S: Closed>(chain: &S, place: &Place<S>, at: &At<S>, radius: f64) -> Option<Ray<S>> {
     let mut outer = *at;
-    let mut seen = [[0.0; COLUMNS]; 3];
+    let mut seen = [S::Columns::filled(0.0); 3];
     for (k, seen) in seen.iter_mut().enumerate() {
         let scale = 1.0 / (radius * 0.5_f64.powi(k as i32));
         *seen = chain.difference(&place.at, &outer).map(|x| x * scale);
@@ -178,7 +179,7 @@ fn ray(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> Option<
             outer = on_sphere(chain, place, seen, 0.5 / scale)?;
         }
     }
-    let apart = |a: &Columns, b: &Columns| length(&std::array::from_fn(|c| a[c] - b[c]));
+    let apart = |a: &S::Columns<f64>, b: &S::Columns<f64>| length(&combined(a, 1.0, b, -1.0));
     let (first, second) = (apart(&seen[0], &seen[1]), apart(&seen[1], &seen[2]));
     // a hyperbola departs from its asymptotes by the square of the distance at which its branches pass
     let passing = 4.0 * place.passing() / radius;
@@ -186,23 +187,22 @@ fn ray(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> Option<
         return None;
     }
     let (values, vectors) = singular_values(&chain.screws(at));
-    let mut direction = [0.0; COLUMNS];
-    direction[..chain.columns].copy_from_slice(&vectors[chain.columns - 1]);
+    let mut direction: S::Columns<f64> = Array::padded(&vectors[chain.columns() - 1], 0.0);
     if dot(&direction, &seen[0]) < 0.0 {
         direction = direction.map(|x| -x);
     }
     // the inverse's norm grows as a power of 1 / distance; `outer` is now at a quarter of the radius
-    let norm = |values: &[f64]| values[chain.columns - 2].recip();
+    let norm = |values: &[f64]| values[chain.columns() - 2].recip();
     let (far, near) = (norm(&values), norm(&singular_values(&chain.screws(&outer)).0));
     let power = ((near / far).log2() / 2.0).max(1.0);
     let hidden = radius * (far / HIDDEN).powf(1.0 / power);
     Some(Ray { start: (*at, direction), seen: [seen[0], seen[1]], hidden, power })
 }
 
-impl Ray {
+impl<S: Closed> Ray<S> {
     /// The tangent at the change point, outwards: extrapolated from the two spheres.
-    pub fn tangent(&self) -> Columns {
-        let t: Columns = std::array::from_fn(|c| 2.0 * self.seen[1][c] - self.seen[0][c]);
+    pub fn tangent(&self) -> S::Columns<f64> {
+        let t: S::Columns<f64> = Array::from_fn(|c| 2.0 * self.seen[1][c] - self.seen[0][c]);
         let size = length(&t);
         t.map(|x| x / size)
     }
@@ -210,19 +210,16 @@ impl Ray {
     /// How far two ways out are from being one smooth curve: by their tangents, and by their bends.
     fn mismatch(&self, other: &Self) -> (f64, f64) {
         let (a, b) = (self.tangent(), other.tangent());
-        let kink = length(&std::array::from_fn(|c| a[c] + b[c]));
+        let kink = length(&combined(&a, 1.0, &b, 1.0));
         // twice the second-order term, which is the same on both arms of a smooth curve
-        let bend = |ray: &Self, c: usize| ray.seen[0][c] - ray.seen[1][c];
-        (
-            kink,
-            length(&std::array::from_fn(|c| bend(self, c) - bend(other, c))),
-        )
+        let bend = |ray: &Self| combined(&ray.seen[0], 1.0, &ray.seen[1], -1.0);
+        (kink, length(&combined(&bend(self), 1.0, &bend(other), -1.0)))
     }
 }
 
-impl ChangePoint {
+impl<S: Closed> ChangePoint<S> {
     /// Where a curve ends, and nothing is known of what begins there.
-    pub fn of_end(at: &Configuration) -> Self {
+    pub fn of_end(at: &At<S>) -> Self {
         Self {
             at: *at,
             rays: Vec::new(),
@@ -234,13 +231,13 @@ impl ChangePoint {
     }
 
     /// Whether a pose is this one.
-    pub fn is_at(&self, chain: &Chain, pose: &Configuration) -> bool {
+    pub fn is_at(&self, chain: &S, pose: &At<S>) -> bool {
         length(&chain.difference(&self.at, pose)) < AT_POINT * self.cut
     }
 
     /// Whether a curve passes through it, or ends there.
-    pub fn is_on(&self, chain: &Chain, curve: &Curve) -> bool {
-        let near = |n: &Node| self.is_at(chain, &n.at);
+    pub fn is_on(&self, chain: &S, curve: &Curve<S>) -> bool {
+        let near = |n: &Node<S>| self.is_at(chain, &n.at);
         let last = curve.nodes.len() - 1;
         curve.nodes.iter().any(|n| n.is_crossing() && near(n))
             || near(&curve.nodes[0])
@@ -255,14 +252,14 @@ impl ChangePoint {
     }
 
     /// Where a walk that runs into it ends.
-    pub fn stop(&self) -> Stop {
+    pub fn stop(&self) -> Stop<S> {
         Stop { at: self.at, radius: self.cut }
     }
 }
 
 /// For each way out, the way out that continues it smoothly; pairs nearest in tangent and bend are joined first. Ways out come in pairs,
 /// so two that are left over are one curve, be it that it bends sharply within the sphere, or has a cusp; not where others are `lost`.
-fn partners(rays: &[Ray], lost: usize) -> Vec<Option<usize>> {
+fn partners<S: Closed>(rays: &[Ray<S>], lost: usize) -> Vec<Option<usize>> {
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for i in 0..rays.len() {
         for j in i + 1..rays.len() {

@@ -18,10 +18,10 @@
 //!
 //! Source: docs/theory.md, (7) to (12).
 
-use crate::loops::equation::chain::{Chain, Configuration, Joint};
-use crate::loops::equation::dense::{COLUMNS, Columns, Inverse, combined, dot, length};
-use crate::loops::equation::rotations::{cross, short_way, squared_up};
-use crate::loops::equation::screws::{Twist, bordered_inverse, correction, twist_of};
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::closed::{At, Closed, Inverse, Joint, Screws, copied, twist_of};
+use crate::loops::equation::dense::{Array, combined, dot, length};
+use crate::loops::equation::rotations::{cross, short_way};
 use crate::loops::rates::velocities::{self, Rates};
 use crate::number::Number;
 
@@ -49,11 +49,11 @@ const NEUMANN: usize = 3;
 const SETTLED: f64 = 1e-5;
 
 /// A place of the curve: the joints, how they move on, and how far that can be trusted.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Node<N = f64> {
-    pub at: Configuration<N>,
+#[derive(Debug)]
+pub(crate) struct Node<S: Closed = Chain, N: Number = f64> {
+    pub at: At<S, N>,
     /// Series of the joints' rates by the distance from the plane across the unit tangent, which is the first.
-    pub rates: Rates<N>,
+    pub rates: Rates<S, N>,
     /// To the next node, measured along this node's tangent.
     pub step: N,
     /// Radius about the predicted places of the step within which the curve is alone.
@@ -64,25 +64,23 @@ pub(crate) struct Node<N = f64> {
     pub slopes: [N; 2],
     /// How fast the Newton map changes across the curve.
     pub across: N,
-    /// No two points of the chain are farther apart.
-    pub far: N,
+    /// No two points of a cycle are farther apart.
+    pub far: S::Cycles<N>,
     /// Closure error of the constraints that do not count [rad, or relative to the size].
     pub open: N,
 }
 
 /// A node with what steps from it need.
-#[derive(Clone, Copy)]
-pub(super) struct Stand<N> {
-    pub node: Node<N>,
-    pub screws: [Twist<N>; COLUMNS],
+pub(super) struct Stand<S: Closed, N: Number> {
+    pub node: Node<S, N>,
+    pub screws: Screws<S, N>,
     /// Of the screws with the tangent for the last row.
-    pub inverse: Inverse<N>,
+    pub inverse: Inverse<S, N>,
 }
 
 /// A step that was tried.
-#[derive(Clone, Copy)]
-pub(super) struct Step<N> {
-    pub next: Stand<N>,
+pub(super) struct Step<S: Closed, N: Number> {
+    pub next: Stand<S, N>,
     /// Not negative where the argument allows the step.
     pub allowed: N,
     /// Radius within which the curve is alone.
@@ -90,6 +88,8 @@ pub(super) struct Step<N> {
     /// The correction at its end by the fourth power of its length.
     pub growth: N,
 }
+
+copied!(Node<S, N>, Stand<S, N>);
 
 /// Why a curve ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,16 +107,22 @@ pub(crate) enum End {
 }
 
 /// A followed motion. A closed one ends with the node it began with, its turns counted on.
-#[derive(Clone, Debug)]
-pub(crate) struct Curve {
-    pub nodes: Vec<Node>,
+#[derive(Debug)]
+pub(crate) struct Curve<S: Closed = Chain> {
+    pub nodes: Vec<Node<S>>,
     /// Why it goes no farther at its first node, and at its last.
     pub why: [End; 2],
 }
 
-impl Curve {
+impl<S: Closed> Clone for Curve<S> {
+    fn clone(&self) -> Self {
+        Self { nodes: self.nodes.clone(), why: self.why }
+    }
+}
+
+impl<S: Closed> Curve<S> {
     /// Its first place and its last.
-    pub fn ends(&self) -> [&Configuration; 2] {
+    pub fn ends(&self) -> [&At<S>; 2] {
         [&self.nodes[0].at, &self.nodes[self.nodes.len() - 1].at]
     }
 
@@ -131,7 +137,7 @@ impl Curve {
     }
 
     /// The ends at which it runs into a place where it is not smooth.
-    pub fn singular_ends(&self) -> impl Iterator<Item = &Configuration> {
+    pub fn singular_ends(&self) -> impl Iterator<Item = &At<S>> {
         let ends = self.ends().into_iter().zip(self.why);
         ends.filter_map(|(at, why)| matches!(why, End::Singular | End::Narrow).then_some(at))
     }
@@ -142,7 +148,7 @@ impl Curve {
     }
 
     /// The place at which it is distinguished from others best: the farthest from any where it is not smooth.
-    pub fn plainest(&self) -> &Configuration {
+    pub fn plainest(&self) -> &At<S> {
         let regular = self.nodes.iter().filter(|n| !n.is_crossing());
         let best = regular.min_by(|a, b| a.inverse_norm.total_cmp(&b.inverse_norm));
         &best.unwrap_or(&self.nodes[0]).at
@@ -169,21 +175,21 @@ impl Curve {
     }
 
     /// What each column gains from the first node to the last.
-    pub fn gained(&self) -> Columns {
+    pub fn gained(&self) -> S::Columns<f64> {
         let (first, last) = (&self.nodes[0], &self.nodes[self.nodes.len() - 1]);
         combined(&last.at.values, 1.0, &first.at.values, -1.0)
     }
 
     /// Whether a column comes back whole turns on, be it with dead centres on the way.
-    pub fn goes_round(&self, chain: &Chain, column: usize) -> bool {
+    pub fn goes_round(&self, chain: &S, column: usize) -> bool {
         self.is_closed() && chain.is_turn(column) && self.gained()[column].abs() > 1.0
     }
 }
 
-impl Node {
+impl<S: Closed> Node<S> {
     /// The change point between two arcs that pass it smoothly: the tangent is known, and how the curve bends is not.
-    pub fn crossing(at: Configuration, tangent: Columns, reach: f64) -> Self {
-        let still = [0.0; COLUMNS];
+    pub fn crossing(at: At<S>, tangent: S::Columns<f64>, reach: f64) -> Self {
+        let still = S::Columns::filled(0.0);
         Self {
             at,
             // a rate that is zero is that of a column that turns back, and is set where this is known
@@ -197,7 +203,7 @@ impl Node {
             inverse_norm: 0.0,
             slopes: [0.0; 2],
             across: ALONE / reach,
-            far: 0.0,
+            far: S::Cycles::filled(0.0),
             open: 0.0,
         }
     }
@@ -225,18 +231,18 @@ const NEARLY_CLOSED: f64 = 1e-6;
 
 /// The move that the rates of a node lead to.
 #[inline(always)]
-pub(crate) fn predicted<N: Number>(chain: &Chain, node: &Node<N>, s: N) -> Columns<N> {
+pub(crate) fn predicted<S: Closed, N: Number>(chain: &S, node: &Node<S, N>, s: N) -> S::Columns<N> {
     let (half, third) = (N::splat(0.5), N::splat(1.0 / 3.0));
     let [u0, u1, u2] = &node.rates;
-    let mut by = [N::splat(0.0); COLUMNS];
-    for c in 0..chain.columns {
+    let mut by = S::Columns::filled(N::splat(0.0));
+    for c in 0..chain.columns() {
         let inner = (u1[c] * half).plus_product(u2[c] * third, s);
         by[c] = s * u0[c].plus_product(inner, s);
     }
-    for (joint, &c) in chain.joints.iter().zip(&chain.first) {
+    for (joint, &c) in chain.joints().iter().zip(chain.first()) {
         if let Joint::Ball(_) = *joint {
             // Magnus: turns of a changing axis do not simply add
-            let lean = cross(&u1[c..c + 3], &u0[c..c + 3]);
+            let lean = cross(&u1.as_ref()[c..c + 3], &u0.as_ref()[c..c + 3]);
             let cube = s * s * s * N::splat(1.0 / 12.0);
             for k in 0..3 {
                 by[c + k] = by[c + k].plus_product(lean[k], cube);
@@ -248,53 +254,53 @@ pub(crate) fn predicted<N: Number>(chain: &Chain, node: &Node<N>, s: N) -> Colum
 
 /// The configuration near a closed one, along a direction; the node itself is corrected to rounding.
 #[inline(always)]
-pub(super) fn stand<N: Number>(chain: &Chain, rough: &Configuration<N>, before: &Columns<N>) -> Stand<N> {
+pub(super) fn stand<S: Closed, N: Number>(
+    chain: &S,
+    rough: &At<S, N>,
+    before: &S::Columns<N>,
+) -> Stand<S, N> {
     let (zero, one) = (N::splat(0.0), N::splat(1.0));
     let placed = chain.place(rough);
-    let mut inverse = bordered_inverse(&placed.screws, chain.columns, before);
-    let scale = one / length(&inverse.0[6]);
-    for x in &mut inverse.0[6] {
+    let mut inverse = chain.inverse(&placed.screws, before);
+    let scale = one / length(&inverse.0[S::ROWS]);
+    for x in inverse.0[S::ROWS].as_mut() {
         *x = *x * scale;
     }
-    let tangent = inverse.0[6];
-    for column in &mut inverse.0[..6] {
+    let tangent = inverse.0[S::ROWS];
+    for column in &mut inverse.0.as_mut()[..S::ROWS] {
         let along = dot(column, &tangent);
-        for c in 0..COLUMNS {
+        for c in 0..S::COLUMNS {
             column[c] = column[c].minus_product(tangent[c], along);
         }
     }
-    let mut by = inverse.times(&placed.error);
-    for x in &mut by {
+    let mut by = inverse.times(placed.error.as_ref());
+    for x in by.as_mut() {
         *x = -*x;
     }
-    let reached = twist_of(&placed.screws, &by);
+    let reached: S::Rows<N> = twist_of(&placed.screws, &by);
     let mut open = zero;
     let mut square = zero;
-    for k in 0..6 {
+    for k in 0..S::ROWS {
         let left = placed.error[k] + reached[k];
         open = open.plus_product(left, left);
-        for screw in &placed.screws {
+        for screw in placed.screws.as_ref() {
             square = square.plus_product(screw[k], screw[k]);
         }
     }
-    let (rates, screws) = velocities::rates(chain, &placed, &inverse, &[one, zero, zero], None);
+    let (rates, screws) = velocities::rates(chain, (rough, &placed), &inverse, &[one, zero, zero], None);
     let mut slopes = [zero; 2];
     for order in 0..2 {
-        for screw in &screws[order + 1][..chain.columns] {
-            let seen = inverse.times(screw);
+        for screw in &screws[order + 1].as_ref()[..chain.columns()] {
+            let seen = inverse.times(screw.as_ref());
             slopes[order] = slopes[order] + dot(&seen, &seen);
         }
         slopes[order] = slopes[order].sqrt();
     }
-    let far = farthest(chain, rough);
-    let inverse_norm = inverse.square(6).sqrt();
-    let pairs = (chain.columns * (chain.columns - 1)) as f64 / 2.0;
-    let turning = N::splat(pairs.sqrt()) * (one + N::splat(4.0) * far * far).sqrt();
-    let across = inverse_norm * turning.plus_product(N::splat(2.2), square);
+    let far = chain.farthest(rough);
+    let inverse_norm = inverse.square(S::ROWS).sqrt();
+    let across = inverse_norm * chain.across(&far, square);
     let mut at = chain.moved(rough, &by);
-    for ball in &mut at.balls[..chain.ball_count()] {
-        *ball = squared_up(ball);
-    }
+    at.square_up(chain.ball_count());
     Stand {
         node: Node {
             at,
@@ -313,63 +319,21 @@ pub(super) fn stand<N: Number>(chain: &Chain, rough: &Configuration<N>, before: 
     }
 }
 
-/// A bound of the distances within the loop, and of how slides move its points: half the way round.
-///
-/// Source: docs/theory.md, (10).
-#[inline(always)]
-fn farthest<N: Number>(chain: &Chain, at: &Configuration<N>) -> N {
-    // a little more where the loop does not quite close
-    let mut around = N::splat(1.02 * chain.around);
-    let mut least = N::splat(0.0);
-    for (joint, &c) in chain.joints.iter().zip(&chain.first) {
-        let advance = match *joint {
-            Joint::Slide => 1.0,
-            Joint::Screw(advance) => advance,
-            _ => continue,
-        };
-        around = around + (at.values[c] * N::splat(advance)).size();
-        least = N::splat(1.0);
-    }
-    let half = around * N::splat(0.5);
-    half.if_greater(least, half, least)
-}
-
 /// `k` of the argument on the curve itself, a step ahead, and `|A+| K5 s^5 / 120`.
 ///
 /// Source: docs/theory.md, (8) to (11).
 #[inline(always)]
-fn change<N: Number>(chain: &Chain, node: &Node<N>, s: N) -> (N, N) {
-    let (mut u, mut v, mut w) = (N::splat(0.0), N::splat(0.0), N::splat(0.0));
-    let mut third = N::splat(0.0);
-    for c in 0..chain.columns {
-        // the screw of a column is carried by those before it
-        let z = (u * u * u).plus_product(N::splat(3.0) * u, v) + w;
-        let p =
-            node.far * ((N::splat(8.0) * u * u * u).plus_product(N::splat(12.0) * u, v) + N::splat(2.0) * w);
-        third = third.plus_product(z, z).plus_product(p, p);
-        let [a, b, c] = [
-            node.rates[0][c].size(),
-            node.rates[1][c].size(),
-            node.rates[2][c].size(),
-        ];
-        let slope = b.plus_product(c, s);
-        u = u + a.plus_product(slope, s);
-        v = v + slope.plus_product(c, s);
-        w = w + N::splat(2.0) * c;
-    }
+fn change<S: Closed, N: Number>(chain: &S, node: &Node<S, N>, s: N) -> (N, N) {
+    let [third, fifth] = chain.bounds(node.inverse_norm, &node.far, &node.rates, s);
     let square = s * s;
-    let third = node.inverse_norm * third.sqrt() * s * square * N::splat(1.0 / 6.0);
+    let third = third * s * square * N::splat(1.0 / 6.0);
     let k = (s * node.slopes[0]).plus_product(square, node.slopes[1]) + third;
-    let fifth = u * u * u * (u * u + N::splat(10.0) * v)
-        + N::splat(15.0) * u * v * v
-        + N::splat(10.0) * w * (u * u + v);
-    let rest = node.inverse_norm * (N::splat(1.0) + node.far * node.far).sqrt() * fifth;
-    (k, rest * square * square * s * N::splat(1.0 / 120.0))
+    (k, fifth * square * square * s * N::splat(1.0 / 120.0))
 }
 
 /// `k` of the argument with the radius that a closure error growing by `growth` times the fourth power asks for.
 #[inline(always)]
-fn asked<N: Number>(chain: &Chain, node: &Node<N>, s: N, growth: N) -> N {
+fn asked<S: Closed, N: Number>(chain: &S, node: &Node<S, N>, s: N, growth: N) -> N {
     let (k, rest) = change(chain, node, s);
     let error = (s * s * s * s * growth).plus_product(N::splat(2.0), rest);
     k.plus_product(N::splat(2.0) * node.across, error)
@@ -377,7 +341,7 @@ fn asked<N: Number>(chain: &Chain, node: &Node<N>, s: N, growth: N) -> N {
 
 /// The length of a step that is likely to be allowed, where the closure error grew like this on the last one.
 #[inline(always)]
-pub(super) fn likely<N: Number>(chain: &Chain, node: &Node<N>, growth: N) -> N {
+pub(super) fn likely<S: Closed, N: Number>(chain: &S, node: &Node<S, N>, growth: N) -> N {
     let aim = N::splat(AIMED);
     let mut s = (aim / node.slopes[0]).lesser(N::splat(LONGEST));
     for _ in 0..GUESSES {
@@ -387,30 +351,24 @@ pub(super) fn likely<N: Number>(chain: &Chain, node: &Node<N>, growth: N) -> N {
 }
 
 /// Radius about the predicted places of a step within which the curve is alone; not positive where that is not known.
-pub(crate) fn tube(chain: &Chain, node: &Node, step: f64) -> f64 {
+pub(crate) fn tube<S: Closed>(chain: &S, node: &Node<S>, step: f64) -> f64 {
     (ALONE - change(chain, node, step.abs()).0) / node.across
 }
 
 /// The stand a step farther along the curve, and what the argument says of the step.
 #[inline(always)]
-pub(super) fn step<N: Number>(chain: &Chain, from: &Stand<N>, s: N) -> Step<N> {
+pub(super) fn step<S: Closed, N: Number>(chain: &S, from: &Stand<S, N>, s: N) -> Step<S, N> {
     let node = &from.node;
     let start = chain.moved(&node.at, &predicted(chain, node, s));
     let placed = chain.place(&start);
-    let (d, first) = correction(
-        &from.inverse,
-        (&from.screws, &placed.screws),
-        &placed.error,
-        NEUMANN,
-    );
+    let (d, first) = from
+        .inverse
+        .correction((&from.screws, &placed.screws), &placed.error, NEUMANN);
     let rough = chain.moved(&start, &d);
     let again = chain.place(&rough);
-    let (d, _) = correction(
-        &from.inverse,
-        (&from.screws, &again.screws),
-        &again.error,
-        NEUMANN,
-    );
+    let (d, _) = from
+        .inverse
+        .correction((&from.screws, &again.screws), &again.error, NEUMANN);
     let next = stand(chain, &chain.moved(&rough, &d), &node.rates[0]);
     let (k, rest) = change(chain, node, s);
     let error = length(&first);
@@ -426,13 +384,13 @@ pub(super) fn step<N: Number>(chain: &Chain, from: &Stand<N>, s: N) -> Step<N> {
 }
 
 /// The node a step ahead (or behind), for steps within a certified one.
-pub(crate) fn ahead(chain: &Chain, from: &Node, s: f64) -> Option<Node> {
+pub(crate) fn ahead<S: Closed>(chain: &S, from: &Node<S>, s: f64) -> Option<Node<S>> {
     let start = chain.moved(&from.at, &predicted(chain, from, s));
     let mut at = start;
     for _ in 0..3 {
         let placed = chain.place(&at);
-        let inverse = bordered_inverse(&placed.screws, chain.columns, &from.rates[0]);
-        let d = inverse.times(&placed.error).map(|x| -x);
+        let inverse = chain.inverse(&placed.screws, &from.rates[0]);
+        let d = inverse.times(placed.error.as_ref()).map(|x| -x);
         at = chain.moved(&at, &d);
         if length(&d) < NEARLY_CLOSED {
             break;
@@ -444,18 +402,18 @@ pub(crate) fn ahead(chain: &Chain, from: &Node, s: f64) -> Option<Node> {
 }
 
 /// Whether the turns of a configuration are near enough for [`passes_through`]: it distinguishes most nodes at once.
-pub(super) fn may_pass(chain: &Chain, node: &Node, at: &Configuration) -> bool {
-    chain.joints.iter().zip(&chain.first).all(|(joint, &c)| {
+pub(super) fn may_pass<S: Closed>(chain: &S, node: &Node<S>, at: &At<S>) -> bool {
+    chain.joints().iter().zip(chain.first()).all(|(joint, &c)| {
         *joint != Joint::Turn || short_way(at.values[c] - node.at.values[c]).abs() <= REACH * node.step
     })
 }
 
 /// The turn that two configurations differ by most [rad].
-pub(super) fn farthest_turn(chain: &Chain, a: &Configuration, b: &Configuration) -> f64 {
+pub(super) fn farthest_turn<S: Closed>(chain: &S, a: &At<S>, b: &At<S>) -> f64 {
     let turns = chain
-        .joints
+        .joints()
         .iter()
-        .zip(&chain.first)
+        .zip(chain.first())
         .filter(|(j, _)| **j == Joint::Turn);
     turns.fold(0.0, |most, (_, &c)| {
         most.max(short_way(b.values[c] - a.values[c]).abs())
@@ -463,7 +421,7 @@ pub(super) fn farthest_turn(chain: &Chain, a: &Configuration, b: &Configuration)
 }
 
 /// Whether a closed configuration lies in the tube of a node's step: it is then a place of the curve.
-pub(crate) fn passes_through(chain: &Chain, node: &Node, at: &Configuration) -> Option<f64> {
+pub(crate) fn passes_through<S: Closed>(chain: &S, node: &Node<S>, at: &At<S>) -> Option<f64> {
     let off = chain.difference(&node.at, at);
     let along = dot(&off, &node.rates[0]);
     let slack = 1e-9 * node.step;
@@ -475,7 +433,7 @@ pub(crate) fn passes_through(chain: &Chain, node: &Node, at: &Configuration) -> 
 }
 
 /// Steps between nodes, measured along the tangent of the first of each two.
-pub(super) fn measure(chain: &Chain, nodes: &mut [Node]) {
+pub(super) fn measure<S: Closed>(chain: &S, nodes: &mut [Node<S>]) {
     for k in 1..nodes.len() {
         let by = chain.difference(&nodes[k - 1].at, &nodes[k].at);
         let step = dot(&by, &nodes[k - 1].rates[0]);

@@ -1,8 +1,9 @@
 //! Curves walked eight side by side in vector lanes, each until it comes back or cannot go on.
 
 use super::curve::{self, Curve, End, Node, Stand};
-use crate::loops::equation::chain::{Chain, Configuration, Joint};
-use crate::loops::equation::dense::{COLUMNS, Columns, dot, length};
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::closed::{At, Closed, Joint, copied};
+use crate::loops::equation::dense::{Array, dot, length};
 use crate::simd::{self, Kernel};
 use crate::stopping;
 use crate::vectors::{self, LANES, LaneKernel, Vector};
@@ -35,14 +36,15 @@ const MOST_TOGETHER: usize = 600_000;
 const FARTHEST: f64 = 50.0;
 
 /// A closed configuration and the direction in which to leave it.
-pub(super) type Start = (Configuration, Columns);
+pub(super) type Start<S> = (At<S>, <S as Closed>::Columns<f64>);
 
 /// A pose at which walks end, and how near to it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Stop {
-    pub at: Configuration,
+pub(crate) struct Stop<S: Closed = Chain> {
+    pub at: At<S>,
     pub radius: f64,
 }
+
+copied!(Stop<S>);
 
 /// How far curves are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +58,7 @@ pub(super) enum Until {
 }
 
 /// Follows the motions through closed configurations until they come back; those that do not, from end to end.
-pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
+pub(crate) fn follow<S: Closed>(chain: &S, starts: &[Start<S>], stops: &[Stop<S>]) -> Vec<Curve<S>> {
     // what redundant constraints miss each other by hides how near a curve comes
     let until = if chain.is_redundant() {
         Until::End
@@ -66,13 +68,18 @@ pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Cur
     follow_until(chain, starts, stops, until)
 }
 
-pub(super) fn follow_until(chain: &Chain, starts: &[Start], stops: &[Stop], until: Until) -> Vec<Curve> {
+pub(super) fn follow_until<S: Closed>(
+    chain: &S,
+    starts: &[Start<S>],
+    stops: &[Stop<S>],
+    until: Until,
+) -> Vec<Curve<S>> {
     let mut curves = walk_until(chain, starts, stops, until).0;
     let open: Vec<usize> = (0..curves.len())
         .filter(|&k| !curves[k].is_closed() && !curves[k].ends_by(End::Open))
         .collect();
     // once more from the end it ran into; a long curve is held once only
-    let ends: Vec<Start> = open.iter().map(|&k| back_from_end(&curves[k])).collect();
+    let ends: Vec<Start<S>> = open.iter().map(|&k| back_from_end(&curves[k])).collect();
     for &k in &open {
         curves[k].nodes = Vec::new();
     }
@@ -84,14 +91,14 @@ pub(super) fn follow_until(chain: &Chain, starts: &[Start], stops: &[Stop], unti
 
 /// Whether a curve ended since there were too many nodes: it may have no end, as on a surface of poses, or be so long that rounding
 /// leads it on, as where lengths of one loop differ by many powers of ten.
-pub(super) fn is_endless(chain: &Chain, curve: &Curve) -> bool {
+pub(super) fn is_endless<S: Closed>(chain: &S, curve: &Curve<S>) -> bool {
     let ends = curve.ends().into_iter().zip(curve.why);
     ends.into_iter()
         .any(|(at, why)| why == End::Far && !is_far(chain, at))
 }
 
 /// A walk from an end, with the reason of that end.
-pub(super) fn begun_for(why: End, mut walked: Curve) -> Curve {
+pub(super) fn begun_for<S: Closed>(why: End, mut walked: Curve<S>) -> Curve<S> {
     if !walked.is_closed() {
         walked.why[0] = why;
     }
@@ -99,24 +106,24 @@ pub(super) fn begun_for(why: End, mut walked: Curve) -> Curve {
 }
 
 /// Whether a slide or screw is farther out than curves are followed.
-pub(super) fn is_far(chain: &Chain, at: &Configuration) -> bool {
+pub(super) fn is_far<S: Closed>(chain: &S, at: &At<S>) -> bool {
     let far = |(joint, &c): (&Joint, &usize)| {
         !matches!(joint, Joint::Turn | Joint::Ball(_)) && at.values[c].abs() > FARTHEST
     };
-    chain.joints.iter().zip(&chain.first).any(far)
+    chain.joints().iter().zip(chain.first()).any(far)
 }
 
 /// Each motion until it comes to the next of the starts, its own or another, and which that is.
-pub(super) fn pieces(chain: &Chain, starts: &[Start]) -> (Vec<Curve>, Vec<Option<usize>>) {
+pub(super) fn pieces<S: Closed>(chain: &S, starts: &[Start<S>]) -> (Vec<Curve<S>>, Vec<Option<usize>>) {
     walk_until(chain, starts, &[], Until::Start)
 }
 
-pub(super) fn walk_until(
-    chain: &Chain,
-    starts: &[Start],
-    stops: &[Stop],
+pub(super) fn walk_until<S: Closed>(
+    chain: &S,
+    starts: &[Start<S>],
+    stops: &[Stop<S>],
     until: Until,
-) -> (Vec<Curve>, Vec<Option<usize>>) {
+) -> (Vec<Curve<S>>, Vec<Option<usize>>) {
     let mut curves = vec![Curve { nodes: Vec::new(), why: [End::Far; 2] }; starts.len()];
     let mut reached = vec![None; starts.len()];
     let mut narrowing = vec![0; starts.len()];
@@ -140,14 +147,14 @@ pub(super) fn walk_until(
 }
 
 /// The start, its turns counted on, where it lies in the step from a node: with the step that leads there.
-fn returned(chain: &Chain, first: &Node, from: &Node) -> Option<(f64, Node)> {
+fn returned<S: Closed>(chain: &S, first: &Node<S>, from: &Node<S>) -> Option<(f64, Node<S>)> {
     if !curve::may_pass(chain, from, &first.at) || dot(&first.rates[0], &from.rates[0]) < 0.5 {
         return None;
     }
     let along = curve::passes_through(chain, from, &first.at)?;
     // the start itself, with the turns made on the way
     let mut end = *first;
-    for c in 0..chain.columns {
+    for c in 0..chain.columns() {
         if chain.is_turn(c) {
             let here = from.at.values[c] + from.gone(c, along);
             let turn = std::f64::consts::TAU;
@@ -157,18 +164,18 @@ fn returned(chain: &Chain, first: &Node, from: &Node) -> Option<(f64, Node)> {
     Some((along, end))
 }
 
-pub(super) fn back_from_end(curve: &Curve) -> Start {
+pub(super) fn back_from_end<S: Closed>(curve: &Curve<S>) -> Start<S> {
     let last = &curve.nodes[curve.nodes.len() - 1];
     (last.at, last.rates[0].map(|t| -t))
 }
 
 /// Walks eight curves side by side.
-struct Walk<'a> {
-    chain: &'a Chain,
-    starts: &'a [Start],
-    stops: &'a [Stop],
+struct Walk<'a, S: Closed> {
+    chain: &'a S,
+    starts: &'a [Start<S>],
+    stops: &'a [Stop<S>],
     until: Until,
-    curves: &'a mut [Curve],
+    curves: &'a mut [Curve<S>],
     /// The start to which each came.
     reached: &'a mut [Option<usize>],
     /// How many of each one's last steps led to a greater norm of the screws' inverse.
@@ -177,7 +184,7 @@ struct Walk<'a> {
     nodes: usize,
 }
 
-impl LaneKernel for Walk<'_> {
+impl<S: Closed> LaneKernel for Walk<'_, S> {
     #[inline(always)]
     fn run<V: Vector>(mut self) {
         let count = self.starts.len();
@@ -259,7 +266,7 @@ impl LaneKernel for Walk<'_> {
     }
 }
 
-impl Kernel for Walk<'_> {
+impl<S: Closed> Kernel for Walk<'_, S> {
     #[inline(always)]
     fn run<const FUSED: bool>(mut self) {
         let (at, before) = &self.starts[0];
@@ -301,39 +308,39 @@ fn too_short(step: f64) -> Option<End> {
     (step < SHORTEST || step.is_nan()).then_some(End::Singular)
 }
 
-impl Walk<'_> {
+impl<S: Closed> Walk<'_, S> {
     /// The stands at the starts of walkers; a lane without one has the first's.
     #[inline(always)]
-    fn begun<V: Vector>(&self, walker: &[usize; LANES]) -> Stand<V> {
-        let mut each = [Configuration::ZERO; LANES];
-        let mut directions = [[0.0; LANES]; COLUMNS];
+    fn begun<V: Vector>(&self, walker: &[usize; LANES]) -> Stand<S, V> {
+        let mut each = [At::zero(); LANES];
+        let mut directions = S::Columns::filled([0.0; LANES]);
         for lane in 0..LANES {
             let (at, direction) = self.starts.get(walker[lane]).unwrap_or(&self.starts[0]);
             each[lane] = *at;
-            for c in 0..COLUMNS {
+            for c in 0..S::COLUMNS {
                 directions[c][lane] = direction[c];
             }
         }
-        let mut before = [V::splat(0.0); COLUMNS];
-        for c in 0..COLUMNS {
+        let mut before = S::Columns::filled(V::splat(0.0));
+        for c in 0..S::COLUMNS {
             before[c] = V::load(&directions[c]);
         }
-        let at = Configuration::beside(&each, self.chain.ball_count());
+        let at = At::beside(&each, self.chain.ball_count());
         curve::stand(self.chain, &at, &before)
     }
 
     /// The lanes of a node.
     #[inline(always)]
-    fn split<V: Vector>(&self, node: &Node<V>) -> [Node; LANES] {
+    fn split<V: Vector>(&self, node: &Node<S, V>) -> [Node<S>; LANES] {
         let blank = Node {
-            at: Configuration::ZERO,
-            rates: [[0.0; COLUMNS]; 3],
+            at: At::zero(),
+            rates: [S::Columns::filled(0.0); 3],
             step: 0.0,
             tube: 0.0,
             inverse_norm: 0.0,
             slopes: [0.0; 2],
             across: 0.0,
-            far: 0.0,
+            far: S::Cycles::filled(0.0),
             open: 0.0,
         };
         let mut out = [blank; LANES];
@@ -341,7 +348,7 @@ impl Walk<'_> {
         for k in 0..LANES {
             out[k].at = places[k];
         }
-        for c in 0..COLUMNS {
+        for c in 0..S::COLUMNS {
             for order in 0..3 {
                 let lanes = node.rates[order][c].store();
                 for k in 0..LANES {
@@ -349,21 +356,27 @@ impl Walk<'_> {
                 }
             }
         }
+        for cycle in 0..S::Cycles::<f64>::COUNT {
+            let lanes = node.far[cycle].store();
+            for k in 0..LANES {
+                out[k].far[cycle] = lanes[k];
+            }
+        }
         let (norm, slope, sway) = (
             node.inverse_norm.store(),
             node.slopes[0].store(),
             node.slopes[1].store(),
         );
-        let (across, far, open) = (node.across.store(), node.far.store(), node.open.store());
+        let (across, open) = (node.across.store(), node.open.store());
         for k in 0..LANES {
             out[k].inverse_norm = norm[k];
             out[k].slopes = [slope[k], sway[k]];
-            (out[k].across, out[k].far, out[k].open) = (across[k], far[k], open[k]);
+            (out[k].across, out[k].open) = (across[k], open[k]);
         }
         out
     }
 
-    fn record(&mut self, walker: usize, node: Node) {
+    fn record(&mut self, walker: usize, node: Node<S>) {
         if let Some(curve) = self.curves.get_mut(walker) {
             curve.nodes.push(node);
             self.nodes += 1;
@@ -371,16 +384,16 @@ impl Walk<'_> {
     }
 
     /// Adds the node of a step; returns whether the curve ends with it.
-    fn stepped(&mut self, walker: usize, (step, tube): (f64, f64), next: Node) -> Option<End> {
+    fn stepped(&mut self, walker: usize, (step, tube): (f64, f64), next: Node<S>) -> Option<End> {
         let chain = self.chain;
         let curve = &mut self.curves[walker];
         let last = curve.nodes.len() - 1;
-        if next.open > chain.agree {
+        if next.open > chain.agree() {
             return Some(End::Open);
         }
         curve.nodes[last].step = step;
         curve.nodes[last].tube = tube;
-        let mut nearest: Option<(f64, Node, usize)> = None;
+        let mut nearest: Option<(f64, Node<S>, usize)> = None;
         let ends = if self.until == Until::Start {
             0..self.starts.len()
         } else {
@@ -430,7 +443,7 @@ impl Walk<'_> {
         }
         let curve = &self.curves[walker];
         let start = &curve.nodes[0].at;
-        let far = chain.joints.iter().zip(&chain.first).any(|(joint, &c)| {
+        let far = chain.joints().iter().zip(chain.first()).any(|(joint, &c)| {
             // a curve that is followed back from its end begins beyond
             let farthest = FARTHEST.max(start.values[c].abs());
             !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > farthest
@@ -446,9 +459,9 @@ impl Walk<'_> {
 
 /// Takes over the lanes of another where a number is not negative.
 #[inline(always)]
-fn replace<V: Vector>(here: &mut Stand<V>, mask: V, other: &Stand<V>, balls: usize) {
+fn replace<S: Closed, V: Vector>(here: &mut Stand<S, V>, mask: V, other: &Stand<S, V>, balls: usize) {
     let (node, new) = (&mut here.node, &other.node);
-    take(mask, &mut node.at.values, &new.at.values);
+    take(mask, node.at.values.as_mut(), new.at.values.as_ref());
     for b in 0..balls {
         take(
             mask,
@@ -456,21 +469,20 @@ fn replace<V: Vector>(here: &mut Stand<V>, mask: V, other: &Stand<V>, balls: usi
             new.at.balls[b].as_flattened(),
         );
     }
-    take(mask, node.rates.as_flattened_mut(), new.rates.as_flattened());
+    for (rates, new) in node.rates.iter_mut().zip(&new.rates) {
+        take(mask, rates.as_mut(), new.as_ref());
+    }
+    take(mask, node.far.as_mut(), new.far.as_ref());
     take(mask, &mut node.slopes, &new.slopes);
-    let mut scalars = [node.inverse_norm, node.across, node.far, node.open];
-    take(
-        mask,
-        &mut scalars,
-        &[new.inverse_norm, new.across, new.far, new.open],
-    );
-    [node.inverse_norm, node.across, node.far, node.open] = scalars;
-    take(mask, here.screws.as_flattened_mut(), other.screws.as_flattened());
-    take(
-        mask,
-        here.inverse.0.as_flattened_mut(),
-        other.inverse.0.as_flattened(),
-    );
+    let mut scalars = [node.inverse_norm, node.across, node.open];
+    take(mask, &mut scalars, &[new.inverse_norm, new.across, new.open]);
+    [node.inverse_norm, node.across, node.open] = scalars;
+    for (screw, new) in here.screws.as_mut().iter_mut().zip(other.screws.as_ref()) {
+        take(mask, screw.as_mut(), new.as_ref());
+    }
+    for (column, new) in here.inverse.0.as_mut().iter_mut().zip(other.inverse.0.as_ref()) {
+        take(mask, column.as_mut(), new.as_ref());
+    }
 }
 
 /// Takes new numbers over in the lanes where another is not negative.

@@ -8,8 +8,8 @@ use crate::loops::modes::finder::Completeness;
 pub struct Found {
     /// Rank of the joints' screws, idle freedoms aside.
     pub rank: usize,
-    /// Wrenches that the redundant constraints bear, a basis: force and moment in the frame of the first joint.
-    pub redundant: Vec<[f64; 6]>,
+    /// What the redundant constraints bear, a basis, a number for each row of the closure: moment and force in the frame of the first joint.
+    pub redundant: Vec<Vec<f64>>,
     /// Freedoms of the motion as found.
     pub finite: usize,
 }

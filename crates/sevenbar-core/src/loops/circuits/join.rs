@@ -7,21 +7,21 @@
 
 use super::curve::{Curve, End};
 use super::follow::{self, Start};
-use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, Columns, free_direction};
+use crate::loops::equation::closed::{At, Closed, free_direction};
+use crate::loops::equation::dense::Array;
 use crate::loops::modes::many_starts::same;
 
 /// A pivot of the screws below this part of the greatest may be zero: such places are left to the ordinary way.
 const LEAST_PIVOT: f64 = 1e-6;
 
 /// The closed curves through some of these closed configurations; those on other curves are left out.
-pub(crate) fn closed_curves(chain: &Chain, places: &[Configuration]) -> Vec<Curve> {
+pub(crate) fn closed_curves<S: Closed>(chain: &S, places: &[At<S>]) -> Vec<Curve<S>> {
     if chain.is_redundant() {
         return Vec::new();
     }
-    let mut starts: Vec<Start> = Vec::with_capacity(places.len());
+    let mut starts: Vec<Start<S>> = Vec::with_capacity(places.len());
     for place in places {
-        if let Some(direction) = free_direction(&chain.place(place).screws, LEAST_PIVOT)
+        if let Some(direction) = free_direction::<S>(&chain.place(place).screws, LEAST_PIVOT)
             && starts.iter().all(|s| !same(chain, &s.0, place))
         {
             starts.push((*place, direction));
@@ -45,25 +45,25 @@ pub(crate) fn closed_curves(chain: &Chain, places: &[Configuration]) -> Vec<Curv
 }
 
 /// One closed curve from pieces that follow each other, turns counted on.
-fn one_of(chain: &Chain, pieces: &[Curve], round: &[usize]) -> Curve {
+fn one_of<S: Closed>(chain: &S, pieces: &[Curve<S>], round: &[usize]) -> Curve<S> {
     let mut nodes = Vec::with_capacity(1 + round.iter().map(|&k| pieces[k].nodes.len()).sum::<usize>());
-    let mut turns: Columns = [0.0; COLUMNS];
+    let mut turns: S::Columns<f64> = S::Columns::filled(0.0);
     for (n, &k) in round.iter().enumerate() {
         let next = &pieces[round[(n + 1) % round.len()]].nodes[0];
         let (end, piece) = pieces[k].nodes.split_last().unwrap_or_else(|| unreachable!());
         for node in piece {
             let mut node = *node;
-            for c in 0..COLUMNS {
+            for c in 0..S::COLUMNS {
                 node.at.values[c] += turns[c];
             }
             nodes.push(node);
         }
-        for c in (0..COLUMNS).filter(|&c| chain.is_turn(c)) {
+        for c in (0..S::COLUMNS).filter(|&c| chain.is_turn(c)) {
             turns[c] += end.at.values[c] - next.at.values[c];
         }
     }
     let mut end = nodes[0];
-    for c in 0..COLUMNS {
+    for c in 0..S::COLUMNS {
         end.at.values[c] += turns[c];
     }
     nodes.push(end);

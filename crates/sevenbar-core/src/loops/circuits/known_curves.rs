@@ -7,8 +7,9 @@ use super::follow::{self, Start};
 use super::found::{Found, Search};
 use super::on_curve::{lies_on, lies_on_any, not_on_any, place_on};
 use super::walked_again;
-use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, dot, length, singular_values};
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::closed::{At, Closed};
+use crate::loops::equation::dense::{Array, dot, length, singular_values};
 use crate::loops::mobility::rank::{rank, unyielding};
 use crate::loops::modes::finder::Completeness;
 
@@ -26,27 +27,27 @@ const SHARP: f64 = 1e4;
 const BESIDE_BEND: f64 = 30.0;
 
 /// All curves of a chain.
-pub(crate) struct Curves {
-    pub curves: Vec<Curve>,
+pub(crate) struct Curves<S: Closed = Chain> {
+    pub curves: Vec<Curve<S>>,
     /// What was searched, and what was found.
     pub search: Search,
     /// Poses at which curves are not smooth, or that stand alone, once all curves are known.
-    pub change_points: Vec<ChangePoint>,
-    pub arcs: Arcs,
+    pub change_points: Vec<ChangePoint<S>>,
+    pub arcs: Arcs<S>,
     /// Modes at sharp bends, left for the last; and whether they are followed now.
-    sharp: Vec<Configuration>,
+    sharp: Vec<At<S>>,
     /// Modes from which no motion was followed when they were met.
-    not_followed: Vec<Configuration>,
+    not_followed: Vec<At<S>>,
     /// Those of them that lie on no curve, nor at a change point with a way out, once all curves are known.
-    pub lost: Vec<Configuration>,
+    pub lost: Vec<At<S>>,
     pub last: bool,
     /// Columns whose limits say what is a change point.
     pub wished: Vec<usize>,
     /// Curves through some of the modes to come.
-    pub ahead: Vec<Curve>,
+    pub ahead: Vec<Curve<S>>,
 }
 
-impl Curves {
+impl<S: Closed> Curves<S> {
     /// None yet; limits of the wished columns say what is a change point.
     pub fn new(wished: &[usize]) -> Self {
         Self {
@@ -69,25 +70,25 @@ impl Curves {
     }
 
     /// Those modes that lie on no curve yet.
-    pub fn unknown(&self, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
+    pub fn unknown(&self, chain: &S, modes: &[At<S>]) -> Vec<At<S>> {
         let mut modes = not_on_any(chain, &self.curves, modes.to_vec());
         modes.retain(|m| !self.arcs.hold(chain, m));
         modes
     }
 
     /// Whether a mode is a place of a known curve.
-    pub fn holds(&self, chain: &Chain, mode: &Configuration) -> bool {
+    pub fn holds(&self, chain: &S, mode: &At<S>) -> bool {
         self.curves.iter().any(|c| lies_on(chain, c, mode)) || self.arcs.hold(chain, mode)
     }
 
     /// Which of the curves ahead leads over a mode, and the rates there.
-    fn foreseen(&self, chain: &Chain, mode: &Configuration) -> Option<(usize, Node)> {
+    fn foreseen(&self, chain: &S, mode: &At<S>) -> Option<(usize, Node<S>)> {
         let mut ahead = self.ahead.iter().enumerate();
         ahead.find_map(|(k, curve)| Some((k, *place_on(chain, curve, mode)?)))
     }
 
     /// One of the curves ahead, turned round if `backwards`.
-    fn taken_ahead(&mut self, chain: &Chain, which: usize, backwards: bool) -> Curve {
+    fn taken_ahead(&mut self, chain: &S, which: usize, backwards: bool) -> Curve<S> {
         let curve = self.ahead.swap_remove(which);
         if backwards {
             walked_again::turned_round(chain, &curve, &[])
@@ -97,14 +98,14 @@ impl Curves {
     }
 
     /// Follows the motions through modes, those aside that lie on one already followed; the given column rises at first.
-    pub fn take(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
+    pub fn take(&mut self, chain: &S, modes: &[At<S>], rising: usize) {
         for modes in modes.chunks(MOST_MODES) {
             self.take_together(chain, modes, rising);
         }
     }
 
     /// Follows what leads out of a pose at which the motion may not be smooth; returns whether it is a change point or isolated.
-    pub fn branches(&mut self, chain: &Chain, pose: &Configuration, stuck: bool) -> bool {
+    pub fn branches(&mut self, chain: &S, pose: &At<S>, stuck: bool) -> bool {
         if self.arcs.is_endless() || self.arcs.learn(chain, pose, &self.wished, stuck).is_none() {
             return false;
         }
@@ -120,11 +121,11 @@ impl Curves {
     }
 
     /// Follows what was left for the last, joins the arcs between change points, and says how freely the loop moves.
-    pub fn finish(&mut self, chain: &Chain) {
+    pub fn finish(&mut self, chain: &S) {
         self.last = true;
         for mode in std::mem::take(&mut self.sharp) {
-            let near = |n: &Node| length(&chain.difference(&n.at, &mode)) * n.inverse_norm < BESIDE_BEND;
-            let beside_bend = |c: &Curve| c.nodes.iter().any(|n| n.inverse_norm > SHARP && near(n));
+            let near = |n: &Node<S>| length(&chain.difference(&n.at, &mode)) * n.inverse_norm < BESIDE_BEND;
+            let beside_bend = |c: &Curve<S>| c.nodes.iter().any(|n| n.inverse_norm > SHARP && near(n));
             if self.curves.iter().any(beside_bend) {
                 continue;
             }
@@ -155,10 +156,10 @@ impl Curves {
             .search
             .found
             .as_ref()
-            .is_some_and(|f| f.rank + 1 == chain.columns);
+            .is_some_and(|f| f.rank + 1 == chain.columns());
         if let Some(curve) = self.curves.first().filter(|_| !one) {
-            let rank = chain.columns - 1;
-            let redundant = wrenches(&chain.screws(curve.plainest()), rank);
+            let rank = chain.columns() - 1;
+            let redundant = unyielding(&chain.screws(curve.plainest()), S::ROWS, rank);
             self.search.found = Some(Found { rank, redundant, finite });
         }
         if let Some(found) = &mut self.search.found {
@@ -167,7 +168,7 @@ impl Curves {
     }
 
     /// Calls the ends of curves change points where these were not found: more may begin there than was followed.
-    fn name_ends(&mut self, chain: &Chain) {
+    fn name_ends(&mut self, chain: &S) {
         for curve in &self.curves {
             for end in curve.singular_ends() {
                 if let Some(known) = self.change_points.iter_mut().find(|p| p.is_at(chain, end)) {
@@ -181,25 +182,28 @@ impl Curves {
     }
 
     /// Looks at the rank of a pose.
-    pub fn find_at(&mut self, chain: &Chain, pose: &Configuration) {
+    pub fn find_at(&mut self, chain: &S, pose: &At<S>) {
         let columns = chain.screws(pose);
-        let rank = rank(&singular_values(&columns).0, chain.no_rank());
+        let rank = rank(&singular_values(&columns).0, S::ROWS, chain.no_rank());
         self.find(chain, &columns, rank);
     }
 
     /// Holds the greatest rank of all poses, and what goes with it.
-    fn find(&mut self, chain: &Chain, columns: &[Vec<f64>], rank: usize) {
+    fn find(&mut self, chain: &S, columns: &[Vec<f64>], rank: usize) {
         if self.search.found.as_ref().is_none_or(|f| rank > f.rank) {
-            self.search.found =
-                Some(Found { rank, redundant: wrenches(columns, rank), finite: chain.columns - rank });
+            self.search.found = Some(Found {
+                rank,
+                redundant: unyielding(columns, S::ROWS, rank),
+                finite: chain.columns() - rank,
+            });
         }
     }
 
-    fn take_together(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
-        let mut starts: Vec<Start> = Vec::new();
-        let mut curves: Vec<Option<Curve>> = Vec::new();
+    fn take_together(&mut self, chain: &S, modes: &[At<S>], rising: usize) {
+        let mut starts: Vec<Start<S>> = Vec::new();
+        let mut curves: Vec<Option<Curve<S>>> = Vec::new();
         for mode in modes {
-            let known = |c: &Curve| lies_on(chain, c, mode);
+            let known = |c: &Curve<S>| lies_on(chain, c, mode);
             if self.holds(chain, mode) || curves.iter().flatten().any(known) {
                 continue;
             }
@@ -212,7 +216,7 @@ impl Curves {
                 .search
                 .found
                 .as_ref()
-                .is_some_and(|f| f.rank + 1 == chain.columns);
+                .is_some_and(|f| f.rank + 1 == chain.columns());
             if let Some((which, node)) = foreseen.filter(|(_, n)| whole && n.inverse_norm < SHARP) {
                 starts.push((*mode, node.rates[0]));
                 curves.push(Some(self.taken_ahead(chain, which, node.rates[0][rising] < 0.0)));
@@ -220,11 +224,11 @@ impl Curves {
             }
             let columns = chain.screws(mode);
             let (values, vectors) = singular_values(&columns);
-            let rank = rank(&values, chain.no_rank());
-            if chain.columns - rank != 1 {
+            let rank = rank(&values, S::ROWS, chain.no_rank());
+            if chain.columns() - rank != 1 {
                 // on a surface every pose is like this one
                 let isolated =
-                    chain.columns > rank + 1 && self.arcs.finite < 2 && self.branches(chain, mode, false);
+                    chain.columns() > rank + 1 && self.arcs.finite < 2 && self.branches(chain, mode, false);
                 if !isolated {
                     self.not_followed.push(*mode);
                 }
@@ -248,8 +252,7 @@ impl Curves {
                 self.not_followed.push(*mode);
                 continue;
             }
-            let mut direction = [0.0; COLUMNS];
-            direction[..chain.columns].copy_from_slice(&vectors[chain.columns - 1]);
+            let mut direction: S::Columns<f64> = Array::padded(&vectors[chain.columns() - 1], 0.0);
             if direction[rising] < 0.0 {
                 direction = direction.map(|d| -d);
             }
@@ -260,14 +263,14 @@ impl Curves {
                 }),
             );
         }
-        let left: Vec<Start> = starts
+        let left: Vec<Start<S>> = starts
             .iter()
             .zip(&curves)
             .filter(|(_, c)| c.is_none())
             .map(|(s, _)| *s)
             .collect();
         let mut followed = follow::follow(chain, &left, &self.arcs.stops()).into_iter();
-        let mut fresh: Vec<Curve> = Vec::new();
+        let mut fresh: Vec<Curve<S>> = Vec::new();
         for (curve, start) in curves.into_iter().zip(&starts) {
             let Some(mut curve) = curve.or_else(|| followed.next()) else {
                 unreachable!()
@@ -290,7 +293,7 @@ impl Curves {
             self.arcs.endless += usize::from(!known_endless && follow::is_endless(chain, &curve));
             let stuck = curve.is_stuck() && curve.nodes.len() > 2;
             // a way into a change point that none of its ways out leads back is kept as it is
-            let held = |at: &Configuration| self.arcs.hold(chain, at);
+            let held = |at: &At<S>| self.arcs.hold(chain, at);
             let by_arcs = || stuck && (chain.is_redundant() || held(&start.0) || held(curve.plainest()));
             if branches && (by_arcs() || contains(chain, &curve, &self.arcs)) {
                 continue;
@@ -308,7 +311,7 @@ impl Curves {
     }
 
     /// Whether a curve leads to change points, all branches of which are followed then.
-    fn led_to(&mut self, chain: &Chain, curve: &Curve) -> bool {
+    fn led_to(&mut self, chain: &S, curve: &Curve<S>) -> bool {
         let stuck = curve.is_stuck() && curve.nodes.len() > 2;
         let mut places = narrow_places(curve);
         places.extend(curve.singular_ends());
@@ -321,21 +324,22 @@ impl Curves {
 
     /// Whether a curve with ends is known, though its start was not seen on one that is: beside a change point no step of a curve
     /// tells that a mode is on it, and a curve of too many nodes is known in part.
-    fn is_known(&self, chain: &Chain, curve: &Curve) -> bool {
-        let overlap = |one: &Curve, other: &Curve| other.ends().into_iter().any(|at| lies_on(chain, one, at));
+    fn is_known(&self, chain: &S, curve: &Curve<S>) -> bool {
+        let overlap =
+            |one: &Curve<S>, other: &Curve<S>| other.ends().into_iter().any(|at| lies_on(chain, one, at));
         let mut far = self.curves.iter().filter(|c| c.ends_by(End::Far));
         lies_on_any(chain, &self.curves, curve.plainest())
             || (curve.ends_by(End::Far) && far.any(|c| overlap(c, curve) || overlap(curve, c)))
     }
 
     /// Forgets the curves between change points that are parts of others: those led on where these ended, within rounding.
-    fn forget_parts(&mut self, chain: &Chain) {
+    fn forget_parts(&mut self, chain: &S) {
         let mut k = 0;
         while k < self.curves.len() {
             let curve = &self.curves[k];
             let mut others = self.curves[..k].iter().chain(&self.curves[k + 1..]);
             // of two that are parts of each other, as they end at change points a rounding apart, the longer stays
-            let part_of = |c: &Curve| c.length() >= curve.length() && lies_on(chain, c, curve.plainest());
+            let part_of = |c: &Curve<S>| c.length() >= curve.length() && lies_on(chain, c, curve.plainest());
             if !curve.is_closed() && others.any(part_of) {
                 self.curves.remove(k);
             } else {
@@ -343,13 +347,4 @@ impl Curves {
             }
         }
     }
-}
-
-/// A basis of the wrenches that no joint yields to: force and moment with zero power on every screw.
-fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
-    unyielding(columns, rank)
-        .iter()
-        // the power of force f and moment m on (w, v) is m w + f v
-        .map(|v| [v[3], v[4], v[5], v[0], v[1], v[2]])
-        .collect()
 }

@@ -11,5 +11,7 @@ mod meetings;
 pub(super) mod on_curve;
 pub(super) mod search;
 mod sphere;
+#[cfg(test)]
+mod tests;
 pub(super) mod turnings;
 pub(super) mod walked_again;

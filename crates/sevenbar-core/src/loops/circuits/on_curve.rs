@@ -1,24 +1,20 @@
 //! Whether a pose is a place of a curve that is known.
 
 use super::curve::{self, Curve, Node, REACH};
-use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::{At, Closed};
 use crate::stopping;
 
-pub(crate) fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
+pub(crate) fn lies_on_any<S: Closed>(chain: &S, curves: &[Curve<S>], mode: &At<S>) -> bool {
     curves.iter().any(|c| lies_on(chain, c, mode))
 }
 
 /// Whether a mode is a place of a curve.
-pub(crate) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
+pub(crate) fn lies_on<S: Closed>(chain: &S, curve: &Curve<S>, mode: &At<S>) -> bool {
     place_on(chain, curve, mode).is_some()
 }
 
 /// Those modes that lie on none of the curves.
-pub(super) fn not_on_any(
-    chain: &Chain,
-    curves: &[Curve],
-    mut modes: Vec<Configuration>,
-) -> Vec<Configuration> {
+pub(super) fn not_on_any<S: Closed>(chain: &S, curves: &[Curve<S>], mut modes: Vec<At<S>>) -> Vec<At<S>> {
     for curve in curves {
         if modes.is_empty() {
             break;
@@ -31,21 +27,21 @@ pub(super) fn not_on_any(
 }
 
 /// The node of a curve from which a step leads over a mode.
-pub(super) fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
+pub(super) fn place_on<'a, S: Closed>(chain: &S, curve: &'a Curve<S>, mode: &At<S>) -> Option<&'a Node<S>> {
     place_within(chain, curve, reaches(curve), mode)
 }
 
 /// The most by which each step of a curve changes a turn.
-fn reaches(curve: &Curve) -> impl Iterator<Item = f64> {
+fn reaches<S: Closed>(curve: &Curve<S>) -> impl Iterator<Item = f64> {
     curve.nodes.iter().map(|node| REACH * node.step)
 }
 
-fn place_within<'a>(
-    chain: &Chain,
-    curve: &'a Curve,
+fn place_within<'a, S: Closed>(
+    chain: &S,
+    curve: &'a Curve<S>,
     reaches: impl Iterator<Item = f64>,
-    mode: &Configuration,
-) -> Option<&'a Node> {
+    mode: &At<S>,
+) -> Option<&'a Node<S>> {
     // no nearer to the mode than this, in the turn that is farthest off
     stopping::piece();
     let mut least = 0.0;

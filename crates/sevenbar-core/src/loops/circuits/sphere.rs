@@ -2,9 +2,8 @@
 //!
 //! Source: docs/theory.md, (19) to (22).
 
-use crate::loops::equation::chain::{Chain, Configuration, Placed};
-use crate::loops::equation::dense::{COLUMNS, Columns, dot, least_squares, length, singular_values};
-use crate::loops::equation::rotations::squared_up;
+use crate::loops::equation::closed::{At, Closed, Placed};
+use crate::loops::equation::dense::{Array, dot, least_squares, length, singular_values};
 use crate::loops::mobility::singular_place::{LAST_STEP, MOST_STEPS, Place, STEADY, power};
 use crate::loops::modes::polish::CLOSED;
 use crate::random::Random;
@@ -69,21 +68,20 @@ const ONE_LINE: f64 = 0.95;
 const ENOUGH_ON_LINE: usize = 6;
 
 /// What leads out of a place.
-#[derive(Default)]
-pub(super) struct Ways {
+pub(super) struct Ways<S: Closed> {
     /// The poses at which curves cut a sphere about it, each once.
-    pub single: Vec<Configuration>,
+    pub single: Vec<At<S>>,
     /// The same of curves that coincide.
-    pub lost: Vec<Configuration>,
+    pub lost: Vec<At<S>>,
     /// The greatest mobility found on the sphere.
     pub finite: usize,
 }
 
 /// What leads over a sphere about a place. A surface has no separate ways out, but curves may run into it.
-pub(super) fn ways_out(chain: &Chain, place: &Place, radius: f64) -> Ways {
-    let mut found = Ways::default();
-    let near = |known: &[Configuration], at: &Configuration, part: f64| {
-        let near = |f: &Configuration| length(&chain.difference(f, at)) < part * radius;
+pub(super) fn ways_out<S: Closed>(chain: &S, place: &Place<S>, radius: f64) -> Ways<S> {
+    let mut found = Ways { single: Vec::new(), lost: Vec::new(), finite: 0 };
+    let near = |known: &[At<S>], at: &At<S>, part: f64| {
+        let near = |f: &At<S>| length(&chain.difference(f, at)) < part * radius;
         known.iter().any(near)
     };
     // how often the same of those that coincide
@@ -113,15 +111,15 @@ pub(super) fn ways_out(chain: &Chain, place: &Place, radius: f64) -> Ways {
             NO_FREEDOM_AT_ALL
         };
         let zero = least.min(NO_FREEDOM * radius) * values[0];
-        let rank = values.iter().take(6).filter(|&&v| v > zero).count();
-        let freedoms = chain.columns - rank;
+        let rank = values.iter().take(S::ROWS).filter(|&&v| v > zero).count();
+        let freedoms = chain.columns() - rank;
         if freedoms == 1 {
             found.single.push(at);
         } else if !redundant && !is_on_surface(chain, place, &at, &vectors[rank..], radius) {
             found.lost.push(at);
         } else if freedoms == place.free.len() {
             let way = chain.difference(&place.at, &at);
-            let along = |known: &Configuration| {
+            let along = |known: &At<S>| {
                 let first = chain.difference(&place.at, known);
                 dot(&first, &way).abs() > ONE_LINE * length(&first) * length(&way)
             };
@@ -146,8 +144,8 @@ pub(super) fn ways_out(chain: &Chain, place: &Place, radius: f64) -> Ways {
 
 /// Whether a pose on a sphere closes only because it is near: its closure error falls with the square of the distance. Along a real
 /// motion the closure error is rounding, or that of redundant constraints, which is constant or falls in proportion.
-fn opens_with_distance(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> bool {
-    let open = |at: &Configuration| chain.residual(&chain.place(at));
+fn opens_with_distance<S: Closed>(chain: &S, place: &Place<S>, at: &At<S>, radius: f64) -> bool {
+    let open = |at: &At<S>| chain.residual(&chain.place(at));
     // so far out nothing closes that is no motion, unless constraints are redundant
     if radius >= RADII[0] && !chain.is_redundant() {
         return false;
@@ -159,10 +157,10 @@ fn opens_with_distance(chain: &Chain, place: &Place, at: &Configuration, radius:
 }
 
 /// Whether there are other solutions next to one on a sphere, in a direction that is free there.
-fn is_on_surface(chain: &Chain, place: &Place, at: &Configuration, free: &[Vec<f64>], radius: f64) -> bool {
+fn is_on_surface<S: Closed>(chain: &S, place: &Place<S>, at: &At<S>, free: &[Vec<f64>], radius: f64) -> bool {
     let off = chain.difference(&place.at, at);
     let distance = length(&off);
-    let along = |v: &[f64]| v.iter().zip(&off).map(|(a, b)| a * b).sum::<f64>() / distance;
+    let along = |v: &[f64]| v.iter().zip(off.as_ref()).map(|(a, b)| a * b).sum::<f64>() / distance;
     // the freest direction along the sphere
     let Some(least) = free
         .iter()
@@ -171,7 +169,7 @@ fn is_on_surface(chain: &Chain, place: &Place, at: &Configuration, free: &[Vec<f
         return false;
     };
     let outward = along(least) / distance;
-    let start = std::array::from_fn(|c| {
+    let start: S::Columns<f64> = Array::from_fn(|c| {
         let aside = least.get(c).map_or(0.0, |x| x - outward * off[c]);
         off[c] / radius + ASIDE * aside
     });
@@ -180,12 +178,12 @@ fn is_on_surface(chain: &Chain, place: &Place, at: &Configuration, free: &[Vec<f
 }
 
 /// The solution of the closure at distance `radius` from a place that Newton's method finds, starting in a direction.
-pub(super) fn on_sphere(
-    chain: &Chain,
-    place: &Place,
-    direction: &Columns,
+pub(super) fn on_sphere<S: Closed>(
+    chain: &S,
+    place: &Place<S>,
+    direction: &S::Columns<f64>,
     radius: f64,
-) -> Option<Configuration> {
+) -> Option<At<S>> {
     let mut at = chain.moved(&place.at, &direction.map(|x| x * radius));
     let mut before = f64::INFINITY;
     let first = if place.may_touch() { FIRST_STEPS } else { 0 };
@@ -202,18 +200,29 @@ pub(super) fn on_sphere(
             let aimed: Vec<f64> = place.free.iter().map(|f| radius * dot(f, direction)).collect();
             along(chain, place, &placed, &seen, &aimed)
         } else {
-            let mut outward = [0.0; COLUMNS];
+            let mut outward = S::Columns::filled(0.0);
             for (x, free) in seen.iter().zip(&place.free) {
-                for c in 0..COLUMNS {
+                for c in 0..S::COLUMNS {
                     outward[c] += x / distance * free[c];
                 }
             }
-            let column = |c: usize| placed.screws[c].iter().copied().chain([outward[c]]).collect();
-            let right = placed.error.iter().map(|e| -e).chain([radius - distance]);
-            ((0..chain.columns).map(column).collect(), right.collect())
+            let column = |c: usize| {
+                placed.screws[c]
+                    .as_ref()
+                    .iter()
+                    .copied()
+                    .chain([outward[c]])
+                    .collect()
+            };
+            let right = placed
+                .error
+                .as_ref()
+                .iter()
+                .map(|e| -e)
+                .chain([radius - distance]);
+            ((0..chain.columns()).map(column).collect(), right.collect())
         };
-        let mut by = [0.0; COLUMNS];
-        by[..chain.columns].copy_from_slice(&least_squares(&columns, &right, chain.no_rank()));
+        let by: S::Columns<f64> = Array::padded(&least_squares(&columns, &right, chain.no_rank()), 0.0);
         let size = length(&by);
         // where curves touch, each step is at most half the one before
         if !size.is_finite() || (step >= WANDERING_AFTER && size > WANDERING * radius) {
@@ -221,24 +230,26 @@ pub(super) fn on_sphere(
         }
         let factor = (LONGEST_STEP * radius / size).min(1.0);
         at = chain.moved(&at, &by.map(|x| x * factor));
-        for ball in &mut at.balls {
-            *ball = squared_up(ball);
-        }
+        at.square_up(chain.ball_count());
         let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
         before = size;
         if steady && step >= first {
             break;
         }
     }
-    let closed = if chain.is_redundant() { chain.agree } else { CLOSED };
+    let closed = if chain.is_redundant() {
+        chain.agree()
+    } else {
+        CLOSED
+    };
     (before < STEADY && chain.residual(&chain.place(&at)) < closed).then_some(at)
 }
 
 /// The equations of a step that closes what is seen to first order at a place, and takes what is free from `seen` to where it is `aimed`.
-fn along(
-    chain: &Chain,
-    place: &Place,
-    placed: &Placed,
+fn along<S: Closed>(
+    chain: &S,
+    place: &Place<S>,
+    placed: &Placed<S>,
     seen: &[f64],
     aimed: &[f64],
 ) -> (Vec<Vec<f64>>, Vec<f64>) {
@@ -248,17 +259,17 @@ fn along(
     };
     let left = place.seen.iter().map(|row| -power(row, &placed.error));
     let right = left.chain(aimed.iter().zip(seen).map(|(a, s)| a - s));
-    ((0..chain.columns).map(column).collect(), right.collect())
+    ((0..chain.columns()).map(column).collect(), right.collect())
 }
 
 /// Unit vectors in the free directions of a place from which Newton's method begins.
-fn directions(place: &Place) -> Vec<Columns> {
+fn directions<S: Closed>(place: &Place<S>) -> Vec<S::Columns<f64>> {
     let count = place.free.len();
     let combined = |weights: &[f64]| {
         let size = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
-        let mut out = [0.0; COLUMNS];
+        let mut out = S::Columns::filled(0.0);
         for (w, free) in weights.iter().zip(&place.free) {
-            for c in 0..COLUMNS {
+            for c in 0..S::COLUMNS {
                 out[c] += w / size * free[c];
             }
         }

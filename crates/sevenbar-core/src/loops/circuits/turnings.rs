@@ -2,7 +2,8 @@
 
 use super::curve::{self, Curve, Node, measure};
 use crate::loops::equation::chain::Chain;
-use crate::loops::equation::dense::{COLUMNS, dot, length};
+use crate::loops::equation::closed::{Closed, copied};
+use crate::loops::equation::dense::{dot, length};
 
 /// A rate of a column below this part of the curve's is zero.
 const AT_REST: f64 = 1e-13;
@@ -36,15 +37,17 @@ const DIP_STEPS: usize = 6;
 const DIP_LEFT: f64 = 0.5;
 
 /// A place where a column changes direction.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Turning {
+#[derive(Debug)]
+pub(crate) struct Turning<S: Closed = Chain> {
     /// The node that it follows.
     pub segment: usize,
-    pub node: Node,
+    pub node: Node<S>,
 }
 
+copied!(Turning<S>);
+
 /// Where a column changes direction, in order.
-pub(crate) fn turnings(curve: &Curve, chain: &Chain, column: usize) -> Vec<Turning> {
+pub(crate) fn turnings<S: Closed>(curve: &Curve<S>, chain: &S, column: usize) -> Vec<Turning<S>> {
     if curve.rests(column) {
         return Vec::new();
     }
@@ -62,10 +65,10 @@ pub(crate) fn turnings(curve: &Curve, chain: &Chain, column: usize) -> Vec<Turni
 
 /// Of places in a row between which a column does not move leaves one where it turns back: rates that are rounding have no sign, and it
 /// does where it comes from the side to which it goes. Where an open curve ends in such a place, rates are asked.
-fn forget_unmoved(curve: &Curve, found: &mut Vec<Turning>, column: usize) {
-    let value = |t: &Turning| t.node.at.values[column];
+fn forget_unmoved<S: Closed>(curve: &Curve<S>, found: &mut Vec<Turning<S>>, column: usize) {
+    let value = |t: &Turning<S>| t.node.at.values[column];
     let (closed, gained) = (curve.is_closed(), curve.gained()[column]);
-    let mut rows: Vec<Vec<Turning>> = Vec::new();
+    let mut rows: Vec<Vec<Turning<S>>> = Vec::new();
     for turning in found.drain(..) {
         match rows.last_mut() {
             Some(row) if (value(&row[row.len() - 1]) - value(&turning)).abs() < UNMOVED => row.push(turning),
@@ -103,11 +106,11 @@ fn forget_unmoved(curve: &Curve, found: &mut Vec<Turning>, column: usize) {
 }
 
 /// The same, where a column turns back at a change point as its rates beside have it, the first of them that is not `still`.
-fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<Turning> {
+fn turnings_by<S: Closed>(curve: &Curve<S>, chain: &S, column: usize, still: f64) -> Vec<Turning<S>> {
     let mut found = Vec::new();
     let mut marks: Vec<(f64, f64)> = Vec::new();
     let rounded =
-        |n: &Node| n.inverse_norm > NEAR && n.rates[0][column].abs() <= ROUNDED * n.inverse_norm.powi(2);
+        |n: &Node<S>| n.inverse_norm > NEAR && n.rates[0][column].abs() <= ROUNDED * n.inverse_norm.powi(2);
     // the last rate before nodes at which rounding hides it, and the node of these where it is least
     let mut blurred: Option<(f64, usize)> = blurred_start(curve, column, &rounded);
     for (segment, pair) in curve.nodes.windows(2).enumerate() {
@@ -181,7 +184,7 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
         // both ends are known, and the places between are checked
         let count = marks.len();
         let counts =
-            |n: &Node, mark: (f64, f64)| mark.1.abs() < AT_REST || n.rates[0][column].abs() >= AT_REST;
+            |n: &Node<S>, mark: (f64, f64)| mark.1.abs() < AT_REST || n.rates[0][column].abs() >= AT_REST;
         for (k, mark) in marks.iter_mut().enumerate() {
             // an end whose rate is rounding has no sign where a place has one
             *mark = if k == 0 && counts(a, *mark) {
@@ -207,9 +210,9 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
 
 /// A place in a step at which a column's rate has another sign than all the `seen`: by Newton's method from the least of these that lies
 /// between greater ones to where the rate is least.
-fn dip(
-    chain: &Chain,
-    (a, b): (&Node, &Node),
+fn dip<S: Closed>(
+    chain: &S,
+    (a, b): (&Node<S>, &Node<S>),
     column: usize,
     seen: &[(f64, f64); PLACES + 1],
 ) -> Option<(f64, f64)> {
@@ -249,7 +252,11 @@ fn dip(
 }
 
 /// Of a closed curve that begins among nodes whose rates rounding hides: the rate before these, and the node where it is least.
-fn blurred_start(curve: &Curve, column: usize, rounded: &dyn Fn(&Node) -> bool) -> Option<(f64, usize)> {
+fn blurred_start<S: Closed>(
+    curve: &Curve<S>,
+    column: usize,
+    rounded: &dyn Fn(&Node<S>) -> bool,
+) -> Option<(f64, usize)> {
     if !curve.is_closed() || !rounded(&curve.nodes[0]) {
         return None;
     }
@@ -267,7 +274,7 @@ fn blurred_start(curve: &Curve, column: usize, rounded: &dyn Fn(&Node) -> bool) 
 }
 
 /// Where a column turns back beside a node at which its rate is rounding: there, or in a step next to it where its sign changes.
-fn turning_beside(curve: &Curve, chain: &Chain, column: usize, least: usize) -> Turning {
+fn turning_beside<S: Closed>(curve: &Curve<S>, chain: &S, column: usize, least: usize) -> Turning<S> {
     let rate = |k: usize| curve.nodes[k].rates[0][column];
     // a closed curve's last step leads to its first node
     let before = least.checked_sub(1).unwrap_or(curve.nodes.len() - 2);
@@ -284,7 +291,7 @@ fn turning_beside(curve: &Curve, chain: &Chain, column: usize, least: usize) -> 
 }
 
 /// Whether a column turns back at the node of a change point, as its rates at a distance have it, the first that is not `still`.
-fn turns_back_over(curve: &Curve, node: usize, column: usize, still: f64) -> bool {
+fn turns_back_over<S: Closed>(curve: &Curve<S>, node: usize, column: usize, still: f64) -> bool {
     let last = curve.nodes.len() - 1;
     let beside = |ahead: bool| {
         let mut gone = 0.0;
@@ -310,14 +317,14 @@ fn turns_back_over(curve: &Curve, node: usize, column: usize, still: f64) -> boo
 }
 
 /// The place in a step where a column's rate is zero, between two where its sign differs.
-fn turning_between(
-    chain: &Chain,
-    a: &Node,
+fn turning_between<S: Closed>(
+    chain: &S,
+    a: &Node<S>,
     column: usize,
     mut low: (f64, f64),
     mut high: (f64, f64),
-) -> Option<Node> {
-    let mut best: Option<Node> = None;
+) -> Option<Node<S>> {
+    let mut best: Option<Node<S>> = None;
     let mut s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
     for _ in 0..60 {
         let node = curve::ahead(chain, a, s)?;
@@ -349,10 +356,10 @@ fn turning_between(
 
 /// Makes each turning a node. The column's rate there is zero by its meaning: where the curve bends sharply, as beside a change point,
 /// the rate that is worked out is zero only to what rounding of the place leaves of it.
-pub(crate) fn insert(chain: &Chain, curve: &mut Curve, turnings: &[Turning], column: usize) {
+pub(crate) fn insert<S: Closed>(chain: &S, curve: &mut Curve<S>, turnings: &[Turning<S>], column: usize) {
     let last = curve.nodes.len() - 1;
     // a curve that was begun at a dead centre has that node already
-    let known = |t: &Turning| {
+    let known = |t: &Turning<S>| {
         (t.segment..=t.segment + 1).find(|&k| {
             let n = &curve.nodes[k];
             let off = length(&chain.difference(&n.at, &t.node.at));
@@ -395,19 +402,19 @@ pub(crate) fn insert(chain: &Chain, curve: &mut Curve, turnings: &[Turning], col
 }
 
 /// Whether a column changes direction at a node, once `insert` has seen the curve.
-pub(crate) fn turns_at(node: &Node, column: usize) -> bool {
+pub(crate) fn turns_at<S: Closed>(node: &Node<S>, column: usize) -> bool {
     node.rates[0][column] == 0.0
 }
 
 /// A closed curve begun at another of its nodes, turns counted on.
-pub(crate) fn begun_at(curve: &Curve, start: usize) -> Curve {
+pub(crate) fn begun_at<S: Closed>(curve: &Curve<S>, start: usize) -> Curve<S> {
     let last = curve.nodes.len() - 1;
     let gained = curve.gained();
-    let mut nodes: Vec<Node> = Vec::with_capacity(curve.nodes.len());
+    let mut nodes: Vec<Node<S>> = Vec::with_capacity(curve.nodes.len());
     nodes.extend_from_slice(&curve.nodes[start..last]);
     nodes.extend(curve.nodes[..=start].iter().map(|n| {
         let mut n = *n;
-        for c in 0..COLUMNS {
+        for c in 0..S::COLUMNS {
             n.at.values[c] += gained[c];
         }
         n

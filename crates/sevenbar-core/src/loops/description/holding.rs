@@ -2,7 +2,8 @@
 
 use super::described_loop::{Column, Loop};
 use super::reduce::{Carrier, Reduced, Source};
-use crate::loops::equation::chain::{Chain, Configuration, Joint};
+use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::Joint;
 use crate::loops::equation::dense::COLUMNS;
 use crate::loops::mobility::at_rest::Still;
 use crate::rigid::Pose;
@@ -21,7 +22,7 @@ pub(crate) fn holding(linkage: &Loop, still: Still) -> Option<Loop> {
     if !(single && part_of(still.joint) && old.spun.is_none() && chain.joints.len() > 1) {
         return None;
     }
-    let mut at = Configuration::ZERO;
+    let mut at = Configuration::zero();
     at.values[chain.first[still.joint]] = still.value;
     // from the frame before the joint to that before the next
     let motion = chain.motion_of(still.joint, &at);

@@ -3,7 +3,8 @@
 use super::described_loop::Loop;
 use super::reduce::{Source, SpunLinks};
 use super::spun::first_terms;
-use crate::loops::equation::chain::{BALLS, Chain, Configuration, Joint};
+use crate::loops::equation::chain::{BALLS, Chain, Configuration};
+use crate::loops::equation::closed::Joint;
 use crate::loops::equation::dense::COLUMNS;
 use crate::loops::equation::kinds::Kind;
 use crate::loops::equation::rotations::{Rotation, Z_TO_X, ball_rotation, product, short_way, transposed};
@@ -40,7 +41,7 @@ pub fn drawn_at(mut linkage: Loop, values: &[f64]) -> Loop {
 
 /// The configuration with these joint values; the idle spin of links is left out.
 pub(crate) fn configuration(linkage: &Loop, values: &[f64]) -> Configuration {
-    let mut out = Configuration::ZERO;
+    let mut out = Configuration::zero();
     let mut left_out = [Pose::STILL.rotation; BALLS];
     let Some(chain) = &linkage.reduced.chain else {
         return out;

@@ -2,7 +2,8 @@
 
 use super::spin_axis::{Way, spin_axis};
 use super::spun::{Spun, away_from_line};
-use crate::loops::equation::chain::{BALLS, Chain, Half, Joint};
+use crate::loops::equation::chain::{BALLS, Chain, Half};
+use crate::loops::equation::closed::Joint;
 use crate::loops::equation::dense::COLUMNS;
 use crate::loops::equation::kinds::Kind;
 use crate::loops::equation::rotations::{Rotation, Z_TO_X, transposed};

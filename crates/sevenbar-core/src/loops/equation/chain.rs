@@ -2,15 +2,14 @@
 //!
 //! Source: docs/theory.md, (1) to (5).
 
-use super::dense::{COLUMNS, Columns};
+use super::closed::{At, Closed, Inverse, Joint, Placed, Screws};
+use super::dense::{COLUMNS, Columns, Factored, ROWS};
 use super::flat::Flat;
-use super::rotations::{
-    Rotation, dot3, product, rotation, rotation_vector, short_way, splatted, transposed, turned,
-};
-use super::screws::{Twist, screw};
+use super::rotations::{dot3, splatted, turned};
+use super::screws::{bracket, screw};
 use crate::number::Number;
 use crate::rigid::{Pose, norm};
-use crate::vectors::{LANES, Vector};
+use std::fmt::Debug;
 
 /// The closure error [rad, or relative to the size] up to which redundant constraints agree by default: a nanometre in a metre, far below
 /// what can be made or measured, and far above rounding.
@@ -18,25 +17,6 @@ pub const AGREE: f64 = 1e-9;
 
 /// Most balls in seven columns.
 pub(crate) const BALLS: usize = 2;
-
-/// A joint of the chain; a ball has three columns, the others one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Joint {
-    Turn,
-    Slide,
-    /// Advance for each radian, relative to the size.
-    Screw(f64),
-    /// The n-th ball.
-    Ball(usize),
-}
-
-impl Joint {
-    /// How many columns it has.
-    #[inline(always)]
-    pub fn columns(&self) -> usize {
-        if matches!(self, Self::Ball(_)) { 3 } else { 1 }
-    }
-}
 
 /// `Z1 G1 Z2 .. Zn Gn = 1`, lengths relative to the size.
 #[derive(Clone, Debug)]
@@ -67,73 +47,8 @@ pub(crate) struct Half {
     pub line: Option<(usize, Flat)>,
 }
 
-/// Where the joints stand: a value for each column but a ball's, a rotation for each ball.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Configuration<N = f64> {
-    pub values: Columns<N>,
-    pub balls: [Rotation<N>; BALLS],
-}
-
-/// The chain evaluated: each column's screw in the frame of the first joint, and how far it is from closing.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed<N = f64> {
-    pub screws: [Twist<N>; COLUMNS],
-    pub error: Twist<N>,
-    /// Cosine of the angle by which the loop fails to close.
-    pub closing_cosine: N,
-}
-
-const UNTURNED: Rotation = Pose::STILL.rotation;
-
-impl Configuration {
-    pub const ZERO: Self = Self { values: [0.0; COLUMNS], balls: [UNTURNED; BALLS] };
-}
-
-impl<V: Vector> Configuration<V> {
-    /// Configurations side by side, one in each lane.
-    #[inline(always)]
-    pub fn beside(each: &[Configuration; LANES], balls: usize) -> Self {
-        let zero = V::splat(0.0);
-        let mut out = Self { values: [zero; COLUMNS], balls: [[[zero; 3]; 3]; BALLS] };
-        let mut lanes = [0.0; LANES];
-        for c in 0..COLUMNS {
-            for k in 0..LANES {
-                lanes[k] = each[k].values[c];
-            }
-            out.values[c] = V::load(&lanes);
-        }
-        for b in 0..balls {
-            for i in 0..9 {
-                for k in 0..LANES {
-                    lanes[k] = each[k].balls[b][i / 3][i % 3];
-                }
-                out.balls[b][i / 3][i % 3] = V::load(&lanes);
-            }
-        }
-        out
-    }
-
-    /// The configuration of each lane.
-    #[inline(always)]
-    pub fn apart(&self, balls: usize) -> [Configuration; LANES] {
-        let mut out = [Configuration::ZERO; LANES];
-        for c in 0..COLUMNS {
-            let lanes = self.values[c].store();
-            for k in 0..LANES {
-                out[k].values[c] = lanes[k];
-            }
-        }
-        for b in 0..balls {
-            for i in 0..9 {
-                let lanes = self.balls[b][i / 3][i % 3].store();
-                for k in 0..LANES {
-                    out[k].balls[b][i / 3][i % 3] = lanes[k];
-                }
-            }
-        }
-        out
-    }
-}
+/// Where a chain's joints stand.
+pub(crate) type Configuration<N = f64> = At<Chain, N>;
 
 impl Chain {
     pub fn new(joints: Vec<Joint>, links: Vec<Pose>) -> Self {
@@ -152,18 +67,8 @@ impl Chain {
             around,
             agree: AGREE,
             halves: Vec::new(),
-            drawn: Configuration::ZERO,
+            drawn: Configuration::zero(),
         }
-    }
-
-    /// How many joints are balls.
-    pub fn ball_count(&self) -> usize {
-        self.joints.iter().filter(|j| matches!(j, Joint::Ball(_))).count()
-    }
-
-    /// The joint of each column.
-    pub fn joint_of(&self, column: usize) -> usize {
-        self.first.iter().rposition(|&f| f <= column).unwrap_or(0)
     }
 
     /// Whether a configuration is the one of its pose that counts.
@@ -175,16 +80,6 @@ impl Chain {
         })
     }
 
-    /// Whether joints that move with one freedom leave constraints that say what others say: seven columns with rank six do not.
-    pub fn is_redundant(&self) -> bool {
-        self.columns < COLUMNS
-    }
-
-    /// Singular values below this part of the greatest are zero: those that a closure error within what agrees may bring.
-    pub fn no_rank(&self) -> f64 {
-        10.0 * self.agree
-    }
-
     /// How far from real, and from where it closes, a solution may lie [rad, or relative to the size] that closes within what agrees, where
     /// that is more than the default: two that meet part by the root of what parts them.
     pub fn looseness(&self) -> f64 {
@@ -193,11 +88,6 @@ impl Chain {
         } else {
             0.0
         }
-    }
-
-    /// The columns that are angles of joints with one axis.
-    pub fn is_turn(&self, column: usize) -> bool {
-        self.joints[self.joint_of(column)] == Joint::Turn
     }
 
     /// Where a joint leads, from the frame before it to that after.
@@ -218,8 +108,47 @@ impl Chain {
         }
     }
 
+    /// The frames after each joint, in the frame of the first joint.
+    pub fn frames(&self, at: &Configuration) -> Vec<Pose> {
+        let mut frame = Pose::STILL;
+        let mut frames = Vec::with_capacity(self.joints.len());
+        for (joint, link) in self.links.iter().enumerate() {
+            frame = frame.then(&self.motion_of(joint, at));
+            frames.push(frame);
+            frame = frame.then(link);
+        }
+        frames
+    }
+}
+
+impl Closed for Chain {
+    type Columns<T: Copy + Debug> = [T; COLUMNS];
+    type Rows<T: Copy + Debug> = [T; ROWS - 1];
+    type Bordered<T: Copy + Debug> = [T; ROWS];
+    type Balls<T: Copy + Debug> = [T; BALLS];
+    type Cycles<T: Copy + Debug> = [T; 1];
+
     #[inline(always)]
-    pub fn place<N: Number>(&self, at: &Configuration<N>) -> Placed<N> {
+    fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    #[inline(always)]
+    fn first(&self) -> &[usize] {
+        &self.first
+    }
+
+    #[inline(always)]
+    fn columns(&self) -> usize {
+        self.columns
+    }
+
+    fn agree(&self) -> f64 {
+        self.agree
+    }
+
+    #[inline(always)]
+    fn place<N: Number>(&self, at: &Configuration<N>) -> Placed<Self, N> {
         let (zero, one, half) = (N::splat(0.0), N::splat(1.0), N::splat(0.5));
         let mut screws = [[zero; 6]; COLUMNS];
         let mut axes = [[one, zero, zero], [zero, one, zero], [zero, zero, one]];
@@ -281,43 +210,9 @@ impl Chain {
         }
     }
 
-    /// The configuration after a move of every column; a ball turns about the axes of the frame before it.
     #[inline(always)]
-    pub fn moved<N: Number>(&self, at: &Configuration<N>, by: &Columns<N>) -> Configuration<N> {
-        let mut out = *at;
-        for (joint, &column) in self.joints.iter().zip(&self.first) {
-            if let Joint::Ball(b) = *joint {
-                let turn = rotation([by[column], by[column + 1], by[column + 2]]);
-                out.balls[b] = product(&turn, &at.balls[b]);
-            } else {
-                out.values[column] = out.values[column] + by[column];
-            }
-        }
-        out
-    }
-
-    /// The move from one configuration to another, turns taken the short way.
-    #[inline(always)]
-    pub fn difference(&self, from: &Configuration, to: &Configuration) -> Columns {
-        let mut by = [0.0; COLUMNS];
-        for (joint, &column) in self.joints.iter().zip(&self.first) {
-            match *joint {
-                Joint::Ball(b) => {
-                    let turn = product(&to.balls[b], &transposed(&from.balls[b]));
-                    by[column..column + 3].copy_from_slice(&rotation_vector(&turn));
-                }
-                Joint::Turn => {
-                    by[column] = short_way(to.values[column] - from.values[column]);
-                }
-                _ => by[column] = to.values[column] - from.values[column],
-            }
-        }
-        by
-    }
-
-    /// How far the loop is from closing: the greater of the angle [rad] and the gap relative to the size.
-    #[inline(always)]
-    pub fn residual<N: Number>(&self, placed: &Placed<N>) -> N {
+    fn residual<N: Number>(&self, placed: &Placed<Self, N>) -> N {
+        // the greater of the angle and the gap
         let e = &placed.error;
         let (turn, gap) = (dot3(&e[..3], &e[..3]).sqrt(), dot3(&e[3..], &e[3..]).sqrt());
         // turned right round the antisymmetric part is small again
@@ -325,21 +220,100 @@ impl Chain {
         turn.if_greater(gap, turn, gap)
     }
 
-    /// The joints' screws at a configuration, one for each column.
-    pub fn screws(&self, at: &Configuration) -> Vec<Vec<f64>> {
-        let screws = self.place(at).screws;
-        screws[..self.columns].iter().map(|s| s.to_vec()).collect()
+    #[inline(always)]
+    fn inverse<N: Number>(&self, screws: &Screws<Self, N>, row: &Columns<N>) -> Inverse<Self, N> {
+        let mut columns = [[N::splat(0.0); ROWS]; COLUMNS];
+        for c in 0..self.columns {
+            columns[c][..6].copy_from_slice(&screws[c]);
+            columns[c][6] = row[c];
+        }
+        Inverse(Factored::new(columns, self.columns).inverse())
     }
 
-    /// The frames after each joint, in the frame of the first joint.
-    pub fn frames(&self, at: &Configuration) -> Vec<Pose> {
-        let mut frame = Pose::STILL;
-        let mut frames = Vec::with_capacity(self.joints.len());
-        for (joint, link) in self.links.iter().enumerate() {
-            frame = frame.then(&self.motion_of(joint, at));
-            frames.push(frame);
-            frame = frame.then(link);
+    /// A joint's screw is carried by the link before it.
+    #[inline(always)]
+    fn carry<N: Number, const TERMS: usize>(
+        &self,
+        _at: &Configuration<N>,
+        screws: &mut [Screws<Self, N>; TERMS],
+        rates: &[Columns<N>; TERMS],
+        order: usize,
+    ) {
+        let zero = N::splat(0.0);
+        // of the link before each joint
+        let mut twists = [[zero; 6]; TERMS];
+        let inverse = N::splat(1.0 / order as f64);
+        for (joint, &first) in self.joints.iter().zip(&self.first) {
+            let width = joint.columns();
+            for c in first..first + width {
+                let mut sum = bracket(&twists[0], &screws[order - 1][c]);
+                for a in 1..order {
+                    let part = bracket(&twists[a], &screws[order - 1 - a][c]);
+                    for k in 0..6 {
+                        sum[k] = sum[k] + part[k];
+                    }
+                }
+                for k in 0..6 {
+                    screws[order][c][k] = sum[k] * inverse;
+                }
+            }
+            for c in first..first + width {
+                for a in 0..order {
+                    for b in 0..=a {
+                        for k in 0..6 {
+                            twists[a][k] = twists[a][k].plus_product(screws[b][c][k], rates[a - b][c]);
+                        }
+                    }
+                }
+            }
         }
-        frames
+    }
+
+    #[inline(always)]
+    fn farthest<N: Number>(&self, at: &Configuration<N>) -> [N; 1] {
+        // a little more where the loop does not quite close
+        let mut around = N::splat(1.02 * self.around);
+        let mut least = N::splat(0.0);
+        for (joint, &c) in self.joints.iter().zip(&self.first) {
+            let advance = match *joint {
+                Joint::Slide => 1.0,
+                Joint::Screw(advance) => advance,
+                _ => continue,
+            };
+            around = around + (at.values[c] * N::splat(advance)).size();
+            least = N::splat(1.0);
+        }
+        let half = around * N::splat(0.5);
+        [half.if_greater(least, half, least)]
+    }
+
+    #[inline(always)]
+    fn bounds<N: Number>(&self, inverse_norm: N, [far]: &[N; 1], rates: &[Columns<N>; 3], s: N) -> [N; 2] {
+        let (mut u, mut v, mut w) = (N::splat(0.0), N::splat(0.0), N::splat(0.0));
+        let mut third = N::splat(0.0);
+        for c in 0..self.columns {
+            // the screw of a column is carried by those before it
+            let z = (u * u * u).plus_product(N::splat(3.0) * u, v) + w;
+            let p =
+                *far * ((N::splat(8.0) * u * u * u).plus_product(N::splat(12.0) * u, v) + N::splat(2.0) * w);
+            third = third.plus_product(z, z).plus_product(p, p);
+            let [a, b, c] = [rates[0][c].size(), rates[1][c].size(), rates[2][c].size()];
+            let slope = b.plus_product(c, s);
+            u = u + a.plus_product(slope, s);
+            v = v + slope.plus_product(c, s);
+            w = w + N::splat(2.0) * c;
+        }
+        let fifth = u * u * u * (u * u + N::splat(10.0) * v)
+            + N::splat(15.0) * u * v * v
+            + N::splat(10.0) * w * (u * u + v);
+        let lever = (N::splat(1.0) + *far * *far).sqrt();
+        [inverse_norm * third.sqrt(), inverse_norm * lever * fifth]
+    }
+
+    #[inline(always)]
+    fn across<N: Number>(&self, [far]: &[N; 1], square: N) -> N {
+        let pairs = (self.columns * (self.columns - 1)) as f64 / 2.0;
+        let turning = N::splat(pairs.sqrt()) * (N::splat(1.0) + N::splat(4.0) * *far * *far).sqrt();
+        turning.plus_product(N::splat(2.2), square)
     }
 }

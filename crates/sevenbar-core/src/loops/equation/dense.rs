@@ -1,6 +1,46 @@
 //! Least squares with up to seven rows and columns, and singular values of small matrices.
 
 use crate::number::Number;
+use std::fmt::Debug;
+use std::ops::IndexMut;
+
+/// So many of one kind as the compiler knows.
+pub(crate) trait Array<T: Copy + Debug>:
+    Copy + Debug + IndexMut<usize, Output = T> + AsRef<[T]> + AsMut<[T]>
+{
+    /// How many.
+    const COUNT: usize;
+    /// All the same.
+    fn filled(value: T) -> Self;
+    /// Some, and then all the same.
+    fn padded(some: &[T], rest: T) -> Self;
+    /// Each by its number.
+    fn from_fn(value: impl FnMut(usize) -> T) -> Self;
+    /// Each changed. Not for lanes: closures are not compiled for the vector unit.
+    fn map(self, change: impl FnMut(T) -> T) -> Self;
+}
+
+impl<T: Copy + Debug, const COUNT: usize> Array<T> for [T; COUNT] {
+    const COUNT: usize = COUNT;
+    #[inline(always)]
+    fn filled(value: T) -> Self {
+        [value; COUNT]
+    }
+    #[inline(always)]
+    fn padded(some: &[T], rest: T) -> Self {
+        let mut out = [rest; COUNT];
+        out[..some.len()].copy_from_slice(some);
+        out
+    }
+    #[inline(always)]
+    fn from_fn(value: impl FnMut(usize) -> T) -> Self {
+        std::array::from_fn(value)
+    }
+    #[inline(always)]
+    fn map(self, change: impl FnMut(T) -> T) -> Self {
+        self.map(change)
+    }
+}
 
 /// Most one-freedom columns of a chain with one freedom left: rank six and one.
 pub(crate) const COLUMNS: usize = 7;
@@ -79,94 +119,15 @@ impl<N: Number> Factored<N> {
 
     /// The pseudo-inverse, one column for each row of the matrix.
     #[inline(always)]
-    pub fn inverse(&self) -> Inverse<N> {
+    pub fn inverse(&self) -> [Columns<N>; ROWS] {
         let mut out = [[N::splat(0.0); COLUMNS]; ROWS];
         for (row, column) in out.iter_mut().enumerate() {
             let mut unit = [N::splat(0.0); ROWS];
             unit[row] = N::splat(1.0);
             *column = self.solve(unit);
         }
-        Inverse(out)
+        out
     }
-}
-
-/// A pseudo-inverse, one column for each row of the matrix.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Inverse<N = f64>(pub [Columns<N>; ROWS]);
-
-impl<N: Number> Inverse<N> {
-    /// The product with right-hand sides of the first rows.
-    #[inline(always)]
-    pub fn times(&self, b: &[N]) -> Columns<N> {
-        let mut x = [N::splat(0.0); COLUMNS];
-        for (column, b) in self.0.iter().zip(b) {
-            for c in 0..COLUMNS {
-                x[c] = x[c].plus_product(column[c], *b);
-            }
-        }
-        x
-    }
-
-    /// The square of the Frobenius norm of the first columns.
-    #[inline(always)]
-    pub fn square(&self, columns: usize) -> N {
-        let mut sum = N::splat(0.0);
-        for column in &self.0[..columns] {
-            for x in column {
-                sum = sum.plus_product(*x, *x);
-            }
-        }
-        sum
-    }
-}
-
-/// The direction that six rows of seven columns leave free, oriented so that it makes the determinant positive as a seventh
-/// row; none where a pivot is below this part of the greatest number. It changes continuously with the matrix.
-///
-/// Source: docs/theory_many.md, (9).
-pub(crate) fn free_direction(columns: &[[f64; 6]; COLUMNS], least_pivot: f64) -> Option<Columns> {
-    let mut a: [[f64; COLUMNS]; 6] = std::array::from_fn(|r| std::array::from_fn(|c| columns[c][r]));
-    let mut order: [usize; COLUMNS] = std::array::from_fn(|c| c);
-    let mut positive = true;
-    let mut greatest = 0.0;
-    for n in 0..6 {
-        let (mut row, mut column, mut size) = (n, n, -1.0);
-        for r in n..6 {
-            for c in n..COLUMNS {
-                if a[r][c].abs() > size {
-                    (row, column, size) = (r, c, a[r][c].abs());
-                }
-            }
-        }
-        greatest = f64::max(greatest, size);
-        if size <= least_pivot * greatest {
-            return None;
-        }
-        a.swap(n, row);
-        order.swap(n, column);
-        for r in &mut a {
-            r.swap(n, column);
-        }
-        positive ^= (row != n) ^ (column != n) ^ (a[n][n] < 0.0);
-        for r in n + 1..6 {
-            let factor = a[r][n] / a[n][n];
-            for c in n..COLUMNS {
-                a[r][c] -= factor * a[n][c];
-            }
-        }
-    }
-    let mut free = [0.0; COLUMNS];
-    free[6] = if positive { 1.0 } else { -1.0 };
-    for n in (0..6).rev() {
-        let sum: f64 = (n + 1..COLUMNS).map(|c| a[n][c] * free[c]).sum();
-        free[n] = -sum / a[n][n];
-    }
-    let length = free.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let mut out = [0.0; COLUMNS];
-    for (place, x) in order.iter().zip(free) {
-        out[*place] = x / length;
-    }
-    Some(out)
 }
 
 #[inline(always)]
@@ -182,21 +143,21 @@ fn reflect<N: Number>(v: &[N; ROWS], inverse: N, x: &mut [N; ROWS], from: usize)
 }
 
 #[inline(always)]
-pub(crate) fn dot<N: Number>(a: &Columns<N>, b: &Columns<N>) -> N {
+pub(crate) fn dot<N: Number, A: Array<N>>(a: &A, b: &A) -> N {
     let mut sum = N::splat(0.0);
-    for k in 0..COLUMNS {
+    for k in 0..A::COUNT {
         sum = sum.plus_product(a[k], b[k]);
     }
     sum
 }
 
 #[inline(always)]
-pub(crate) fn combined(a: &Columns, x: f64, b: &Columns, y: f64) -> Columns {
-    std::array::from_fn(|k| a[k] * x + b[k] * y)
+pub(crate) fn combined<A: Array<f64>>(a: &A, x: f64, b: &A, y: f64) -> A {
+    A::from_fn(|k| a[k] * x + b[k] * y)
 }
 
 #[inline(always)]
-pub(crate) fn length<N: Number>(a: &Columns<N>) -> N {
+pub(crate) fn length<N: Number, A: Array<N>>(a: &A) -> N {
     dot(a, a).sqrt()
 }
 
@@ -290,63 +251,6 @@ mod tests {
                 assert!((got[c] - x[c]).abs() < 1e-11, "{got:?}");
             }
         }
-    }
-
-    #[test]
-    fn the_free_direction_is_the_oriented_one_of_the_minors() {
-        for seed in 0..50 {
-            let columns: [[f64; 6]; COLUMNS] = std::array::from_fn(|c| {
-                std::array::from_fn(|r| {
-                    ((1 + seed) as f64 * (3 * c + 7 * r * r + c * c * r + 1) as f64).sin()
-                })
-            });
-            let free = free_direction(&columns, 1e-9).unwrap();
-            // by Laplace along the seventh row
-            let minor = |left_out: usize| {
-                let kept: Vec<[f64; 6]> = (0..COLUMNS)
-                    .filter(|&c| c != left_out)
-                    .map(|c| columns[c])
-                    .collect();
-                determinant(kept)
-            };
-            let minors: Columns = std::array::from_fn(|c| if c % 2 == 0 { minor(c) } else { -minor(c) });
-            let length = minors.iter().map(|x| x * x).sum::<f64>().sqrt();
-            for c in 0..COLUMNS {
-                assert!(
-                    (free[c] - minors[c] / length).abs() < 1e-9,
-                    "{seed} {free:?} {minors:?}"
-                );
-            }
-        }
-        let mut repeated: [[f64; 6]; COLUMNS] = std::array::from_fn(|c| {
-            std::array::from_fn(|r| ((3 * c + 7 * r * r + c * c * r + 1) as f64).sin())
-        });
-        for row in 0..COLUMNS {
-            repeated[row][5] = 2.0 * repeated[row][3];
-        }
-        assert!(free_direction(&repeated, 1e-9).is_none());
-    }
-
-    fn determinant(a: Vec<[f64; 6]>) -> f64 {
-        fn of(a: &[Vec<f64>]) -> f64 {
-            if a.is_empty() {
-                return 1.0;
-            }
-            (0..a.len())
-                .map(|k| {
-                    let rest: Vec<Vec<f64>> = (0..a.len())
-                        .filter(|&c| c != k)
-                        .map(|c| a[c][1..].to_vec())
-                        .collect();
-                    if k % 2 == 0 {
-                        a[k][0] * of(&rest)
-                    } else {
-                        -a[k][0] * of(&rest)
-                    }
-                })
-                .sum()
-        }
-        of(&a.iter().map(|c| c.to_vec()).collect::<Vec<_>>())
     }
 
     #[test]

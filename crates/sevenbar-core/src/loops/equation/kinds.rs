@@ -1,6 +1,6 @@
 //! The joints of a description.
 
-use super::chain::Joint;
+use super::closed::Joint;
 
 /// A joint of the description; C and U are two of them.
 #[derive(Clone, Copy, Debug, PartialEq)]

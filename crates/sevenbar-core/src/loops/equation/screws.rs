@@ -1,8 +1,7 @@
-//! Screws of joints, and the linear equations that they make.
+//! Screws of joints, and how they are carried.
 //!
 //! Source: docs/theory.md, (4), (5) and (13).
 
-use super::dense::{COLUMNS, Columns, Factored, Inverse, ROWS};
 use super::rotations::cross;
 use crate::number::Number;
 
@@ -37,66 +36,4 @@ pub(crate) fn bracket<N: Number>(a: &Twist<N>, b: &Twist<N>) -> Twist<N> {
         first[1] + second[1],
         first[2] + second[2],
     ]
-}
-
-/// The twist of rates by the screws.
-#[inline(always)]
-pub(crate) fn twist_of<N: Number>(screws: &[Twist<N>; COLUMNS], rates: &Columns<N>) -> Twist<N> {
-    let mut sum = [N::splat(0.0); 6];
-    for c in 0..COLUMNS {
-        for k in 0..6 {
-            sum[k] = sum[k].plus_product(screws[c][k], rates[c]);
-        }
-    }
-    sum
-}
-
-/// The row of the Jacobian that names the input.
-pub(crate) fn input_row<N: Number>(input: usize) -> Columns<N> {
-    let mut row = [N::splat(0.0); COLUMNS];
-    row[input] = N::splat(1.0);
-    row
-}
-
-/// The pseudo-inverse of the screws of so many columns with one more row.
-#[inline(always)]
-pub(crate) fn bordered_inverse<N: Number>(
-    screws: &[Twist<N>; COLUMNS],
-    count: usize,
-    row: &Columns<N>,
-) -> Inverse<N> {
-    let mut columns = [[N::splat(0.0); ROWS]; COLUMNS];
-    for c in 0..count {
-        columns[c][..6].copy_from_slice(&screws[c]);
-        columns[c][6] = row[c];
-    }
-    Factored::new(columns, count).inverse()
-}
-
-/// The move `d` with `(A + change) d = -error`, by the inverse of `A` and a few terms of Neumann's series.
-#[inline(always)]
-pub(crate) fn correction<N: Number>(
-    inverse: &Inverse<N>,
-    (from, now): (&[Twist<N>; COLUMNS], &[Twist<N>; COLUMNS]),
-    error: &Twist<N>,
-    terms: usize,
-) -> (Columns<N>, Columns<N>) {
-    let mut change = *now;
-    for c in 0..COLUMNS {
-        for k in 0..6 {
-            change[c][k] = change[c][k] - from[c][k];
-        }
-    }
-    let mut first = inverse.times(error);
-    for x in &mut first {
-        *x = -*x;
-    }
-    let mut d = first;
-    for _ in 0..terms {
-        let seen = inverse.times(&twist_of(&change, &d));
-        for c in 0..COLUMNS {
-            d[c] = first[c] - seen[c];
-        }
-    }
-    (d, first)
 }

@@ -9,8 +9,8 @@
 
 use super::rank::rank;
 use super::singular_place::singular_place;
-use crate::loops::equation::chain::{Chain, Configuration, Joint};
-use crate::loops::equation::dense::{Columns, combined, singular_values};
+use crate::loops::equation::closed::{At, Closed, Joint};
+use crate::loops::equation::dense::{Array, combined, singular_values};
 use crate::loops::equation::rotations::short_way;
 
 /// The lesser eigenvalue of a second-order form that is one square, as a part of the greater: rounding, and what curves that touch within
@@ -44,26 +44,29 @@ impl Still {
 }
 
 /// The joints that may rest along a motion through a pose, the one that takes part most first, and the pose to rounding.
-pub(crate) fn joints_at_rest(chain: &Chain, pose: &Configuration) -> (Configuration, Vec<Still>) {
-    let Some((at, along, across)) = directions(chain, pose) else {
+pub(crate) fn joints_at_rest<S: Closed>(chain: &S, pose: &At<S>) -> (At<S>, Vec<Still>) {
+    let Some((at, [along, across])) = directions(chain, pose) else {
         return (*pose, Vec::new());
     };
-    let mut columns: Vec<(usize, usize)> = chain.first.iter().copied().enumerate().collect();
+    let mut columns: Vec<(usize, usize)> = chain.first().iter().copied().enumerate().collect();
     columns.retain(|&(joint, c)| {
-        let single = !matches!(chain.joints[joint], Joint::Ball(_));
+        let single = !matches!(chain.joints()[joint], Joint::Ball(_));
         single && along[c].abs() < AT_REST && across[c].abs() > TAKES_PART
     });
     columns.sort_by(|a, b| across[b.1].abs().total_cmp(&across[a.1].abs()));
     let still = |(joint, c): (usize, usize)| {
         let value = at.values[c];
-        let turns = chain.joints[joint] == Joint::Turn;
+        let turns = chain.joints()[joint] == Joint::Turn;
         Still { joint, value: if turns { short_way(value) } else { value } }
     };
     (at, columns.into_iter().map(still).collect())
 }
 
+/// A pose, the direction of the motion there, and the one across it.
+type Directions<S> = (At<S>, [<S as Closed>::Columns<f64>; 2]);
+
 /// The pose to rounding, the direction of the motion there, and the one across it in which the closure is least seen.
-fn directions(chain: &Chain, pose: &Configuration) -> Option<(Configuration, Columns, Columns)> {
+fn directions<S: Closed>(chain: &S, pose: &At<S>) -> Option<Directions<S>> {
     if let Some(place) = singular_place(chain, pose).filter(|place| place.counts(&[], false)) {
         let ([a, b], [(_, form)]) = (place.free.as_slice(), place.forms.as_slice()) else {
             return None;
@@ -80,12 +83,12 @@ fn directions(chain: &Chain, pose: &Configuration) -> Option<(Configuration, Col
         };
         let size = s[0].hypot(s[1]);
         let [x, y] = s.map(|x| x / size);
-        return Some((place.at, combined(a, -y, b, x), combined(a, x, b, y)));
+        return Some((place.at, [combined(a, -y, b, x), combined(a, x, b, y)]));
     }
     let (values, vectors) = singular_values(&chain.screws(pose));
-    if chain.columns < 2 || rank(&values, chain.no_rank()) + 1 != chain.columns {
+    if chain.columns() < 2 || rank(&values, S::ROWS, chain.no_rank()) + 1 != chain.columns() {
         return None;
     }
-    let direction = |n: usize| std::array::from_fn(|c| vectors[n].get(c).copied().unwrap_or(0.0));
-    Some((*pose, direction(chain.columns - 1), direction(chain.columns - 2)))
+    let direction = |n: usize| Array::padded(&vectors[chain.columns() - n], 0.0);
+    Some((*pose, [direction(1), direction(2)]))
 }

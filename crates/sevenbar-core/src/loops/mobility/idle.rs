@@ -1,6 +1,7 @@
 //! Idle freedoms: those that move some links and no joint elsewhere.
 
 use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::Closed;
 use crate::loops::equation::dense::singular_values;
 use crate::loops::equation::kinds::Kind;
 use crate::loops::equation::rotations::ball_rotation;
@@ -133,7 +134,7 @@ fn dependent(first: Kind, second: Kind, link: &Pose) -> bool {
                 .collect(),
             vec![*link, Pose::STILL],
         );
-        let mut at = Configuration::ZERO;
+        let mut at = Configuration::zero();
         for value in &mut at.values {
             *value = 2.0 * random.uniform() - 1.0;
         }

@@ -3,11 +3,8 @@
 //! Source: docs/theory.md, (19) and (20).
 
 use super::rank::{self, wrenches};
-use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, Columns, least_squares, length, singular_values};
-use crate::loops::equation::rotations::squared_up;
-use crate::loops::equation::screws::{Twist, twist_of};
-use crate::loops::rates::velocities;
+use crate::loops::equation::closed::{At, Closed, Screws, twist_of};
+use crate::loops::equation::dense::{Array, least_squares, length, singular_values};
 use crate::stopping;
 
 /// Singular values below this part of the greatest, and this many times the one that is known to vanish near by, vanish there too.
@@ -57,10 +54,10 @@ const NO_SLOPE: f64 = 1e-9;
 const NO_SLOPE_IN_TOUCH: f64 = 1e-12;
 
 /// A place where the screws lose rank, and the closure there.
-pub(crate) struct Place {
-    pub at: Configuration,
+pub(crate) struct Place<S: Closed> {
+    pub at: At<S>,
     /// Free directions, of unit length and square to each other.
-    pub free: Vec<Columns>,
+    pub free: Vec<S::Columns<f64>>,
     /// The wrenches that see a motion.
     pub seen: Vec<Vec<f64>>,
     /// The value and the second-order form, by rows, of each part of the closure that the screws leave and that is not redundant.
@@ -73,7 +70,7 @@ pub(crate) struct Place {
     redundant: bool,
 }
 
-impl Place {
+impl<S: Closed> Place<S> {
     /// By how much curves pass each other there [rad, or relative to the size], as seen in all columns.
     pub fn passing(&self) -> f64 {
         let passes = |(value, form): &(f64, Vec<f64>)| {
@@ -129,26 +126,30 @@ impl Place {
 }
 
 /// The screws' first derivatives along rates of the joints.
-pub(super) fn carried(chain: &Chain, screws: &[Twist; COLUMNS], rates: &Columns) -> [Twist; COLUMNS] {
-    let mut series = [*screws, [[0.0; 6]; COLUMNS]];
-    velocities::carry(chain, &mut series, &[*rates, [0.0; COLUMNS]], 1);
+pub(super) fn carried<S: Closed>(
+    chain: &S,
+    (at, screws): (&At<S>, &Screws<S>),
+    rates: &S::Columns<f64>,
+) -> Screws<S> {
+    let mut series = [*screws; 2];
+    chain.carry(at, &mut series, &[*rates, S::Columns::filled(0.0)], 1);
     series[1]
 }
 
 /// The place near a pose where the screws have lost rank, with the closure's slope zero in all directions they leave free.
-pub(crate) fn singular_place(chain: &Chain, rough: &Configuration) -> Option<Place> {
+pub(crate) fn singular_place<S: Closed>(chain: &S, rough: &At<S>) -> Option<Place<S>> {
     let mut at = *rough;
     let (values, _) = singular_values(&chain.screws(&at));
-    let least = chain.columns.checked_sub(2)?;
+    let least = chain.columns().checked_sub(2)?;
     let zero = (NEARLY_ZERO * values[0]).min(AS_SMALL * values[least]);
     let mut rank = values.iter().filter(|&&v| v > zero).count().min(least);
     // what else vanishes there is known once it is reached
-    for _ in 0..COLUMNS {
+    for _ in 0..S::COLUMNS {
         at = settled_at_rank(chain, &at, rank)?;
         if length(&chain.difference(rough, &at)) > NEAR {
             return None;
         }
-        let there = rank::rank(&singular_values(&chain.screws(&at)).0, chain.no_rank());
+        let there = rank::rank(&singular_values(&chain.screws(&at)).0, S::ROWS, chain.no_rank());
         if there > rank {
             return None;
         }
@@ -161,7 +162,7 @@ pub(crate) fn singular_place(chain: &Chain, rough: &Configuration) -> Option<Pla
 }
 
 /// Newton's method on the closure that screws of a rank see, and on the slope of what they leave.
-pub(super) fn settled_at_rank(chain: &Chain, rough: &Configuration, rank: usize) -> Option<Configuration> {
+pub(super) fn settled_at_rank<S: Closed>(chain: &S, rough: &At<S>, rank: usize) -> Option<At<S>> {
     let mut at = *rough;
     let mut before = f64::INFINITY;
     for _ in 0..MOST_STEPS {
@@ -169,27 +170,27 @@ pub(super) fn settled_at_rank(chain: &Chain, rough: &Configuration, rank: usize)
         let placed = chain.place(&at);
         let split = Split::new(chain, &placed.screws, rank);
         let count = split.seen.len() + split.left.len() * split.free.len();
-        let mut columns = vec![vec![0.0; count]; chain.columns];
+        let mut columns = vec![vec![0.0; count]; chain.columns()];
         let mut right = vec![0.0; count];
         for (r, row) in split.seen.iter().enumerate() {
             right[r] = -power(row, &placed.error);
-            for c in 0..chain.columns {
+            for c in 0..chain.columns() {
                 columns[c][r] = power(row, &placed.screws[c]);
             }
         }
-        for c in 0..chain.columns {
-            let mut unit = [0.0; COLUMNS];
+        for c in 0..chain.columns() {
+            let mut unit = S::Columns::filled(0.0);
             unit[c] = 1.0;
-            let moved = carried(chain, &placed.screws, &unit);
+            let moved = carried(chain, (&at, &placed.screws), &unit);
             for (f, free) in split.free.iter().enumerate() {
-                let bent = twist_of(&moved, free);
+                let bent: S::Rows<f64> = twist_of(&moved, free);
                 for (w, row) in split.left.iter().enumerate() {
                     columns[c][split.seen.len() + w * split.free.len() + f] = power(row, &bent);
                 }
             }
         }
         for (f, free) in split.free.iter().enumerate() {
-            let slope = twist_of(&placed.screws, free);
+            let slope: S::Rows<f64> = twist_of(&placed.screws, free);
             for (w, row) in split.left.iter().enumerate() {
                 right[split.seen.len() + w * split.free.len() + f] = -power(row, &slope);
             }
@@ -200,16 +201,13 @@ pub(super) fn settled_at_rank(chain: &Chain, rough: &Configuration, rank: usize)
             NO_SLOPE_IN_TOUCH
         };
         let step = least_squares(&columns, &right, zero);
-        let mut by = [0.0; COLUMNS];
-        by[..chain.columns].copy_from_slice(&step);
+        let by: S::Columns<f64> = Array::padded(&step, 0.0);
         let size = length(&by);
         if !size.is_finite() || size > NEAR {
             return None;
         }
         at = chain.moved(&at, &by);
-        for ball in &mut at.balls {
-            *ball = squared_up(ball);
-        }
+        at.square_up(chain.ball_count());
         let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
         before = size;
         if steady {
@@ -219,7 +217,7 @@ pub(super) fn settled_at_rank(chain: &Chain, rough: &Configuration, rank: usize)
     (before < UNSTEADY).then_some(at)
 }
 
-pub(super) fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place {
+pub(super) fn place_at<S: Closed>(chain: &S, at: &At<S>, rank: usize) -> Place<S> {
     let placed = chain.place(at);
     let split = Split::new(chain, &placed.screws, rank);
     let count = split.free.len();
@@ -230,8 +228,9 @@ pub(super) fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place 
         .map(|row| {
             let mut form = Vec::with_capacity(count * count);
             for a in &split.free {
-                let moved = carried(chain, &placed.screws, a);
-                form.extend(split.free.iter().map(|b| power(row, &twist_of(&moved, b))));
+                let moved = carried(chain, (at, &placed.screws), a);
+                let bent = |b: &S::Columns<f64>| -> S::Rows<f64> { twist_of(&moved, b) };
+                form.extend(split.free.iter().map(|b| power(row, &bent(b))));
             }
             form
         })
@@ -257,35 +256,29 @@ pub(super) fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place 
         seen: split.seen,
         forms: found,
         open: f64::sqrt(open),
-        agree: chain.agree,
+        agree: chain.agree(),
         redundant: chain.is_redundant(),
     }
 }
 
 /// The directions that screws of a rank leave free, and the wrenches that see a motion and those that do not.
-pub(super) struct Split {
-    pub free: Vec<Columns>,
+pub(super) struct Split<S: Closed> {
+    pub free: Vec<S::Columns<f64>>,
     pub seen: Vec<Vec<f64>>,
     pub left: Vec<Vec<f64>>,
 }
 
-impl Split {
-    pub fn new(chain: &Chain, screws: &[Twist; COLUMNS], rank: usize) -> Self {
-        let columns: Vec<Vec<f64>> = screws[..chain.columns].iter().map(|s| s.to_vec()).collect();
+impl<S: Closed> Split<S> {
+    pub fn new(chain: &S, screws: &Screws<S>, rank: usize) -> Self {
+        let used = &screws.as_ref()[..chain.columns()];
+        let columns: Vec<Vec<f64>> = used.iter().map(|s| s.as_ref().to_vec()).collect();
         let (_, right) = singular_values(&columns);
-        let free = right[rank..]
-            .iter()
-            .map(|v| {
-                let mut out = [0.0; COLUMNS];
-                out[..chain.columns].copy_from_slice(v);
-                out
-            })
-            .collect();
-        let (seen, left) = wrenches(&columns, rank);
+        let free = right[rank..].iter().map(|v| Array::padded(v, 0.0)).collect();
+        let (seen, left) = wrenches(&columns, S::ROWS, rank);
         Self { free, seen, left }
     }
 }
 
-pub(crate) fn power(row: &[f64], twist: &Twist) -> f64 {
-    row.iter().zip(twist).map(|(a, b)| a * b).sum()
+pub(crate) fn power<R: Array<f64>>(row: &[f64], twist: &R) -> f64 {
+    row.iter().zip(twist.as_ref()).map(|(a, b)| a * b).sum()
 }

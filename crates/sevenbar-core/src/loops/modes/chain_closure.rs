@@ -2,7 +2,7 @@
 
 use super::geometry::Form;
 use super::starts::Class;
-use crate::loops::equation::chain::Joint;
+use crate::loops::equation::closed::Joint;
 use crate::loops::equation::closure::{JOINTS, Parameters, Slides, UNKNOWNS};
 use crate::rigid::Pose;
 use num_complex::Complex64;

@@ -6,6 +6,7 @@
 use super::many_starts::ON_CURVE;
 use super::polish::polish_with_spare;
 use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::Closed;
 use crate::loops::equation::dense::{COLUMNS, Columns, length, singular_values};
 
 /// The least singular value, as a part of the greatest, of joints that can move with the input held.

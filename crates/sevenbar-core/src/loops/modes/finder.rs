@@ -15,7 +15,8 @@ use super::poles::{poles, unwatched_three};
 use super::polish::{Settled, polish};
 use super::starts::{distinct, general_count, random_pose};
 use super::straight::carried;
-use crate::loops::equation::chain::{BALLS, Chain, Configuration, Joint};
+use crate::loops::equation::chain::{BALLS, Chain, Configuration};
+use crate::loops::equation::closed::{Closed, Joint};
 use crate::loops::equation::closure::{JOINTS, Parameters, Slides, Solution, UNKNOWNS};
 use crate::loops::equation::rotations::{Rotation, Z_TO_X, ball_rotation, product, short_way, transposed};
 use crate::random::Random;
@@ -404,7 +405,7 @@ impl<'a> ModeFinder<'a> {
         value: f64,
         within: f64,
     ) -> Option<Configuration> {
-        let mut out = Configuration::ZERO;
+        let mut out = Configuration::zero();
         out.values[self.input] = value;
         let mut turns = [[0.0; 3]; BALLS];
         for (i, unknown) in self.unknowns.iter().enumerate() {

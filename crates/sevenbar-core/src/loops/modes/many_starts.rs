@@ -1,7 +1,8 @@
 //! Modes by search, where there is no algebraic way: Newton's method from many places.
 
 use super::polish::{Settled, polish, polish_with_spare};
-use crate::loops::equation::chain::{Chain, Configuration, Joint};
+use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::{At, Closed, Joint};
 use crate::loops::equation::rotations::ball_rotation;
 use crate::random::Random;
 
@@ -29,13 +30,17 @@ pub(super) const SCREW_TURNS: f64 = 1.0;
 /// Modes nearer than this in every joint [rad, or relative to the size] are one.
 pub(crate) const SAME_MODE: f64 = 1e-7;
 
-pub(crate) fn same(chain: &Chain, a: &Configuration, b: &Configuration) -> bool {
-    chain.difference(a, b).iter().all(|d| d.abs() < SAME_MODE)
+pub(crate) fn same<S: Closed>(chain: &S, a: &At<S>, b: &At<S>) -> bool {
+    chain
+        .difference(a, b)
+        .as_ref()
+        .iter()
+        .all(|d| d.abs() < SAME_MODE)
 }
 
 /// Any configuration with the input at a value; screws within [`SCREW_TURNS`].
 fn anywhere(chain: &Chain, input: usize, value: f64, random: &mut Random) -> Configuration {
-    let mut rough = Configuration::ZERO;
+    let mut rough = Configuration::zero();
     for (joint, &column) in chain.joints.iter().zip(&chain.first) {
         let centred = 2.0 * random.uniform() - 1.0;
         match joint {

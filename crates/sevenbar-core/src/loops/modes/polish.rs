@@ -6,8 +6,8 @@
 //! joints could close must be closed to rounding, in every loop.
 
 use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::Closed;
 use crate::loops::equation::dense::{COLUMNS, Columns, Factored, ROWS, least_squares, singular_values};
-use crate::loops::equation::rotations::squared_up;
 use crate::loops::mobility::rank::{rank, unyielding};
 use crate::stopping;
 
@@ -78,9 +78,7 @@ pub(crate) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
         let factor = if longest > 1.0 { 1.0 / longest } else { 1.0 };
         let by: Columns = by.map(|b| b * factor);
         at = chain.moved(&at, &by);
-        for ball in &mut at.balls {
-            *ball = squared_up(ball);
-        }
+        at.square_up(chain.ball_count());
     }
     let gone = chain
         .difference(rough, &at)
@@ -134,9 +132,7 @@ pub(super) fn polish_with_spare(
             *m = b * factor;
         }
         at = chain.moved(&at, &moved);
-        for ball in &mut at.balls {
-            *ball = squared_up(ball);
-        }
+        at.square_up(chain.ball_count());
     }
     None
 }
@@ -155,12 +151,16 @@ fn closure_error(chain: &Chain, at: &Configuration) -> Option<f64> {
         return None;
     }
     let columns = chain.screws(at);
-    let rank = rank(&singular_values(&columns).0, chain.no_rank().max(30.0 * left));
+    let rank = rank(
+        &singular_values(&columns).0,
+        ROWS - 1,
+        chain.no_rank().max(30.0 * left),
+    );
     if chain.columns - rank != 1 {
         return None;
     }
     let mut rest = *error;
-    for row in unyielding(&columns, rank) {
+    for row in unyielding(&columns, ROWS - 1, rank) {
         let borne: f64 = row.iter().zip(error).map(|(w, e)| w * e).sum();
         for k in 0..6 {
             rest[k] -= borne * row[k];

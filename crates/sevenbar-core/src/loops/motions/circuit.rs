@@ -8,8 +8,9 @@ use crate::loops::circuits::curve::{Curve, Node};
 use crate::loops::circuits::turnings::{self, Turning};
 use crate::loops::description::described_loop::{Column, Loop};
 use crate::loops::description::holding::followed;
-use crate::loops::equation::chain::{Chain, Configuration, Joint};
-use crate::loops::equation::dense::{COLUMNS, Columns, length};
+use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::{Closed, Joint};
+use crate::loops::equation::dense::{Array, Columns, length};
 use crate::loops::equation::rotations::short_way;
 use crate::loops::mobility::at_rest::Still;
 use crate::loops::rates::velocities::ORDERS;
@@ -252,12 +253,12 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
 }
 
 /// The rows of a circuit on a grid of inputs, from its first to its last, and from the input zero where it goes round.
-fn grid_rows(passes: &Passes, grid: (f64, f64)) -> Vec<Row> {
+fn grid_rows<S: Closed>(passes: &Passes<S>, grid: (f64, f64)) -> Vec<Row<S>> {
     let (chain, curve) = (passes.chain, &passes.curve);
     let mut rows = passes.rows(grid.0, grid.1);
     if !curve.is_closed() {
         // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
-        let lost = |r: &Row| r.status == RowStatus::NoSolution;
+        let lost = |r: &Row<S>| r.status == RowStatus::NoSolution;
         rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
         rows.drain(..rows.iter().take_while(|r| lost(r)).count());
     }
@@ -334,10 +335,10 @@ impl Seen<'_> {
 }
 
 /// Whole turns that bring the first row into (-pi, pi].
-fn shift(chain: &Chain, rows: &[Row]) -> Columns {
-    let mut shift = [0.0; COLUMNS];
+fn shift<S: Closed>(chain: &S, rows: &[Row<S>]) -> S::Columns<f64> {
+    let mut shift = S::Columns::filled(0.0);
     if let Some(row) = rows.iter().find(|r| r.status != RowStatus::NoSolution) {
-        for (c, s) in shift.iter_mut().enumerate() {
+        for (c, s) in shift.as_mut().iter_mut().enumerate() {
             if chain.is_turn(c) {
                 *s = -TAU * ((row.at.values[c] - short_way(row.at.values[c])) / TAU).round();
             }
@@ -347,8 +348,8 @@ fn shift(chain: &Chain, rows: &[Row]) -> Columns {
 }
 
 /// Origin and step of the inputs of rows.
-pub(super) fn grid(chain: &Chain, passes: &[Passes], samples: usize) -> (f64, f64) {
-    let slides = |p: &Passes| chain.joints[chain.joint_of(p.input)] == Joint::Slide;
+pub(super) fn grid<S: Closed>(chain: &S, passes: &[Passes<S>], samples: usize) -> (f64, f64) {
+    let slides = |p: &Passes<S>| chain.joints()[chain.joint_of(p.input)] == Joint::Slide;
     if !passes.first().is_some_and(slides) {
         return (0.0, TAU / samples as f64);
     }
@@ -368,14 +369,20 @@ pub(super) fn grid(chain: &Chain, passes: &[Passes], samples: usize) -> (f64, f6
 }
 
 /// Rows of a circuit that goes round, begun at the input zero.
-fn begin_at_zero(chain: &Chain, rows: &mut [Row], input: usize, gained: &Columns, step: f64) {
+fn begin_at_zero<S: Closed>(
+    chain: &S,
+    rows: &mut [Row<S>],
+    input: usize,
+    gained: &S::Columns<f64>,
+    step: f64,
+) {
     let whole =
-        |r: &Row| (r.at.values[input] / TAU - (r.at.values[input] / TAU).round()).abs() * TAU < 0.5 * step;
+        |r: &Row<S>| (r.at.values[input] / TAU - (r.at.values[input] / TAU).round()).abs() * TAU < 0.5 * step;
     let Some(first) = rows.iter().position(whole) else {
         return;
     };
     for row in &mut rows[..first] {
-        for c in 0..chain.columns {
+        for c in 0..chain.columns() {
             row.at.values[c] += gained[c];
         }
     }

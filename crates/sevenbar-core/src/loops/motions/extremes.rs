@@ -8,7 +8,7 @@
 
 use super::passes::Passes;
 use super::row::{Row, UNIT};
-use crate::loops::equation::dense::Columns;
+use crate::loops::equation::closed::Closed;
 use crate::loops::rates::velocities::{self, ORDERS};
 use crate::outcome::{Ends, RowStatus};
 
@@ -32,11 +32,11 @@ const UNHALVED: usize = 8;
 /// The lowest and highest velocity, acceleration and jerk of the output; none where there are rows without rates.
 ///
 /// Inputs are given in the turns of the rows, which follow each other from the first on, a `step` apart.
-pub(super) fn output_extremes(
-    passes: &Passes,
-    rows: &[Row],
+pub(super) fn output_extremes<S: Closed>(
+    passes: &Passes<S>,
+    rows: &[Row<S>],
     output: usize,
-    gained: &Columns,
+    gained: &S::Columns<f64>,
     step: f64,
 ) -> [Option<Ends>; ORDERS] {
     let at_nodes = passes.node_rows(step);
@@ -47,7 +47,7 @@ pub(super) fn output_extremes(
         return [None; ORDERS];
     }
     let span = gained[passes.input];
-    let mut samples: Vec<(f64, &Row)> = rows
+    let mut samples: Vec<(f64, &Row<S>)> = rows
         .iter()
         .chain(&at_nodes)
         .map(|r| (first + (r.at.values[passes.input] - first).rem_euclid(span), r))
@@ -72,24 +72,24 @@ struct Sample {
     slope: f64,
 }
 
-struct Search<'a, 'b> {
-    passes: &'a Passes<'b>,
+struct Search<'a, 'b, S: Closed> {
+    passes: &'a Passes<'b, S>,
     /// Rows by their inputs, rising.
-    samples: &'a [(f64, &'a Row)],
+    samples: &'a [(f64, &'a Row<S>)],
     output: usize,
     /// Of the input, all the way round.
     span: f64,
 }
 
-impl Search<'_, '_> {
+impl<S: Closed> Search<'_, '_, S> {
     /// The rate of an order, 0 for the velocity.
-    fn rate(&self, row: &Row, order: usize) -> f64 {
+    fn rate(&self, row: &Row<S>, order: usize) -> f64 {
         let factorial = [1.0, 1.0, 2.0];
         row.rates[order][self.output] * factorial[order]
     }
 
     /// The slope of the rate of an order.
-    fn slope(&self, row: &Row, order: usize) -> f64 {
+    fn slope(&self, row: &Row<S>, order: usize) -> f64 {
         if order + 1 < ORDERS {
             self.rate(row, order + 1)
         } else {
@@ -99,7 +99,7 @@ impl Search<'_, '_> {
     }
 
     /// A row before or after the others is one a turn back or on.
-    fn place(&self, k: i64) -> (f64, &Row) {
+    fn place(&self, k: i64) -> (f64, &Row<S>) {
         let count = self.samples.len() as i64;
         let (input, row) = self.samples[k.rem_euclid(count) as usize];
         (input + k.div_euclid(count) as f64 * self.span, row)

@@ -13,6 +13,7 @@ use crate::loops::description::described_loop::{Column, Loop};
 use crate::loops::description::holding::{self, column_at_rest};
 use crate::loops::description::joint_values::{configuration, joint_values};
 use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::Closed;
 use crate::loops::equation::rotations::short_way;
 use crate::loops::mobility::singular_place::SAME_LIMIT;
 use crate::loops::modes::finder::Completeness;

@@ -5,8 +5,9 @@ use super::row_lanes::{Near, rows_near};
 use crate::loops::circuits::curve::{self, Curve, Node};
 use crate::loops::circuits::turnings::{self, begun_at, insert, turns_at};
 use crate::loops::circuits::walked_again;
-use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, combined, dot, length};
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::closed::{At, Closed};
+use crate::loops::equation::dense::{Array, combined, dot, length};
 use crate::loops::rates::velocities::ORDERS;
 use crate::outcome::RowStatus;
 use crate::vectors::LANES;
@@ -44,18 +45,18 @@ pub(crate) struct Pass {
 }
 
 /// A curve made ready for an input: cut open at a good place, walked so that the input rises first.
-pub(crate) struct Passes<'a> {
-    pub chain: &'a Chain,
-    pub curve: Curve,
+pub(crate) struct Passes<'a, S: Closed = Chain> {
+    pub chain: &'a S,
+    pub curve: Curve<S>,
     pub input: usize,
     pub passes: Vec<Pass>,
     /// The dead centres at the passes' ends; the first and last are one where the circuit is closed.
-    pub limits: Vec<Node>,
+    pub limits: Vec<Node<S>>,
 }
 
-impl<'a> Passes<'a> {
+impl<'a, S: Closed> Passes<'a, S> {
     /// The passes of a curve on which the input does not rest.
-    pub fn new(chain: &'a Chain, curve: Curve, input: usize) -> Option<Self> {
+    pub fn new(chain: &'a S, curve: Curve<S>, input: usize) -> Option<Self> {
         // an input that gains turns rises on the whole, though it may turn back on the way
         let curve = if curve.gained()[input] < 0.0 && curve.goes_round(chain, input) && !curve.crosses() {
             walked_again::turned_round(chain, &curve, &[])
@@ -77,14 +78,14 @@ impl<'a> Passes<'a> {
         )
     }
 
-    fn of(chain: &'a Chain, mut curve: Curve, input: usize) -> Option<Self> {
+    fn of(chain: &'a S, mut curve: Curve<S>, input: usize) -> Option<Self> {
         if curve.nodes.len() < 2 {
             return None;
         }
         let turnings = turnings::turnings(&curve, chain, input);
         // each turning becomes a node; a closed curve then begins at the lowest
         insert(chain, &mut curve, &turnings, input);
-        let is_turning = |n: &Node| turns_at(n, input);
+        let is_turning = |n: &Node<S>| turns_at(n, input);
         if curve.is_closed() && !turnings.is_empty() {
             let value = |k: usize| curve.nodes[k].at.values[input];
             let goes_round = curve.goes_round(chain, input);
@@ -114,7 +115,7 @@ impl<'a> Passes<'a> {
     }
 
     /// The row of a pass at an input, which lies in it.
-    pub fn row(&self, pass: usize, value: f64, rates: &[f64; ORDERS]) -> Option<Row> {
+    pub fn row(&self, pass: usize, value: f64, rates: &[f64; ORDERS]) -> Option<Row<S>> {
         let segment = self.segment(pass, value);
         if let Some(row) = self.crossing_row(pass, segment, value) {
             return Some(row);
@@ -142,7 +143,7 @@ impl<'a> Passes<'a> {
     }
 
     /// A solved row, if it is certainly a place of this curve: it lies within the tube of the node it was made from.
-    fn accepted(&self, pass: usize, rough: &Rough, solved: &Solved<f64>) -> Option<Row> {
+    fn accepted(&self, pass: usize, rough: &Rough, solved: &Solved<S, f64>) -> Option<Row<S>> {
         let node = &self.curve.nodes[rough.node];
         let off = self.chain.difference(&node.at, &solved.at);
         let along = dot(&off, &node.rates[0]);
@@ -154,7 +155,7 @@ impl<'a> Passes<'a> {
         ));
         // the closure error of redundant constraints changes between its nodes
         let closed = if self.chain.is_redundant() {
-            2.0 * self.chain.agree
+            2.0 * self.chain.agree()
         } else {
             ROW_CLOSED
         };
@@ -169,7 +170,7 @@ impl<'a> Passes<'a> {
     }
 
     /// The row beside or at a change point, between the nodes where curves are cut: the pose, and no rates.
-    fn crossing_row(&self, pass: usize, segment: usize, value: f64) -> Option<Row> {
+    fn crossing_row(&self, pass: usize, segment: usize, value: f64) -> Option<Row<S>> {
         let chain = self.chain;
         let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
         let (crossing, other) = match (a.is_crossing(), b.is_crossing()) {
@@ -248,14 +249,14 @@ impl<'a> Passes<'a> {
     }
 
     /// The configuration that a rough place stands for.
-    fn start(&self, rough: &Rough) -> Configuration {
+    fn start(&self, rough: &Rough) -> At<S> {
         let node = &self.curve.nodes[rough.node];
         self.chain
             .moved(&node.at, &curve::predicted(self.chain, node, rough.along))
     }
 
     /// The row at a dead centre.
-    pub fn limit_row(&self, pass: usize, node: &Node) -> Row {
+    pub fn limit_row(&self, pass: usize, node: &Node<S>) -> Row<S> {
         let status = if node.is_crossing() {
             RowStatus::ChangePoint
         } else {
@@ -265,11 +266,11 @@ impl<'a> Passes<'a> {
     }
 
     /// A row without rates.
-    fn pose_row(&self, pass: usize, at: Configuration, status: RowStatus) -> Row {
+    fn pose_row(&self, pass: usize, at: At<S>, status: RowStatus) -> Row<S> {
         let chain = self.chain;
         Row {
             at,
-            rates: [[f64::NAN; COLUMNS]; ORDERS],
+            rates: [S::Columns::filled(f64::NAN); ORDERS],
             status,
             pass,
             residual: chain.residual(&chain.place(&at)),
@@ -283,7 +284,7 @@ impl<'a> Passes<'a> {
     }
 
     /// Rows on a grid of inputs `origin + k step`, with exact rows at dead centres; the input has unit speed.
-    pub fn rows(&self, origin: f64, step: f64) -> Vec<Row> {
+    pub fn rows(&self, origin: f64, step: f64) -> Vec<Row<S>> {
         let mut rows = Vec::new();
         let closed = self.curve.is_closed();
         let slack = SAME_ROW * step;
@@ -323,7 +324,7 @@ impl<'a> Passes<'a> {
     }
 
     /// Rows at those nodes of the first pass from which a step leads over less than `step` of the input.
-    pub fn node_rows(&self, step: f64) -> Vec<Row> {
+    pub fn node_rows(&self, step: f64) -> Vec<Row<S>> {
         let pass = &self.passes[0];
         let value = |k: usize| self.curve.nodes[k].at.values[self.input];
         let near = |a: usize, b: usize| (value(a) - value(b)).abs() < step;
@@ -337,7 +338,7 @@ impl<'a> Passes<'a> {
     ///
     /// An input that turns may be met a turn on or back; one that lies in the pass with `shift` taken off it, as the circuit's
     /// rows are given, is met there, for a pass may be longer than a turn. Only a closed curve is gone along again.
-    pub fn law_rows(&self, law: &[[f64; 4]], turns: bool, shift: f64) -> Vec<Row> {
+    pub fn law_rows(&self, law: &[[f64; 4]], turns: bool, shift: f64) -> Vec<Row<S>> {
         let mut rows = Vec::new();
         for (n, pass) in self.passes.iter().enumerate() {
             let (low, high) = (pass.start.min(pass.end), pass.start.max(pass.end));
@@ -374,9 +375,9 @@ impl<'a> Passes<'a> {
     }
 }
 
-impl Passes<'_> {
+impl<S: Closed> Passes<'_, S> {
     /// Rows of a pass at inputs in it, in its order, side by side; singly where that does not settle.
-    fn rows_at(&self, pass: usize, values: impl Iterator<Item = f64>, rows: &mut Vec<Row>) {
+    fn rows_at(&self, pass: usize, values: impl Iterator<Item = f64>, rows: &mut Vec<Row<S>>) {
         let p = &self.passes[pass];
         let value_at = |node: usize| self.curve.nodes[node].at.values[self.input];
         let rising = p.end > p.start;
@@ -384,7 +385,7 @@ impl Passes<'_> {
         rows.reserve_exact(values.size_hint().0);
         let mut values = values.peekable();
         while values.peek().is_some() {
-            let starts: Vec<Near> = values
+            let starts: Vec<Near<S>> = values
                 .by_ref()
                 .take(AT_ONCE)
                 .map(|value| {

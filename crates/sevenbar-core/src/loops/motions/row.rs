@@ -1,9 +1,8 @@
 //! A row of a circuit as the chain has it.
 
-use crate::loops::equation::chain::{Chain, Configuration, Placed};
-use crate::loops::equation::dense::{COLUMNS, Inverse, length};
-use crate::loops::equation::rotations::squared_up;
-use crate::loops::equation::screws::{bordered_inverse, input_row};
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::closed::{At, Closed, Inverse, Placed, copied, input_row};
+use crate::loops::equation::dense::{Array, length};
 use crate::loops::rates::velocities::{self, ORDERS, Rates};
 use crate::number::Number;
 use crate::outcome::RowStatus;
@@ -13,24 +12,24 @@ use crate::stopping;
 pub(super) const UNIT: [f64; ORDERS] = [1.0, 0.0, 0.0];
 
 /// A row of a circuit.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Row {
-    pub at: Configuration,
-    pub rates: Rates,
+#[derive(Debug)]
+pub(crate) struct Row<S: Closed = Chain> {
+    pub at: At<S>,
+    pub rates: Rates<S>,
     pub status: RowStatus,
     pub pass: usize,
     pub residual: f64,
     pub condition: f64,
 }
 
-impl Row {
+impl<S: Closed> Row<S> {
     /// The row at an input beyond a limit.
     pub fn missing(pass: usize) -> Self {
-        let mut at = Configuration::ZERO;
-        at.values = [f64::NAN; COLUMNS];
+        let mut at = At::zero();
+        at.values = S::Columns::filled(f64::NAN);
         Self {
             at,
-            rates: [[f64::NAN; COLUMNS]; ORDERS],
+            rates: [S::Columns::filled(f64::NAN); ORDERS],
             status: RowStatus::NoSolution,
             pass,
             residual: f64::NAN,
@@ -40,13 +39,14 @@ impl Row {
 }
 
 /// A row's numbers.
-#[derive(Clone, Copy)]
-pub(super) struct Solved<N> {
-    pub at: Configuration<N>,
-    pub rates: Rates<N>,
+pub(super) struct Solved<S: Closed, N: Number> {
+    pub at: At<S, N>,
+    pub rates: Rates<S, N>,
     pub residual: N,
     pub condition: N,
 }
+
+copied!(Row<S>, Solved<S, N>);
 
 /// A correction [rad, or relative to the size] after which the next is rounding.
 const SETTLED: f64 = 1e-7;
@@ -56,22 +56,22 @@ const MOST_CORRECTIONS: usize = 8;
 const FARTHEST_CORRECTION: f64 = 0.3;
 
 /// The configuration with the input at a value, by Newton from a near one, with its rates.
-pub(super) fn solved(
-    chain: &Chain,
+pub(super) fn solved<S: Closed>(
+    chain: &S,
     input: usize,
-    rough: &Configuration,
+    rough: &At<S>,
     value: f64,
     rates: &[f64; ORDERS],
-) -> Option<Solved<f64>> {
+) -> Option<Solved<S, f64>> {
     let mut at = *rough;
     at.values[input] = value;
-    let row = input_row(input);
+    let row: S::Columns<f64> = input_row(input);
     let mut moved = 0.0;
     for step in 0..MOST_CORRECTIONS {
         stopping::piece();
         let placed = chain.place(&at);
-        let inverse = bordered_inverse(&placed.screws, chain.columns, &row);
-        let mut by = inverse.times(&placed.error).map(|x| -x);
+        let inverse = chain.inverse(&placed.screws, &row);
+        let mut by = inverse.times(placed.error.as_ref()).map(|x| -x);
         by[input] = 0.0;
         let size = length(&by);
         moved += size;
@@ -82,7 +82,7 @@ pub(super) fn solved(
         // the correction of the next step would be the square of this one
         if size < SETTLED || step == MOST_CORRECTIONS - 1 {
             let placed = chain.place(&at);
-            let inverse = bordered_inverse(&placed.screws, chain.columns, &row);
+            let inverse = chain.inverse(&placed.screws, &row);
             return Some(finished(chain, at, &placed, &inverse, (input, rates)));
         }
     }
@@ -91,29 +91,29 @@ pub(super) fn solved(
 
 /// The row at a solved configuration, by the inverse there or very near.
 #[inline(always)]
-pub(super) fn finished<N: Number>(
-    chain: &Chain,
-    at: Configuration<N>,
-    placed: &Placed<N>,
-    inverse: &Inverse<N>,
+pub(super) fn finished<S: Closed, N: Number>(
+    chain: &S,
+    at: At<S, N>,
+    placed: &Placed<S, N>,
+    inverse: &Inverse<S, N>,
     (input, given): (usize, &[f64; ORDERS]),
-) -> Solved<N> {
+) -> Solved<S, N> {
     let one = N::splat(1.0);
     // the rate's series has half its second derivative
     let series = [N::splat(given[0]), N::splat(given[1]), N::splat(given[2] / 2.0)];
-    let (rates, _) = velocities::rates(chain, placed, inverse, &series, Some(input));
+    let (rates, _) = velocities::rates(chain, (&at, placed), inverse, &series, Some(input));
     let mut square = one;
-    for x in placed.screws.as_flattened() {
-        square = square.plus_product(*x, *x);
+    for screw in placed.screws.as_ref() {
+        for x in screw.as_ref() {
+            square = square.plus_product(*x, *x);
+        }
     }
     let mut at = at;
-    for ball in &mut at.balls[..chain.ball_count()] {
-        *ball = squared_up(ball);
-    }
+    at.square_up(chain.ball_count());
     Solved {
         at,
         rates,
         residual: chain.residual(placed),
-        condition: (square * inverse.square(7)).sqrt(),
+        condition: (square * inverse.square(S::ROWS + 1)).sqrt(),
     }
 }

@@ -1,9 +1,8 @@
 //! Rows of a circuit eight at a time in vector lanes. What does not settle at once is left to the single row.
 
 use super::row::{self, Row, UNIT};
-use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::dense::{COLUMNS, length};
-use crate::loops::equation::screws::{bordered_inverse, correction, input_row};
+use crate::loops::equation::closed::{At, Closed, input_row};
+use crate::loops::equation::dense::length;
 use crate::loops::rates::velocities::ORDERS;
 use crate::outcome::RowStatus;
 use crate::stopping;
@@ -19,59 +18,63 @@ const NEUMANN: usize = 2;
 const WITHIN: f64 = 0.45;
 
 /// A place near a row: the input there, and the radius within which the curve is alone.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Near {
-    pub at: Configuration,
+pub(super) struct Near<S: Closed> {
+    pub at: At<S>,
     pub value: f64,
     pub tube: f64,
 }
 
 /// The rows of a pass near some places, at unit speed of the input; `None` where one does not settle.
-pub(super) fn rows_near(chain: &Chain, input: usize, pass: usize, starts: &[Near]) -> Vec<Option<Row>> {
+pub(super) fn rows_near<S: Closed>(
+    chain: &S,
+    input: usize,
+    pass: usize,
+    starts: &[Near<S>],
+) -> Vec<Option<Row<S>>> {
     let mut rows = Vec::with_capacity(starts.len());
     dispatch(RowsNear { chain, input, pass, starts, rows: &mut rows });
     rows
 }
 
-struct RowsNear<'a> {
-    chain: &'a Chain,
+struct RowsNear<'a, S: Closed> {
+    chain: &'a S,
     input: usize,
     pass: usize,
-    starts: &'a [Near],
-    rows: &'a mut Vec<Option<Row>>,
+    starts: &'a [Near<S>],
+    rows: &'a mut Vec<Option<Row<S>>>,
 }
 
-impl LaneKernel for RowsNear<'_> {
+impl<S: Closed> LaneKernel for RowsNear<'_, S> {
     #[inline(always)]
     fn run<V: Vector>(mut self) {
         for block in self.starts.chunks(LANES) {
             stopping::piece();
-            let mut each = [Configuration::ZERO; LANES];
+            let mut each = [At::zero(); LANES];
             for (lane, at) in each.iter_mut().enumerate() {
                 let near = &block[lane.min(block.len() - 1)];
                 *at = near.at;
                 at.values[self.input] = near.value;
             }
-            let at = Configuration::<V>::beside(&each, self.chain.ball_count());
+            let at = At::<S, V>::beside(&each, self.chain.ball_count());
             self.block(&at, block);
         }
     }
 }
 
-impl RowsNear<'_> {
+impl<S: Closed> RowsNear<'_, S> {
     #[inline(always)]
-    fn block<V: Vector>(&mut self, rough: &Configuration<V>, starts: &[Near]) {
+    fn block<V: Vector>(&mut self, rough: &At<S, V>, starts: &[Near<S>]) {
         let (chain, input) = (self.chain, self.input);
         let placed = chain.place(rough);
-        let inverse = bordered_inverse(&placed.screws, chain.columns, &input_row(input));
-        let mut by = inverse.times(&placed.error);
-        for x in &mut by {
+        let inverse = chain.inverse(&placed.screws, &input_row(input));
+        let mut by = inverse.times(placed.error.as_ref());
+        for x in by.as_mut() {
             *x = -*x;
         }
         by[input] = V::splat(0.0);
         let near = chain.moved(rough, &by);
         let again = chain.place(&near);
-        let (mut more, _) = correction(&inverse, (&placed.screws, &again.screws), &again.error, NEUMANN);
+        let (mut more, _) = inverse.correction((&placed.screws, &again.screws), &again.error, NEUMANN);
         more[input] = V::splat(0.0);
         let at = chain.moved(&near, &more);
         let last = length(&more);
@@ -96,7 +99,7 @@ impl RowsNear<'_> {
                 row.at = at;
             }
         }
-        for c in 0..COLUMNS {
+        for c in 0..S::COLUMNS {
             for order in 0..ORDERS {
                 let lanes = solved.rates[order][c].store();
                 for (row, rate) in rows.iter_mut().zip(lanes) {

@@ -239,7 +239,7 @@ fn carried_point(linkage: &Loop, rows: &Rows, row: &Row, link: usize, at: Vec3) 
     let rates = rows.rates(row);
     let carried = |joint: usize, pose: &Pose, at: Vec3| {
         let frame = chain.frames(&row.at)[joint];
-        let twist = link_twist(chain, &chain.place(&row.at), &rates, joint);
+        let twist = link_twist(chain, &row.at, &rates, joint);
         point_rates(frame.carry(pose.carry(at)), &twist)
     };
     match linkage.reduced.parts[link].link {

@@ -16,7 +16,7 @@
 use super::factors::Product;
 use super::twists::{adjoined, determinant, plus, sliding, turned, turning, turns_near};
 use super::word::{Carried, Design, NumberedPoint, Word};
-use crate::loops::equation::chain::Joint;
+use crate::loops::equation::closed::Joint;
 use crate::loops::equation::dense::{COLUMNS, Factored, ROWS, singular_values};
 use crate::loops::equation::rotations::{Rotation, product, rotation};
 use crate::loops::equation::screws::Twist;

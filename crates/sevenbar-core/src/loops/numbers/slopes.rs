@@ -2,7 +2,8 @@
 
 use super::numbered_loop::{Around, NumberedLoop};
 use super::twists::{adjoined, carried, plus, sliding};
-use crate::loops::equation::dense::Inverse;
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::closed::Inverse;
 use crate::loops::equation::rotations::cross;
 use crate::loops::equation::screws::{Twist, bracket};
 use crate::loops::rates::velocities::ORDERS;
@@ -67,7 +68,7 @@ pub(crate) enum By {
 /// A row with the power series of its rates.
 pub(crate) struct Moving {
     /// Of the screws of the kept columns.
-    pub inverse: Inverse,
+    pub inverse: Inverse<Chain>,
     pub around: Around,
     pub kept: Vec<usize>,
     pub values: Vec<f64>,
@@ -115,7 +116,7 @@ pub fn slopes(numbered: &NumberedLoop, values: &[f64], order: usize) -> Slopes {
 /// A row with its rates; `None` at a dead centre.
 pub(crate) fn moving(numbered: &NumberedLoop, around: Around, values: &[f64]) -> Option<Moving> {
     let kept = numbered.kept(&around);
-    let inverse = numbered.factored(&around, &kept).inverse();
+    let inverse: Inverse<Chain> = Inverse(numbered.factored(&around, &kept).inverse());
     let size = inverse.square(6).sqrt();
     if size.is_nan() || size >= DEAD {
         return None;

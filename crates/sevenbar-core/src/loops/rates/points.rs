@@ -2,17 +2,18 @@
 //!
 //! Source: docs/theory.md, (13) to (16).
 
-use super::velocities::{ORDERS, Rates, Screws, carry};
-use crate::loops::equation::chain::{Chain, Placed};
+use super::velocities::{ORDERS, Rates};
+use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::Closed;
 use crate::loops::equation::dense::COLUMNS;
 use crate::loops::equation::screws::Twist;
 use crate::rigid::{Pose, Vec3};
 
 /// The series of the twist of the link after a joint, in the frame of the first joint: `V0 + V1 t + V2 t^2`.
-pub(crate) fn link_twist(chain: &Chain, placed: &Placed, rates: &Rates, joint: usize) -> [Twist; ORDERS] {
-    let mut screws: Screws<f64> = [placed.screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
+pub(crate) fn link_twist(chain: &Chain, at: &Configuration, rates: &Rates, joint: usize) -> [Twist; ORDERS] {
+    let mut screws = [chain.place(at).screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
     for order in 1..ORDERS {
-        carry(chain, &mut screws, rates, order);
+        chain.carry(at, &mut screws, rates, order);
     }
     let end = chain.first.get(joint + 1).copied().unwrap_or(chain.columns);
     let mut twists = [[0.0; 6]; ORDERS];

@@ -3,7 +3,8 @@
 //! Source: docs/theory.md, (15) and (16).
 
 use super::velocities::{ORDERS, Rates};
-use crate::loops::equation::chain::{Chain, Configuration, Joint};
+use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::closed::Joint;
 use crate::loops::equation::rotations::{Rotation, Z_TO_X, transposed};
 use crate::rigid::Vec3;
 use crate::taylor::Taylor;
