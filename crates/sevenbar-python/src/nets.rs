@@ -155,6 +155,9 @@ pub(crate) fn biconnected_parts(links: usize, between: Vec<[usize; 2]>, root: us
     nets::biconnected_parts(links, &edges(between, rows), root)
 }
 
+/// Links and edges, by their numbers.
+type LinksAndEdges = (Vec<usize>, Vec<usize>);
+
 /// The links and the edges of each block, in the order of solving; or "free" with links, or "held" with edges.
 #[pyfunction]
 pub(crate) fn net_blocks(
@@ -162,7 +165,7 @@ pub(crate) fn net_blocks(
     rows: Vec<usize>,
     known: Vec<bool>,
     freedoms: usize,
-) -> (&'static str, Vec<(Vec<usize>, Vec<usize>)>) {
+) -> (&'static str, Vec<LinksAndEdges>) {
     match nets::blocks(&edges(between, rows), &known, freedoms) {
         Ok(blocks) => ("blocks", blocks.into_iter().map(|b| (b.links, b.edges)).collect()),
         Err(Unbalanced::Free(links)) => ("free", vec![(links, Vec::new())]),

@@ -4,7 +4,9 @@
 //! joints behind the columns, `e` and `A = de/dq` at a place, the power series of `A` along a motion, and bounds of what such a series leaves
 //! out. How many columns and rows there are is known to the compiler; fewer may be in use, the others are zero.
 //!
-//! Source: docs/theory.md, (1) to (14); docs/design.md, "Closed".
+//! What it is for stands in docs/design.md, "Closed".
+//!
+//! Source: docs/theory.md, (1) to (14).
 
 use super::dense::Array;
 use super::rotations::{Rotation, product, rotation, rotation_vector, short_way, squared_up, transposed};
