@@ -4,7 +4,7 @@
 //! joints behind the columns, `e` and `A = de/dq` at a place, the power series of `A` along a motion, and bounds of what such a series leaves
 //! out. How many columns and rows there are is known to the compiler; fewer may be in use, the others are zero.
 //!
-//! What it is for stands in docs/design.md, "Closed".
+//! docs/design.md has it under "Closed".
 //!
 //! Source: docs/theory.md, (1) to (14).
 
