@@ -89,10 +89,10 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "spring of a number": (lambda: sb.Spring(1, links=3), "links: 3 are not two different links"),
     "spring of no joint": (lambda: sb.Spring(1, joint=3), "joint: 3 is not a name; give some text in quotes"),
     "linkage of shapes": (
-        lambda: replace(sb.load("rssr"), links=np.eye(4)), "links: an array of shape (4, 4), not (3, 4, 4); make"),
+        lambda: replace(sb.load("rssr"), frames=np.eye(4)), "frames: an array of shape (4, 4), not (4, 2, 4, 4); make"),
     "linkage without a drive": (lambda: replace(sb.load("rssr"), drive=None), "drive: None is not a drive; make"),
     "linkage of joints": (lambda: replace(sb.load("rssr"), joints=(1, 2)), "joints[0]: 1 is not a joint; make"),
-    "linkage": (lambda: sb.Linkage("a", (), None, None, None, None, None), "base: None is not an array; make linkages"),
+    "linkage": (lambda: sb.Linkage("a", (), None, None, None), "frames: None is not an array; make linkages"),
 }  # fmt: skip
 
 

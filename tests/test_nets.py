@@ -15,6 +15,8 @@ from sevenbar.commands.cli import app
 from sevenbar.description.forms import from_description
 from sevenbar.errors import DescriptionError, NotCoveredError
 from sevenbar.kinematics.circuits.poses import joint_frames, poses
+from sevenbar.kinematics.numbers.sensitivity import Numbers
+from sevenbar.kinematics.solvers.general import expanded
 
 
 def pin(at, *links, name=None):
@@ -525,6 +527,9 @@ def test_what_a_net_does_not_answer_yet_says_what_it_does():
     for asked in (linkage.motion, lambda: linkage.circuit(np.zeros(7))):
         with pytest.raises(NotCoveredError, match="a net of several loops"):
             asked()
+    for asked in (lambda: Numbers(linkage), lambda: expanded(linkage)):
+        with pytest.raises(NotCoveredError, match="a net of several loops"):
+            asked()
     assert linkage.plane is None
     assert linkage.as_four_bar() is None
 
@@ -548,6 +553,10 @@ def test_analyze_prints_freedoms_and_blocks(tmp_path):
     assert answer["mobility"]["freedoms"] == 1
     modes = json.loads(runner.invoke(app, ["modes", str(file), "--at", "10deg", "--json"]).stdout)
     assert (modes["completeness"], len(modes["modes"])) == ("closed-form", 2)
+    other = json.loads(runner.invoke(app, ["analyze", str(file), "--json", "--input", "lever"]).stdout)
+    assert [block["links"] for block in other["order"]] == [["rocker", "link"], ["crank", "coupler"]]
+    for words in (["--input", "nix"], ["--law", "x.csv"], ["--animate", "x.html"], ["--ranges"]):
+        assert runner.invoke(app, ["analyze", str(file), *words]).exit_code != 0
     assert runner.invoke(app, ["plot", str(file), "--out", str(tmp_path / "figures")]).exit_code != 0
 
 

@@ -11,7 +11,7 @@ from sevenbar.arrays import Floats
 from sevenbar.description.links import NamedLinks
 from sevenbar.errors import DescriptionError, Problem, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.loop.geometry import Drive, Joint, Point, Rod
+from sevenbar.kinematics.loop.geometry import BallRod, Drive, Joint, Point
 from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, unit
 
@@ -49,7 +49,7 @@ def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
         joints.append(joint)
         frames.append(np.stack([before @ inverse(joint.to_drawn), after]))
     rods = tuple(
-        Rod(edge.name, (number[edge.between[0]], number[edge.between[1]]), table.at)
+        BallRod(edge.name, (number[edge.between[0]], number[edge.between[1]]), table.at)
         for edge, table in zip(links.rods, form.rod, strict=True)
     )
     return Linkage(

@@ -16,6 +16,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.modes import Modes, Output
 from sevenbar.kinematics.circuits.motion import LEAST_AGREE, MOST_AGREE, HeldFreedoms, Motion, Solvable
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
+from sevenbar.kinematics.loop.single import check_single
 from sevenbar.kinematics.solvers.closed_form import ClosedForm
 from sevenbar.kinematics.solvers.general import AGREE, GeneralLoop
 
@@ -360,8 +361,7 @@ class Linkage(Solvable):
         return self.kind != "RSSR" and self._general.unheld() is None
 
     def _refuse_unheld(self) -> None:
-        if self.net:
-            self._net.refuse()
+        check_single(self)
         spin = self._general.unheld()
         if spin is not None:
             raise NotCoveredError(

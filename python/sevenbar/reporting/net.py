@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.nets.order import Block, Order
+from sevenbar.kinematics.loop.geometry import Drive
+from sevenbar.kinematics.loop.joint_text import joint_speed
+from sevenbar.kinematics.nets.order import LinkBlock, Order
 from sevenbar.reporting.page import Facts, Page, facts_table, page, page_report
 from sevenbar.reporting.shown import drive_text
 from sevenbar.text.words import say
@@ -16,6 +19,14 @@ SOLVERS = {
     "loop": "one loop",
     "links": "together",
 }
+
+
+def driven_by(linkage: Linkage, joint: str | None, speed: str | None) -> Linkage:
+    """A net with another input, or another speed of it, than its own where they are not `None`."""
+    column = linkage.input_column(joint, "--input")
+    drive = Drive(linkage.columns[column], linkage.columns[linkage.other_column(column)])
+    rate = linkage.speed_of(column) if speed is None else joint_speed(speed, linkage, column)
+    return replace(linkage, drive=replace(drive, speed=rate))
 
 
 def net_page(linkage: Linkage) -> Page:
@@ -67,7 +78,7 @@ def _order_text(order: Order) -> str:
     return say("with the input held, block by block")
 
 
-def _block(block: Block, linkage: Linkage) -> Facts:
+def _block(block: LinkBlock, linkage: Linkage) -> Facts:
     names = [linkage.link_name(link) for link in block.links]
     by = [linkage.joints[joint].name for joint in block.joints] + [
         linkage.rods[rod].name for rod in block.rods

@@ -164,7 +164,7 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Rod:
+class BallRod:
     """A link with a ball at each end: its name, the links that it joins, counted from 1, and its two ends.
 
     The ends `at` [length] are places on these links, as drawn.
@@ -242,7 +242,7 @@ class Loop(Drawable):
     points_by_two: bool = field(default=False, repr=False)
     net: Graph | None = field(default=None, repr=False)
     link_names: tuple[str, ...] = field(default=(), repr=False)
-    rods: tuple[Rod, ...] = ()
+    rods: tuple[BallRod, ...] = ()
 
     def __post_init__(self) -> None:
         check_name("name", self.name)
@@ -252,7 +252,7 @@ class Loop(Drawable):
         for name, (kind, what) in _PARTS.items():
             if not isinstance(value := getattr(self, name), kind):
                 check_kind(name, value, kind, f"{what}; {_MADE_WITH}")
-        for name, one in (("joints", Joint), ("points", Point), ("rods", Rod)):
+        for name, one in (("joints", Joint), ("points", Point), ("rods", BallRod)):
             for i, part in enumerate(getattr(self, name)):
                 if not isinstance(part, one):
                     check_kind(f"{name}[{i}]", part, one, f"a {one.__name__.lower()}; {_MADE_WITH}")

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.loop.geometry import Joint, Rod
+from sevenbar.kinematics.loop.geometry import BallRod, Joint
 from sevenbar.kinematics.loop.joints import X, Y, Z
 
 #: Three numbers.
@@ -59,7 +59,7 @@ def joint_rows(joint: Joint, before: Floats, after: Floats) -> list[ChordRow]:
     return result
 
 
-def rod_row(rod: Rod) -> ChordRow:
+def rod_row(rod: BallRod) -> ChordRow:
     """The row of a rod."""
     first, second = rod.at
     return ChordRow("length", (0, 1), (first, second), math.dist(first, second))

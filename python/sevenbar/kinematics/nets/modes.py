@@ -15,7 +15,7 @@ from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import inverse, pose
 from sevenbar.kinematics.nets.chords import Triple
-from sevenbar.kinematics.nets.order import Block, Order, order_of
+from sevenbar.kinematics.nets.order import LinkBlock, Order, order_of
 from sevenbar.kinematics.nets.tree import Tree
 
 #: A dyad as the core takes it.
@@ -58,7 +58,7 @@ def _refuse_others(linkage: Loop, driven: int, order: Order) -> None:
         )
 
 
-def _dyad(linkage: Loop, tree: Tree, block: Block) -> RawDyad:
+def _dyad(linkage: Loop, tree: Tree, block: LinkBlock) -> RawDyad:
     first, second = block.links
     between = linkage.graph.between
     inner = next(j for j in block.joints if {*between[j]} == {first, second})
@@ -78,7 +78,7 @@ def _dyad(linkage: Loop, tree: Tree, block: Block) -> RawDyad:
     return _three(normal), pairs, links, (tree.carrier[known[0]], tree.carrier[known[1]])
 
 
-def _listed(linkage: Loop, block: Block) -> str:
+def _listed(linkage: Loop, block: LinkBlock) -> str:
     return ", ".join(linkage.link_name(link) for link in block.links)
 
 

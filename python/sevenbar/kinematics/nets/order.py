@@ -30,7 +30,7 @@ SAME = AGREE
 
 
 @dataclass(frozen=True)
-class Block:
+class LinkBlock:
     """Links that are solved together, once those before them are: links and joints by number, rods by place.
 
     `solver`: "dyad" has a closed form; "loop" is one loop; "links" are more.
@@ -51,7 +51,7 @@ class Order:
     is left, by name: there the count alone gives no order.
     """
 
-    blocks: tuple[Block, ...] = ()
+    blocks: tuple[LinkBlock, ...] = ()
     free: tuple[str, ...] = ()
     held: tuple[str, ...] = ()
 
@@ -168,7 +168,7 @@ def order_of(linkage: Loop, column: int) -> Order:
     ground = merged[count - 1]
     known = [False] * count
     known[ground] = True
-    blocks: list[Block] = []
+    blocks: list[LinkBlock] = []
     for part in _core.biconnected_parts(count, between, ground):
         numbers = [edges[k] for k in part]
         group = groups[numbers[0]]
@@ -190,7 +190,7 @@ def order_of(linkage: Loop, column: int) -> Order:
 
 def _block(
     parts: Parts, links: list[int], edges: list[int], pairs: list[tuple[int, int]], group: Group
-) -> Block:
+) -> LinkBlock:
     count = parts.first_rod
     joints, rods = [edge for edge in edges if edge < count], [edge - count for edge in edges if edge >= count]
     one_loop = len(edges) == len(links) + 1 and all(
@@ -201,4 +201,4 @@ def _block(
         solver: Literal["dyad", "loop", "links"] = "dyad"
     else:
         solver = "loop" if one_loop else "links"
-    return Block(tuple(link + 1 for link in links), tuple(joints), tuple(rods), group, solver)
+    return LinkBlock(tuple(link + 1 for link in links), tuple(joints), tuple(rods), group, solver)

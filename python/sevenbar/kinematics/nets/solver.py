@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
-from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.loop.mobility import Mobility
 from sevenbar.kinematics.nets.modes import net_modes
 from sevenbar.kinematics.nets.order import Parts
@@ -67,13 +66,6 @@ class NetSolver:
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""
         return tuple(f"turn of {rod.name} about the line of its two balls" for rod in self._linkage.rods)
-
-    def refuse(self) -> NoReturn:
-        """What a net does not answer yet."""
-        raise NotCoveredError(
-            "a net of several loops: its freedoms, redundant constraints, order of solving and the modes of "
-            "dyads are found; motion and all that follows from it are of single loops"
-        )
 
 
 def _listed(linkage: Solvable, links: set[int]) -> str:

@@ -30,6 +30,7 @@ from sevenbar.kinematics.circuits.circuit_values import Sensitivity
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.loop.geometry import drawn_off_zero
 from sevenbar.kinematics.loop.rigid import about, zyx_turns
+from sevenbar.kinematics.loop.single import check_single
 from sevenbar.kinematics.numbers.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.numbers.lengths import across
 from sevenbar.kinematics.numbers.word import Slots, holding_axis, points_of, word_of
@@ -80,6 +81,7 @@ class Numbers:
     """
 
     def __init__(self, linkage: Solvable) -> None:
+        check_single(linkage)
         self.linkage = linkage
         dimensions = dimensions_of(description_of(linkage), linkage)
         self.dimensions: tuple[Dimension, ...] = tuple(d for d in dimensions if d.kind != "speed")

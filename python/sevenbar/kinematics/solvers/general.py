@@ -24,6 +24,7 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
 from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rigid import axis_to_z, inverse, placed
+from sevenbar.kinematics.loop.single import check_single
 
 if TYPE_CHECKING:
     from sevenbar.kinematics.loop.law import Law
@@ -376,6 +377,7 @@ class Expanded(NamedTuple):
 @once_for(0)
 def expanded(linkage: Loop) -> Expanded:
     """The joints of a loop as the core takes them: screws and balls whole, any other step by step."""
+    check_single(linkage)
     letters, advances, fixed = "", [], []
     last: list[int] = []
     behind: list[Floats] = []
