@@ -36,7 +36,7 @@ def test_every_refusal_of_the_code_stands_on_the_page():
 
 
 def test_the_page_promises_no_refusal_that_the_code_has_lost():
-    words = ("output", "linkage", "point", "tolerance", "calibrate", "simulate")
+    words = ("output", "linkage", "point", "tolerance", "calibrate", "simulate", "net")
     shown = sum(PAGE.count(f" {word}: ") for word in words)
     assert shown == len(refusals())
 

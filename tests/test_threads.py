@@ -22,6 +22,7 @@ import sevenbar as sb
 from evidence.fuzz.random_linkages import assembled_square
 from evidence.fuzz.random_loops import general
 from sevenbar import _core
+from sevenbar.kinematics.measures import MEASURES
 from sevenbar.kinematics.solvers.batches import loop_motions
 
 TESTS = Path(__file__).parent
@@ -41,6 +42,11 @@ def seven_r(count: int) -> list[sb.Linkage]:
     return [general(np.random.default_rng([41, k])).linkage() for k in range(count)]
 
 
+def measured(motions) -> list[np.ndarray]:
+    """The measures of circuits that batches have."""
+    return [m.batch(motions) for m in MEASURES.values() if m.batch and m.per == "circuit"]
+
+
 def everything(linkages: list[sb.Linkage]) -> bytes:
     """Bits of all that can be asked of linkages, made anew so that nothing is known before."""
     parts: list[np.ndarray] = []
@@ -55,7 +61,7 @@ def everything(linkages: list[sb.Linkage]) -> bytes:
             parts.append(np.array([linkage.mobility().finite]))
     loops = [linkage for linkage in linkages if linkage.kind != "RSSR"]
     found = loop_motions(loops, 0, 6, 36, 2)
-    parts += [found.limits, found.circuits, *(c for c in found.columns.values() if c.dtype != object)]
+    parts += [found.limits, found.circuits, *(column for column in measured(found) if column.dtype != object)]
     return b"".join(np.ascontiguousarray(part).tobytes() for part in parts)
 
 

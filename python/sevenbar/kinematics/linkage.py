@@ -249,8 +249,8 @@ class Linkage(Solvable):
         """The order in which it is solved with its input held: blocks of links, one of a single loop.
 
         >>> import sevenbar as sb
-        >>> sb.load("planar_4r").order.blocks[0].solver, sb.load("rssr").order.blocks[0].links
-        ('dyad', (2, 3))
+            >>> [sb.load(name).order.blocks[0].solver for name in ("planar_4r", "rssr")]
+            ['dyad', 'loop']
         """
         from sevenbar.kinematics.nets.order import order_of
 

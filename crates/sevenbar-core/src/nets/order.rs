@@ -1,5 +1,4 @@
-//! The order of solving, found before any number is computed: biconnected parts of the graph, and in each the blocks of links that must be
-//! solved together.
+//! The order of solving, found before any number is computed: biconnected parts of the graph, and in each its blocks of links.
 //!
 //! In a part every row of a joint is matched with a freedom of one of its two links. A link waits for the link at the other end of each of its
 //! rows; links that wait for each other in a circle are one block (Dulmage and Mendelsohn). The matching is of the links' own freedoms, not of

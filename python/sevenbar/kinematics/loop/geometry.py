@@ -259,7 +259,8 @@ class Loop(Drawable):
         if self.net is not None:
             check_kind("net", self.net, Graph, f"a graph; {_MADE_WITH}")
         n = len(self.joints)
-        shapes = {"frames": (n, 2, 4, 4), "point_frames": (self.graph.ground, 4, 4)}
+        links = n if self.net is None else self.net.ground
+        shapes = {"frames": (n, 2, 4, 4), "point_frames": (links, 4, 4)}
         for name, shape in shapes.items():
             array = getattr(self, name)
             if array.shape != shape:

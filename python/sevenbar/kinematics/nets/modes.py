@@ -54,7 +54,7 @@ def _refuse_others(linkage: Loop, driven: int, order: Order) -> None:
                 break
     if where:
         raise NotCoveredError(
-            f"modes of a net are found where dyads make it up, driven at the ground; here {where}"
+            f"net: modes are found where dyads make it up, driven at the ground; here {where}"
         )
 
 
@@ -71,7 +71,7 @@ def _dyad(linkage: Loop, tree: Tree, block: LinkBlock) -> RawDyad:
         normal = frame[:3, 2] if turns else normal
         pairs.append(("R" if turns else "P", _three(frame[:3, 3 if turns else 2])))
     if normal is None:
-        raise NotCoveredError(f"three slides in a row, {_listed(linkage, block)}, turn nothing")
+        raise NotCoveredError(f"net: three slides in a row turn nothing: {_listed(linkage, block)}")
     known = [sum(between[joint]) - link for joint, link in zip(ends, block.links, strict=True)]
     # every moving link has a step
     links = cast("tuple[int, int]", (tree.carrier[first], tree.carrier[second]))

@@ -80,6 +80,18 @@ class Parts:
         return [joint.name for joint in joints] + [rod.name for rod in rods]
 
     @cached_property
+    def spins(self) -> dict[int, int]:
+        """The links between two balls, counted from 1, which may spin idly, each by one of its balls."""
+        graph = self.linkage.graph
+        rodded = {link for rod in self.linkage.rods for link in rod.between}
+        result = {}
+        for link in set(graph.moving) - rodded:
+            joints = graph.joints_of(link)
+            if len(joints) == 2 and all(self.linkage.joints[joint].row.is_ball for joint in joints):
+                result[min(joints)] = link
+        return result
+
+    @cached_property
     def whole(self) -> list[tuple[list[int], Group]]:
         """The edges of each biconnected part, and how its links move."""
         count = self.linkage.graph.ground
@@ -144,6 +156,9 @@ class Parts:
         if edge >= self.first_rod:
             return 1
         row = self.linkage.joints[edge].row
+        if edge in self.spins:
+            # the spin of its link about the line of two balls is held
+            return FREEDOMS[group] - len(row.freedoms) + 1
         if group == "planar":
             free = sum(
                 not (step.freedom == "slide" and step.axis == Z) or len(row.steps) == 1 for step in row.steps

@@ -54,7 +54,8 @@ class NetSolver:
             - sum(6 - len(j.row.freedoms) for j in linkage.joints)
             - len(linkage.rods),
             rank=rank,
-            finite=len(free),
+            # spins move nothing else
+            finite=len(free) - len(parts.spins),
             idle=self.idle(),
             redundant=tuple(lines) if besides >= 0 else ("a constraint that repeats others",) * len(repeated),
         )
@@ -65,7 +66,9 @@ class NetSolver:
 
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""
-        return tuple(f"turn of {rod.name} about the line of its two balls" for rod in self._linkage.rods)
+        spinning = [rod.name for rod in self._linkage.rods]
+        spinning += [self._linkage.link_name(link) for link in Parts(self._linkage).spins.values()]
+        return tuple(f"turn of {name} about the line of its two balls" for name in spinning)
 
 
 def _listed(linkage: Solvable, links: set[int]) -> str:

@@ -62,9 +62,7 @@ class Tree:
         for joint in self.chords:
             if self.linkage.joints[joint].row.is_screw:
                 name = self.linkage.joints[joint].name
-                raise NotCoveredError(
-                    f"joint '{name}': a screw that closes a loop of screws is not covered in nets"
-                )
+                raise NotCoveredError(f"net: joint '{name}' is a screw that closes a loop of screws")
 
     def _freedoms(self, joint: int) -> int:
         row = self.linkage.joints[joint].row

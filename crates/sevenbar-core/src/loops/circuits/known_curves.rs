@@ -298,7 +298,7 @@ impl<S: Closed> Curves<S> {
             if branches && (by_arcs() || contains(chain, &curve, &self.arcs)) {
                 continue;
             }
-            let lost = curve.nodes.iter().all(|n| n.inverse_norm > LOST);
+            let lost = curve.ends_by(End::Singular) && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
             if curve.nodes.len() < 3 || curve.ends_by(End::Open) || lost {
                 self.not_followed.push(start.0);
             } else if !self.is_known(chain, &curve) {
