@@ -86,9 +86,9 @@ class Parts:
         rodded = {link for rod in self.linkage.rods for link in rod.between}
         result = {}
         for link in set(graph.moving) - rodded:
-            joints = graph.joints_of(link)
-            if len(joints) == 2 and all(self.linkage.joints[joint].row.is_ball for joint in joints):
-                result[min(joints)] = link
+            ends = graph.joints_of(link)
+            if len(ends) == 2 and all(self.linkage.joints[joint].row.is_ball for joint in ends):
+                result[min(ends)] = link
         return result
 
     @cached_property
