@@ -467,6 +467,36 @@ def test_modes_of_watt_are_those_of_circles_by_hand(angle):
         assert np.abs(ends - end).max(axis=1).min(initial=1) < 1e-10
 
 
+def test_a_curve_of_poses_at_one_input_is_told_and_no_mode():
+    # a kite, whose rocker turns freely where its pivot and the crank's end are in one place, and a dyad on it
+    kite = [
+        pin((0, 0), "frame", "crank", name="crank"),
+        pin((0.8, 0.6), "crank", "coupler"),
+        pin((1, 2), "coupler", "rocker"),
+        pin((1, 0), "frame", "rocker"),
+        pin((1.5, 2), "rocker", "link"),
+        pin((3, 2.5), "link", "lever"),
+        pin((3, 0), "lever", "frame"),
+    ]
+    # both links of the kite are as long
+    knee = np.array([0.8, 0.6])
+    end = np.array([1.0, 0.0])
+    middle = (knee + end) / 2
+    across = np.array([0.6, 0.2]) / math.hypot(0.6, 0.2)
+    kite[2] = pin(tuple((middle + 1.5 * across).tolist()), "coupler", "rocker")
+    linkage = net(kite)
+    angle = -math.atan2(0.6, 0.8)
+    curved = linkage.assembly_modes(angle)
+    assert (curved.completeness, len(curved)) == ("algebraic", 0)
+    before, after = joint_frames(linkage, poses(linkage, curved.on_curve[None]))
+    for joint, one in enumerate(linkage.joints):
+        moved = before[:, joint] @ one.motion(curved.on_curve[None, linkage.places[joint]])
+        assert np.abs(moved - after[:, joint]).max() < 1e-9 * linkage.size
+    near = linkage.assembly_modes(angle + 1e-3)
+    assert (near.completeness, near.on_curve) == ("closed-form", None)
+    assert len(near) > 0
+
+
 SLIDERS = [
     # a crank, a coupler, a block on a rail; a rocker in a block of the coupler; a lever with a slide at its end
     {"name": "crank", "kind": "R", "at": [0, 0, 0], "axis": [0, 0, 1], "between": ["frame", "crank"]},

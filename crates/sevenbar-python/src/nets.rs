@@ -10,8 +10,8 @@ use sevenbar_core::rigid::{Pose, Vec3};
 #[pyclass(frozen, module = "sevenbar._core")]
 pub(crate) struct Net(nets::Net);
 
-/// Errors of the rows as drawn, ranks as drawn and at most, the pose of the greatest, repeated rows, free motions.
-type RawFreedoms = (Vec<f64>, usize, usize, Vec<f64>, Vec<Vec<f64>>, Vec<Vec<f64>>);
+/// The rank, repeated rows, free motions.
+type RawFreedoms = (usize, Vec<Vec<f64>>, Vec<Vec<f64>>);
 
 /// A row by its kind, the steps that it is on (none for the ground), its vectors and its number.
 type RawRow = (String, [Option<usize>; 2], [Vec3; 2], f64);
@@ -32,8 +32,8 @@ fn row((kind, on, [first, second], number): RawRow) -> PyResult<Row> {
 /// A dyad: its normal, each joint's letter R P with its place or its direction, the steps of its links and those at which it hangs.
 type RawDyad = (Vec3, [(char, Vec3); 3], [usize; 2], [Option<usize>; 2]);
 
-/// Values of the columns, the pose (rotation, translation) to which each step leads, the greatest error of a row.
-type RawMode = (Vec<f64>, Vec<([[f64; 3]; 3], Vec3)>, f64);
+/// Values of the columns, the pose (rotation, translation) to which each step leads, the greatest error of a row, whether it is on a curve.
+type RawMode = (Vec<f64>, Vec<([[f64; 3]; 3], Vec3)>, f64, bool);
 
 fn stage((normal, joints, links, known): RawDyad) -> Stage {
     let pairs = joints.map(|(letter, v)| {
@@ -100,14 +100,7 @@ impl Net {
     /// The freedoms about the pose that is drawn.
     fn freedoms(&self, py: Python<'_>) -> RawFreedoms {
         let found = py.detach(|| nets::freedoms(&self.0));
-        (
-            found.drawn,
-            found.drawn_rank,
-            found.rank,
-            found.pose,
-            found.repeated,
-            found.free,
-        )
+        (found.rank, found.repeated, found.free)
     }
 
     /// All modes of dyads, each after those at which it hangs, with a step held at a value [rad, or relative to the size].
@@ -134,6 +127,7 @@ impl Net {
                     mode.values,
                     mode.poses.into_iter().map(pose).collect(),
                     mode.residual,
+                    mode.on_curve,
                 )
             })
             .collect())

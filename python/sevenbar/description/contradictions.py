@@ -69,15 +69,20 @@ def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
     if isinstance(raw[key], list) and not countable:
         count = f"a loop of {number} joint{'' if number == 1 else 's'}"
         problems.append(Problem(key, f"{count} is not taken; give {FEWEST_JOINTS} to {MOST_JOINTS}"))
-    taken: set[str] = set()
+    problems += taken_names(joints) + _misplaced_points(raw, joints)
+    return problems + (driven(joints, drive_of(raw))[2] if countable else [])
+
+
+def taken_names(joints: Sequence[Written]) -> list[Problem]:
+    """Names of joints that another joint, or a column of it, has already."""
+    problems, taken = [], set[str]()
     for joint in joints:
         labels = {joint.name, *joint.columns}
         if labels & taken:
             message = f"{shown(joint.name)} is taken already; give each joint its own name"
             problems.append(Problem(f"{joint.place}.name", message))
         taken |= labels
-    problems += _misplaced_points(raw, joints)
-    return problems + (driven(joints, drive_of(raw))[2] if countable else [])
+    return problems
 
 
 def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list[Problem]:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ValidationError, ValidationInfo
 
-from sevenbar.description.contradictions import wrong_keys
+from sevenbar.description.contradictions import taken_names, wrong_keys
 from sevenbar.description.loop_schema import DriveForm, JointForm
 from sevenbar.description.mistakes import FileForms
 from sevenbar.description.values import (
@@ -23,7 +23,7 @@ from sevenbar.description.values import (
     three,
 )
 from sevenbar.description.written import drive_of, driven, joints_of
-from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.errors import DescriptionError, Problem
 from sevenbar.kinematics.loop.joints import JOINT_KINDS
 from sevenbar.text.units import ANGLES, LENGTHS
 
@@ -124,12 +124,5 @@ def check_net(raw: Mapping[str, Any], context: Mapping[str, Any], *, source: str
 
 def name_flaws(raw: Mapping[str, Any]) -> list[Problem]:
     """Names of joints that are taken twice, and ends of the drive that are not there."""
-    problems, taken = [], set[str]()
     joints = joints_of(raw)
-    for joint in joints:
-        labels = {joint.name, *joint.columns}
-        if labels & taken:
-            message = f"{shown(joint.name)} is taken already; give each joint its own name"
-            problems.append(Problem(f"{joint.place}.name", message))
-        taken |= labels
-    return problems + driven(joints, drive_of(raw))[2]
+    return taken_names(joints) + driven(joints, drive_of(raw))[2]

@@ -54,7 +54,7 @@ SIZE = (4.6, 2.8)
 def _(linkage: Linkage) -> str:
     drive = linkage.drive
     facts = [
-        ("loop", joints_text(linkage)),
+        ("loop" if linkage.net is None else "joints", joints_text(linkage)),
         ("dimensions", dimensions_text(linkage) or _rows(linkage)),
         ("drive", drive_text(drive.joint, drive.speed, linkage.unit_of(drive.joint), drive.output)),
         ("points", ", ".join(f"{point.name} on link {point.link}" for point in linkage.points)),

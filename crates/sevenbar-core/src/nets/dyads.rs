@@ -6,6 +6,7 @@
 
 use crate::rigid::{Pose, Vec3, cross, dot, most_perpendicular_axis, unit};
 use num_complex::Complex64;
+use std::f64::consts::TAU;
 
 /// A joint of a dyad, as drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +28,12 @@ pub struct Dyad {
 
 /// Two circles, or a circle and a line, that miss each other by this part of the size touch: what is left of a square there is rounding.
 const TOUCHING: f64 = 1e-14;
+
+/// Two hinges that are nearer than this part of the links' lengths are in one place, and so are lines: rounding of the poses before.
+const ONE_PLACE: f64 = 1e-9;
+
+/// Poses of a curve of poses that are tried: what hangs at the dyad closes in some of them only.
+const ON_CURVE: usize = 24;
 
 /// Two directions whose sine is less are parallel.
 const PARALLEL: f64 = 1e-12;
@@ -87,7 +94,39 @@ impl Plane {
 }
 
 impl Dyad {
-    /// The poses of both links, each way they can be put together, for those of the known links.
+    /// Poses all along a curve of poses at which the dyad closes: its outer hinges are in one place, about which both links turn; none where
+    /// there is no such curve.
+    pub fn on_curve(&self, known: [&Pose; 2]) -> Vec<[Pose; 2]> {
+        let plane = Plane::across(self.normal);
+        let [first, second] = known.map(|pose| plane.flat(pose));
+        let [Pair::Hinge(p), inner, Pair::Hinge(q)] = self.pairs else {
+            return Vec::new();
+        };
+        let (p, q) = (plane.place(p), plane.place(q));
+        let (a, b) = (first.carry(p), second.carry(q));
+        let z = first.z;
+        let (w, off, size) = match inner {
+            Pair::Hinge(c) => {
+                let (one, two) = (plane.place(c) - p, plane.place(c) - q);
+                let w = z * one / two;
+                (w / w.norm(), one.norm() - two.norm(), one.norm() + two.norm())
+            }
+            Pair::Slide(s) => {
+                let reach = q - p;
+                (z, (reach * plane.place(s).conj()).im, reach.norm())
+            }
+        };
+        let meet = (b - a).norm() < ONE_PLACE * size && off.abs() < ONE_PLACE * size && w.is_finite();
+        let turns = (0..if meet { ON_CURVE } else { 0 }).map(|k| TAU * k as f64 / ON_CURVE as f64);
+        turns
+            .map(|angle| {
+                let turn = Complex64::from_polar(1.0, angle);
+                [Flat::through(z * turn, p, a), Flat::through(w * turn, q, b)].map(|flat| plane.pose(&flat))
+            })
+            .collect()
+    }
+
+    /// The isolated poses of both links, each way they can be put together, for those of the known links.
     pub fn poses(&self, known: [&Pose; 2]) -> Vec<[Pose; 2]> {
         let plane = Plane::across(self.normal);
         let [first, second] = known.map(|pose| plane.flat(pose));
@@ -131,7 +170,7 @@ fn three_hinges(first: &Flat, second: &Flat, p: Complex64, c: Complex64, q: Comp
     let (one, two) = ((c - p).norm(), (c - q).norm());
     let line = b - a;
     let distance = line.norm();
-    if distance == 0.0 || one == 0.0 || two == 0.0 {
+    if distance < ONE_PLACE * (one + two) || one == 0.0 || two == 0.0 {
         return Vec::new();
     }
     let along = (distance * distance + (one - two) * (one + two)) / (2.0 * distance);
@@ -175,7 +214,7 @@ fn slide_between(first: &Flat, second: &Flat, p: Complex64, s: Complex64, q: Com
     // from one hinge to the other as drawn, slid by u along s, has the length of the line
     let local = (q - p) * s.conj();
     let size = line.norm_sqr().max(local.norm_sqr());
-    if size == 0.0 {
+    if line.norm() <= ONE_PLACE * (q - p).norm() {
         return Vec::new();
     }
     roots(line.norm_sqr() - local.im * local.im, size)
@@ -297,6 +336,33 @@ mod tests {
         assert_eq!(dyad.poses([&Pose::STILL, &Pose::STILL]).len(), 1);
         assert_eq!(dyad.poses([&Pose::STILL, &moved(0.0, 0.1, 0.0)]).len(), 0);
         assert_eq!(dyad.poses([&Pose::STILL, &moved(0.0, -0.1, 0.0)]).len(), 2);
+    }
+
+    #[test]
+    fn hinges_in_one_place_leave_a_curve_of_poses_where_both_links_are_as_long() {
+        let middle = [1.0, 2.0, 0.0];
+        let end = [0.0, 4.0, 0.0];
+        for (inner, apart) in [
+            (Pair::Hinge(middle), 0.0),
+            (Pair::Slide([0.0, 1.0, 0.0]), 0.0),
+            (Pair::Hinge(middle), 1e-3),
+        ] {
+            let dyad = Dyad { normal: Z, pairs: [Pair::Hinge([0.0; 3]), inner, Pair::Hinge(end)] };
+            // the second known link brings its hinge to that of the first
+            for rounding in [0.0, 1e-16, -1e-13] {
+                let known = [Pose::STILL, moved(0.0, apart, -4.0 + rounding)];
+                let found = dyad.on_curve([&known[0], &known[1]]);
+                assert_eq!(found.len(), if apart == 0.0 { ON_CURVE } else { 0 });
+                assert_eq!(
+                    dyad.poses([&known[0], &known[1]]).len(),
+                    if apart == 0.0 { 0 } else { 2 }
+                );
+                for [a, b] in found {
+                    assert!(off(dyad.pairs[0], &known[0], &a) < 1e-12);
+                    assert!(off(inner, &a, &b) < 1e-12 && off(dyad.pairs[2], &b, &known[1]) < 1e-12);
+                }
+            }
+        }
     }
 
     #[test]

@@ -20,14 +20,8 @@ const SEED: u64 = 0x5EED;
 /// How freely a net moves near the pose that is drawn.
 #[derive(Clone, Debug)]
 pub struct Freedoms {
-    /// The error of each row at the drawn pose [rad, or relative to the size].
-    pub drawn: Vec<f64>,
-    /// The rank of `A` at the drawn pose, and the greatest that was found.
-    pub drawn_rank: usize,
-    /// See `drawn_rank`.
+    /// The greatest rank of `A` that was found.
     pub rank: usize,
-    /// Where that is [rad, or relative to the size]: a value for each column.
-    pub pose: Vec<f64>,
     /// A basis of the rows' combinations that no column moves there, of unit length.
     pub repeated: Vec<Vec<f64>>,
     /// How each column moves in each of the motions that are free there to first order, of unit length.
@@ -38,8 +32,7 @@ pub struct Freedoms {
 pub fn freedoms(net: &Net) -> Freedoms {
     let columns = net.steps.len();
     let start = vec![0.0; columns];
-    let drawn = net.closure(&start).0;
-    let mut best = at_pose(net, &start, drawn);
+    let mut best = at_pose(net, &start);
     let mut random = Random(SEED);
     let (mut here, mut free) = (start, best.free.clone());
     for _ in 0..MOVES {
@@ -49,18 +42,18 @@ pub fn freedoms(net: &Net) -> Freedoms {
         let Some(next) = moved(net, &here, &free, &mut random) else {
             continue;
         };
-        let there = at_pose(net, &next, Vec::new());
+        let there = at_pose(net, &next);
         free.clone_from(&there.free);
         here = next;
         if there.rank > best.rank {
-            best = Freedoms { drawn: best.drawn, drawn_rank: best.drawn_rank, ..there };
+            best = there;
         }
     }
     best
 }
 
 /// The rank at a pose, and what goes with it.
-fn at_pose(net: &Net, pose: &[f64], drawn: Vec<f64>) -> Freedoms {
+fn at_pose(net: &Net, pose: &[f64]) -> Freedoms {
     let (errors, columns) = net.closure(pose);
     let (values, vectors) = singular_values(&columns);
     let greatest = values.first().copied().unwrap_or(0.0);
@@ -77,14 +70,7 @@ fn at_pose(net: &Net, pose: &[f64], drawn: Vec<f64>) -> Freedoms {
         })
         .collect();
     let repeated = singular_values(&rows).1.split_off(rank.min(rows.len()));
-    Freedoms {
-        drawn,
-        drawn_rank: rank,
-        rank,
-        pose: pose.to_vec(),
-        repeated,
-        free: vectors[rank..].to_vec(),
-    }
+    Freedoms { rank, repeated, free: vectors[rank..].to_vec() }
 }
 
 /// Another closed pose, a random move along free directions away; `None` where none of its lengths closes.

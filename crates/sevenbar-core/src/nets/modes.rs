@@ -29,6 +29,8 @@ pub struct Mode {
     pub poses: Vec<Pose>,
     /// The error [rad, or relative to the size].
     pub residual: f64,
+    /// Whether it is one pose of a curve of poses that all close at this input.
+    pub on_curve: bool,
 }
 
 /// Singular values below this part of the greatest are zero: two modes that nearly meet are still corrected.
@@ -38,7 +40,8 @@ const NO_RANK: f64 = 1e-10;
 const STEPS: usize = 2;
 const CLOSES: f64 = 1e-9;
 
-/// All modes of a net that dyads make up, each stage after those that it hangs at, with a step held at a value.
+/// All isolated modes of a net that dyads make up, each stage after those that it hangs at, with a step held at a value; and some poses of
+/// each curve of poses.
 pub fn modes(net: &Net, stages: &[Stage], driven: usize, value: f64) -> Vec<Mode> {
     let mut start = vec![Pose::STILL; net.steps.len()];
     start[driven] = net.steps[driven].moved(if net.slides(driven) {
@@ -46,30 +49,33 @@ pub fn modes(net: &Net, stages: &[Stage], driven: usize, value: f64) -> Vec<Mode
     } else {
         value
     });
-    let mut partial = vec![start];
+    let mut partial = vec![(start, false)];
     for stage in stages {
         let mut longer = Vec::new();
-        for poses in &partial {
+        for (poses, on_curve) in &partial {
             let known = stage.known.map(|on| on.map_or(Pose::STILL, |k| poses[k]));
-            for both in stage.dyad.poses([&known[0], &known[1]]) {
+            let known = [&known[0], &known[1]];
+            let isolated = stage.dyad.poses(known).into_iter().map(|both| (both, *on_curve));
+            let curves = stage.dyad.on_curve(known).into_iter().map(|both| (both, true));
+            for (both, on_curve) in isolated.chain(curves) {
                 let mut next = poses.clone();
                 for (step, pose) in stage.links.into_iter().zip(both) {
                     next[step] = pose;
                 }
-                longer.push(next);
+                longer.push((next, on_curve));
             }
         }
         partial = longer;
     }
     partial
         .iter()
-        .map(|poses| settled(net, net.values(poses), driven, value))
+        .map(|(poses, on_curve)| settled(net, net.values(poses), (driven, value), *on_curve))
         .filter(|mode| mode.residual < CLOSES)
         .collect()
 }
 
 /// The mode that a few of Newton's steps lead to, with a step held.
-fn settled(net: &Net, mut values: Vec<f64>, driven: usize, value: f64) -> Mode {
+fn settled(net: &Net, mut values: Vec<f64>, (driven, value): (usize, f64), on_curve: bool) -> Mode {
     values[driven] = value;
     for _ in 0..STEPS {
         let (errors, mut columns) = net.closure(&values);
@@ -81,7 +87,7 @@ fn settled(net: &Net, mut values: Vec<f64>, driven: usize, value: f64) -> Mode {
     }
     let (errors, _) = net.closure(&values);
     let residual = errors.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
-    Mode { poses: net.place(&values).poses, values, residual }
+    Mode { poses: net.place(&values).poses, values, residual, on_curve }
 }
 
 impl Net {

@@ -66,12 +66,12 @@ def traced(
         sides = np.stack([np.column_stack([a, b]), np.column_stack([a, c])], axis=1)
         ends.append(np.where(high[a][:, None, None], sides, sides[:, ::-1]))
         of_level.append(np.full(len(mixed), level))
-    pieces, own_level = np.concatenate(ends), np.concatenate(of_level)
+    pieces, piece_levels = np.concatenate(ends), np.concatenate(of_level)
     sides = np.sort(pieces, axis=2).reshape(-1, 2)
-    places = _crossed(read, exact * spacing, net, values, sides, np.repeat(own_level, 2)).reshape(-1, 2, 2)
+    places = _crossed(read, exact * spacing, net, values, sides, np.repeat(piece_levels, 2)).reshape(-1, 2, 2)
     lines: dict[tuple[float, int], list[Floats]] = defaultdict(list)
     for level, kind, piece in zip(
-        own_level.tolist(), net.kinds[pieces[:, 0, 0]].tolist(), places, strict=True
+        piece_levels.tolist(), net.kinds[pieces[:, 0, 0]].tolist(), places, strict=True
     ):
         lines[level, kind].append(piece)
     for (level, kind), own in sorted(lines.items()):

@@ -40,21 +40,19 @@ def joint_rows(joint: Joint, before: Floats, after: Floats) -> list[ChordRow]:
     result: list[ChordRow] = []
     if joint.row.has_cross:
         u, v = before[:3, 2], after[:3, 2]
-        result.append(ChordRow("angle", (0, 1), (_three(u), _three(v)), math.cos(joint.angle)))
+        result.append(ChordRow("angle", (0, 1), (three(u), three(v)), math.cos(joint.angle)))
     elif not turns:
         result += [_square(before, after, i, (i + 1) % 3) for i in (X, Y, Z)]
     elif len(turns) == 1:
         (axis,) = turns
         result += [_square(before, after, axis, (axis + k) % 3) for k in (1, 2)]
-    place = _three(after[:3, 3])
+    place = three(after[:3, 3])
     # slides before a turn are on the link before, those after it on the link after
     sliding = [step.axis for step in steps if step.freedom == "slide"]
     ridden = bool(sliding) and steps[0].freedom == "slide" and bool(turns)
     frame, sides = (before, (1, 0)) if ridden else (after, (0, 1))
     result += [
-        ChordRow("along", sides, (place, _three(frame[:3, axis])))
-        for axis in (X, Y, Z)
-        if axis not in sliding
+        ChordRow("along", sides, (place, three(frame[:3, axis]))) for axis in (X, Y, Z) if axis not in sliding
     ]
     return result
 
@@ -67,9 +65,10 @@ def rod_row(rod: BallRod) -> ChordRow:
 
 def _square(before: Floats, after: Floats, i: int, j: int) -> ChordRow:
     """Two axes that stay at right angles."""
-    return ChordRow("angle", (0, 1), (_three(before[:3, i]), _three(after[:3, j])))
+    return ChordRow("angle", (0, 1), (three(before[:3, i]), three(after[:3, j])))
 
 
-def _three(vector: Floats) -> Triple:
+def three(vector: Floats) -> Triple:
+    """A vector (3,) as the core takes it."""
     x, y, z = np.asarray(vector, dtype=float).tolist()
     return x, y, z

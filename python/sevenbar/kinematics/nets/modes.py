@@ -5,7 +5,7 @@ Source: docs/theory_nets.md, (7).
 
 from __future__ import annotations
 
-from typing import cast
+from typing import Literal, cast
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import inverse, pose
-from sevenbar.kinematics.nets.chords import Triple
+from sevenbar.kinematics.nets.chords import Triple, three
 from sevenbar.kinematics.nets.order import LinkBlock, Order, order_of
 from sevenbar.kinematics.nets.tree import Tree
 
@@ -33,11 +33,15 @@ def net_modes(linkage: Loop, column: int, value: float) -> Modes:
     # the driven joint is the first step, which counts from where it is drawn
     offset = (value - linkage.drawn_pose[column]) / scale
     raw = tree.core().modes(dyads, 0, offset)
-    frames = np.array([_frames(linkage, tree, poses) for _, poses, _ in raw])
-    q = np.array([_values(linkage, own) for own in frames]).reshape(-1, len(linkage.columns))
-    residual = np.array([error for _, _, error in raw]) * linkage.size
-    rank = np.lexsort(q.round(9).T[::-1])
-    return Modes(q[rank], residual[rank], "closed-form", linkage.columns, value)
+    frames = [_frames(linkage, tree, poses) for _, poses, _, _ in raw]
+    q = np.array([_values(linkage, one) for one in frames]).reshape(-1, len(linkage.columns))
+    residual = np.array([error for _, _, error, _ in raw]) * linkage.size
+    on_curve = np.array([curved for *_, curved in raw], dtype=bool)
+    isolated = np.flatnonzero(~on_curve)
+    rank = isolated[np.lexsort(q[isolated].round(9).T[::-1])]
+    curve = q[on_curve][0] if on_curve.any() else None
+    completeness: Literal["closed-form", "algebraic"] = "closed-form" if curve is None else "algebraic"
+    return Modes(q[rank], residual[rank], completeness, linkage.columns, value, on_curve=curve)
 
 
 def _refuse_others(linkage: Loop, driven: int, order: Order) -> None:
@@ -69,13 +73,13 @@ def _dyad(linkage: Loop, tree: Tree, block: LinkBlock) -> RawDyad:
         frame = linkage.drawn_joint_on(joint, between[joint][0])
         turns = linkage.joints[joint].kind == "R"
         normal = frame[:3, 2] if turns else normal
-        pairs.append(("R" if turns else "P", _three(frame[:3, 3 if turns else 2])))
+        pairs.append(("R" if turns else "P", three(frame[:3, 3 if turns else 2])))
     if normal is None:
         raise NotCoveredError(f"net: three slides in a row turn nothing: {_listed(linkage, block)}")
     known = [sum(between[joint]) - link for joint, link in zip(ends, block.links, strict=True)]
     # every moving link has a step
     links = cast("tuple[int, int]", (tree.carrier[first], tree.carrier[second]))
-    return _three(normal), pairs, links, (tree.carrier[known[0]], tree.carrier[known[1]])
+    return three(normal), pairs, links, (tree.carrier[known[0]], tree.carrier[known[1]])
 
 
 def _listed(linkage: Loop, block: LinkBlock) -> str:
@@ -100,8 +104,3 @@ def _values(linkage: Loop, frames: Floats) -> list[float]:
         turns = linkage.joints[joint].kind == "R"
         result.append(float(np.arctan2(moved[1, 0], moved[0, 0]) if turns else moved[2, 3]))
     return result
-
-
-def _three(vector: Floats) -> Triple:
-    x, y, z = vector.tolist()
-    return x, y, z

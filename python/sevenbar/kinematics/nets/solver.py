@@ -34,7 +34,7 @@ class NetSolver:
         """
         linkage = self._linkage
         tree = Tree(linkage, linkage.column_of(column).joint)
-        _, _, rank, _, repeated, free = tree.core().freedoms()
+        rank, repeated, free = tree.core().freedoms()
         freedoms = sum(len(joint.row.freedoms) for joint in linkage.joints)
         lines, graph = [], linkage.graph
         parts = Parts(linkage)

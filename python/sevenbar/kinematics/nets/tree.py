@@ -110,21 +110,20 @@ class Tree:
         return len(self.letters) - 1
 
     @property
-    def rows(self) -> list[tuple[int | str, ChordRow]]:
-        """The rows of chords, each with the number of its joint or the name of its rod."""
+    def rows(self) -> list[tuple[tuple[int, int], ChordRow]]:
+        """The rows of chords, each with its two links."""
         linkage = self.linkage
-        result: list[tuple[int | str, ChordRow]] = []
+        result: list[tuple[tuple[int, int], ChordRow]] = []
         for joint in self.chords:
-            frames = (linkage.drawn_joint_on(joint, link) for link in linkage.graph.between[joint])
-            result += [(joint, row) for row in joint_rows(linkage.joints[joint], *frames)]
-        return result + [(rod.name, rod_row(rod)) for rod in linkage.rods]
+            between = linkage.graph.between[joint]
+            frames = (linkage.drawn_joint_on(joint, link) for link in between)
+            result += [(between, row) for row in joint_rows(linkage.joints[joint], *frames)]
+        return result + [(rod.between, rod_row(rod)) for rod in linkage.rods]
 
     def core(self) -> _core.Net:
         """The net of the core."""
         linkage, rows = self.linkage, []
-        rods = {rod.name: rod.between for rod in linkage.rods}
-        for owner, row in self.rows:
-            between = rods[owner] if isinstance(owner, str) else linkage.graph.between[owner]
+        for between, row in self.rows:
             first, second = (self.carrier[between[side]] for side in row.sides)
             rows.append((row.kind, (first, second), row.vectors, row.number))
         return _core.Net(
