@@ -196,7 +196,8 @@ def poses_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:
     # where a ball's turns have no value, the links still have a place: those beyond it by the ground
     has_pose = ~np.isnan(q).all(axis=1)
     part = np.flatnonzero(has_pose & np.isnan(frames).any(axis=(1, 2, 3)))
-    frames[part] = np.where(np.isnan(frames[part]), _poses_back(linkage, q[part]), frames[part])
+    if linkage.net is None:
+        frames[part] = np.where(np.isnan(frames[part]), _poses_back(linkage, q[part]), frames[part])
     lost = np.flatnonzero(has_pose & np.isnan(frames).any(axis=(1, 2, 3)))
     for link in linkage.graph.moving if lost.size else ():
         x, y, z = (float(value) for value in inverse(linkage.point_frames[link - 1])[:3, 3])

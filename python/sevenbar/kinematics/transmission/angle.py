@@ -62,7 +62,9 @@ class Coupling:
 
 
 def coupling_of(loop: Loop, input: int, output: int) -> Coupling | None:
-    """How a loop driven by one column moves another; `None` where no transmission angle is defined."""
+    """How a loop driven by one column moves another; `None` where no transmission angle is defined, and of nets."""
+    if loop.net is not None:
+        return None
     parts = expanded(loop)
     first, second = parts.columns.index(input), parts.columns.index(output)
     if "S" in (parts.letters[first], parts.letters[second]):
