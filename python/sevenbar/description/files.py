@@ -228,7 +228,7 @@ def _is_table(content: bytes, path: Path) -> bool:
 
 def _table(content: bytes, place: str) -> TableDescription:
     # most files are none
-    from sevenbar.description.tables import description_of_bytes
+    from sevenbar.description.table_files import description_of_bytes
 
     return description_of_bytes(content, place)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import count
@@ -82,7 +83,7 @@ def rssr(
 
 @ends_here
 def from_axes(
-    joints: Sequence[Mapping[str, Any]],
+    joints: Sequence[Mapping[str, Any]] | Any,
     *,
     name: str = "linkage",
     length_unit: str = "mm",
@@ -103,6 +104,7 @@ def from_axes(
     With links by name joints stand in any order: each has `between`, the names of its two links, `ground`
     names the link that stands still, and points name their `link`. `rods`, with `between` and two places
     `at`, are links with a ball at each end. More than one loop makes a net. `drive` names the input.
+    `joints` may be a data frame or the path of a table, as `from_table` takes it.
 
         >>> import sevenbar as sb
         >>> linkage = sb.from_axes([
@@ -119,9 +121,9 @@ def from_axes(
 
 @ends_here
 def from_pins(
-    pins: Sequence[Mapping[str, Any]],
+    pins: Sequence[Mapping[str, Any]] | Any,
     *,
-    ground: str,
+    ground: str | None = None,
     drive: str | None = None,
     name: str = "linkage",
     length_unit: str = "mm",
@@ -133,7 +135,9 @@ def from_pins(
 
     Each pin is a mapping with `at` (x, y), `links` (two names or more), and perhaps `name`; a pin of k links
     is k - 1 hinges about z. `ground` names the link that stands still; `drive` the input, the first pin where
-    it is left out. Points and rods are those of `from_axes`.
+    it is left out. Points and rods are those of `from_axes`. `pins` may be a data frame or the path of a
+    table with columns x, y, links (names with blanks or `;` between) and perhaps name, as `from_table` takes
+    it; there `ground` may be left out.
 
         >>> import sevenbar as sb
         >>> linkage = sb.from_pins([
@@ -151,7 +155,10 @@ def from_pins(
 def _drawn(
     name: str, length_unit: str, speed: float | str, drive: str | None, ground: str | None, **lists: Any
 ) -> Linkage:
-    """The linkage of tables as drawn, those that are not empty."""
+    """The linkage of tables as drawn, those that are not empty; the first may be a data frame or a file."""
+    key, first = next(iter(lists.items()))
+    if isinstance(first, str | os.PathLike | Mapping) or hasattr(first, "columns"):
+        return _of_table(key, first, name, length_unit, speed, drive, ground, lists)
     raw = head_of(name, length_unit, speed)
     if drive is not None:
         raw["drive"] = {**raw.get("drive", {}), "joint": drive}
@@ -163,6 +170,33 @@ def _drawn(
         if rows or key in ("joints", "points"):
             raw[key.removesuffix("s")] = rows
     return from_description(raw)
+
+
+def _of_table(
+    key: str,
+    source: Any,
+    name: str,
+    length_unit: str,
+    speed: float | str,
+    drive: str | None,
+    ground: str | None,
+    lists: Mapping[str, Any],
+) -> Linkage:
+    """The linkage of a table as drawn, with points and rods besides."""
+    from sevenbar.description.table_files import table_of
+
+    if length_unit != "mm":
+        raise RequestError("length_unit: is given in addition to a table; write it in the head, as in x [cm]")
+    result, place = table_of(source, ground or "")
+    if "link" in result.raw or "rssr" in result.raw:
+        raise RequestError(f"{key}: the table has no {key} as drawn; give it to sevenbar.from_table")
+    if name != "linkage":
+        result.raw["name"] = name
+    result.drive_by(drive, None if speed == 1.0 else _plain(speed))
+    for head in ("point", "rod"):
+        if more := _plain(lists.get(f"{head}s", ())):
+            result.raw[head] = [*result.raw.get(head, []), *more]
+    return result.linkage(from_description, place)
 
 
 @ends_here

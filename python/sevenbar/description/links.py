@@ -47,6 +47,11 @@ class Edge:
     between: tuple[str, str]
     table: Mapping[str, Any]
 
+    @property
+    def links_place(self) -> str:
+        """Where the file has its links."""
+        return f"{self.place}.{'links' if self.place.startswith('pin') else 'between'}"
+
 
 @dataclass
 class NamedLinks:
@@ -144,7 +149,7 @@ class NamedLinks:
             return [Problem("ground", f"{what}; {near}name the link that stands still, one of {known}")]
         problems = [
             Problem(
-                f"{edge.place}.between",
+                edge.links_place,
                 f"{shown(link)} is named only here; a link needs two joints, or a joint and a rod",
             )
             for edge in self.edges
@@ -157,7 +162,7 @@ class NamedLinks:
             if first is not joint:
                 what = f"{' and '.join(joint.between)} are joined twice, by {first.name} and {joint.name}"
                 remedy = "give one joint with the freedoms that both leave"
-                problems.append(Problem(f"{joint.place}.between", f"{what}; {remedy}"))
+                problems.append(Problem(joint.links_place, f"{what}; {remedy}"))
         if len(self.edges) > MOST_EDGES:
             count = f"{len(self.edges)} joints and rods"
             problems.append(Problem("joint", f"{count} are not taken; give up to {MOST_EDGES}"))
