@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
 
 import numpy as np
@@ -17,6 +18,7 @@ from sevenbar.errors import DescriptionError, NotCoveredError
 from sevenbar.kinematics.circuits.poses import joint_frames, poses
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.solvers.general import expanded
+from sevenbar.reporting.repeated import repeated_lines
 
 
 def pin(at, *links, name=None):
@@ -605,3 +607,23 @@ def test_rows_of_a_rod_keep_its_length():
     )
     assert braced.mobility().finite == 0
     assert math.isclose(braced.size, braced.length)
+
+
+def test_constraints_that_repeat_are_told_for_all_cycles_of_a_part_at_once():
+    of_watt = repeated_lines(net(WATT), 6)
+    assert of_watt == [
+        "each of 2 cycles of crank, coupler, rocker, link, lever, frame: a force across the plane and two moments in it"
+    ]
+    assert repeated_lines(net(WATT), 8)[1:] == ["2 more that repeat the others of their cycles"]
+    assert repeated_lines(net(WATT), 5) == ["5 that repeat others"]
+    assert repeated_lines(net(WATT), 0) == []
+    # two single loops that share the crank and the frame
+    two = [
+        *WATT[:4],
+        pin((-20, -30), "crank", "link"),
+        pin((-90, -60), "link", "lever"),
+        pin((-80, 0), "lever", "frame"),
+    ]
+    assert len(repeated_lines(net(two), 6)) == 1
+    with sb.language("zh"):
+        assert not re.search("cycle|plane|repeat", repeated_lines(net(WATT), 8)[0])
