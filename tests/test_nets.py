@@ -339,68 +339,6 @@ def test_values_count_the_second_link_against_the_first(name):
     assert np.abs(np.angle(np.exp(1j * (plain + turned)))).max() < 1e-12
 
 
-def watt(**changes):
-    return {
-        "format": 1,
-        "ground": "frame",
-        "drive": {"joint": "crank"},
-        "pin": [dict(one) for one in WATT],
-    } | changes
-
-
-def changed(place, **keys):
-    pins = [dict(one) for one in WATT]
-    pins[place] |= keys
-    return watt(pin=pins)
-
-
-def rod(**keys):
-    return watt(rod=[{"between": ["coupler", "lever"], "at": [[0, 0, 0], [10, 0, 0]]} | keys])
-
-
-JOINT = {"kind": "R", "at": [0, 0, 0], "axis": [0, 0, 1]}
-
-
-@pytest.mark.parametrize(
-    ("raw", "message"),
-    [
-        (changed(0, links=["frame"]), "pin[1].links: ['frame'] are no links; give the names of two or more"),
-        (changed(0, links="crank"), "pin[1].links: 'crank' are no links"),
-        (changed(0, links=["frame", "frame"]), "pin[1].links: ['frame', 'frame'] names a link twice"),
-        (changed(0, at=[0, 0, 0]), "pin[1].at: [0, 0, 0] is not a place; give x and y, as in [40, 0]"),
-        (changed(0, at=["a", 0]), "pin[1].at: 'a'"),
-        (changed(0, name=3), "pin[1].name: 3 is not a name"),
-        (changed(0, extra=3), "pin[1].extra: is not known here"),
-        (changed(6, links=["lever", "wall"]), "pin[7].links: 'wall' is named only here; a link needs two joints"),
-        (changed(2, links=["coupler", "crank"]), "coupler and crank are joined twice, by pin_2 and pin_3"),
-        (changed(1, name="crank"), "'crank' is taken already; give each joint its own name"),
-        (watt(ground=3), "ground: no joint is at a link 3"),
-        (watt(ground="fram"), "ground: no joint is at a link 'fram'; did you mean 'frame'? name the link"),
-        ({k: v for k, v in watt().items() if k != "ground"}, "ground: is missing; name the link that stands still"),
-        (watt(drive={"joint": "cranck"}), "drive.joint: no joint 'cranck'"),
-        (watt(drive={"output": "crank", "joint": "crank"}), "drive.output: joint 'crank' is the input"),
-        (watt(point=[{"name": "P", "link": "lvr", "at": [0, 0, 0]}]), "point[1].link: no link 'lvr'; did you mean 'lever'?"),
-        (watt(point=[{"name": "P", "link": 3, "at": [0, 0, 0]}]), "point[1].link: 3 is not a name"),
-        (watt(body=[{"link": "lever", "mass": 1}]), "body: is not known here"),
-        (watt(joint=[JOINT | {"between": ["frame"]}]), "joint[1].between: ['frame'] are not two links"),
-        (watt(joint=[JOINT]), "joint[1].between: is missing; where one joint says which two links"),
-        (watt(joint=[JOINT | {"between": ["a", "a"]}]), "joint[1].between: 'a' is joined to itself"),
-        (watt(joint=[JOINT | {"between": ["a", "b"]}, JOINT | {"between": ["b", "a"]}]), "joined twice"),
-        (watt(joint=[JOINT | {"between": ["link", "frame"], "longer": 3}]), "joint[1].longer: is of a single loop"),
-        (watt(joint=[{"kind": "U", "at": [0, 0, 0], "between": ["link", "frame"]}]), "joint[1].axes: is missing"),
-        (watt(joint=[{"kind": "Z", "at": [0, 0, 0], "between": ["link", "frame"]}]), "joint[1].kind: 'Z' is not a joint kind"),
-        (rod(at=[[0, 0, 0]]), "rod[1].at: [[0, 0, 0]] are not two places"),
-        (rod(at=[[0, 0, 0], [0, 0, 0]]), "rod[1].at: its two ends are one place; give joint S there"),
-        (rod(between=["coupler", "wall"]), "rod[1].between: 'wall' is named only here"),
-        (rod(between=["coupler"]), "rod[1].between: ['coupler'] are not two links"),
-    ],
-)  # fmt: skip
-def test_a_wrong_net_gets_one_clear_message(raw, message):
-    with pytest.raises(DescriptionError) as caught:
-        from_description(raw)
-    assert message in str(caught.value), str(caught.value)
-
-
 def test_links_that_nothing_joins_to_the_ground_are_named():
     apart = [
         *WATT,

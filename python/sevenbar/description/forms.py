@@ -15,6 +15,7 @@ import numpy.typing as npt
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.links import has_links, named_links
 from sevenbar.description.proportions import disproportions
+from sevenbar.description.slots import angle_between, slots_aslant
 from sevenbar.errors import (
     DescriptionError,
     Problem,
@@ -46,8 +47,6 @@ Numbers = Sequence[float | str | None] | npt.NDArray[np.float64] | Any
 
 #: Below this share of the size of a drawn pose a link has no length.
 NO_LENGTH = 1e-12
-#: A slot this far from square to its pin [rad] is refused; of one that is closer the share across it counts.
-ASLANT = 1e-3
 
 
 @ends_here
@@ -167,7 +166,7 @@ def _drawn(
     for key, values in lists.items():
         rows = _plain(values)
         check_kind(key, rows, list, f"a list; give one with a mapping for each of the {key}")
-        if rows or key in ("joints", "points"):
+        if rows or key in ("joints", "pins", "points"):
             raw[key.removesuffix("s")] = rows
     return from_description(raw)
 
@@ -380,17 +379,25 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     It keeps the description, with the number of each formula in its place. Raises `DescriptionError` with
     all that is wrong; `source` is the file it came from.
     """
-    # `import sevenbar` needs no pydantic
-    from sevenbar.description.formulas import context_of, with_numbers
-    from sevenbar.description.loop_schema import loop_alone
-
     if has_links(raw):
         links = named_links(raw, source)
         if not links.is_loop:
             from sevenbar.description.net import net_of
 
             return net_of(links, raw, source)
-        raw = links.loop_tables()
+        try:
+            return _of_loop(links.loop_tables(), source)
+        except DescriptionError as error:
+            raise DescriptionError([*map(links.as_written, error.problems)], source) from None
+    return _of_loop(raw, source)
+
+
+def _of_loop(raw: Mapping[str, Any], source: str) -> Linkage:
+    """The linkage of one loop."""
+    # `import sevenbar` needs no pydantic
+    from sevenbar.description.formulas import context_of, with_numbers
+    from sevenbar.description.loop_schema import loop_alone
+
     context = context_of(raw, source)
     raw = with_numbers(raw, context)
     form, more = loop_alone(raw, context), dict[str, Any]()
@@ -537,7 +544,10 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
     names, kinds = zip(*form.joints, strict=True)
     rssr = "".join(kinds) == "RSSR"
     problems = _coincident(drawn, names) if rssr else _coincident_balls(drawn)
-    if problems := problems or _slots_aslant(drawn) or _too_short(drawn):
+    aslant = [
+        p for i, joint in enumerate(drawn, 1) for p in slots_aslant(joint.kind, joint.axes, f"joint[{i}]")
+    ]
+    if problems := problems or aslant or _too_short(drawn):
         raise DescriptionError(problems, source)
     last = len(drawn) - 1
     joints = tuple(
@@ -546,7 +556,7 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
             joint.kind,
             name,
             joint.pitch or 0.0,
-            _between(*joint.axes) if joint.axes else 0.0,
+            angle_between(*joint.axes) if joint.axes else 0.0,
             backwards=i == last,
             value=joint.value or 0.0,
         )
@@ -573,27 +583,6 @@ def _too_short(drawn: Sequence[JointForm]) -> list[Problem]:
             message = f"{joint.longer:g} leaves nothing of link {i + 1}; give more than {-length:g}"
             problems.append(Problem(place, message))
     return problems
-
-
-def _slots_aslant(drawn: Sequence[JointForm]) -> list[Problem]:
-    """Slots that do not run across their pins."""
-    problems = []
-    for i, joint in enumerate(drawn, 1):
-        if joint.axes and KINDS[joint.kind].has_slot:
-            apart = _between(*joint.axes)
-            if abs(apart - math.pi / 2) > ASLANT:
-                message = (
-                    f"{shown([list(axis) for axis in joint.axes])} are {math.degrees(apart):.3g} deg apart; "
-                    "a slot is square to its pin"
-                )
-                problems.append(Problem(f"joint[{i}].axes", message))
-    return problems
-
-
-def _between(first: tuple[float, ...], second: tuple[float, ...]) -> float:
-    """The angle [rad] from one axis to another."""
-    a, b = unit(first), unit(second)
-    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
 
 
 def _coincident(drawn: tuple[JointForm, ...], names: Sequence[str]) -> list[Problem]:

@@ -6,13 +6,11 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from sevenbar.description.edges import names_in
 from sevenbar.description.table_cells import TableCells
 from sevenbar.description.written import GROUND_WORDS, names_ground
 from sevenbar.errors import shown
 from sevenbar.text.grid import CellTable
-
-#: What separates the names of a cell; where it has none of these, blanks do.
-SEPARATORS = r"[;,|+]"
 
 #: Columns of the two links of a joint.
 BETWEEN = ("between a", "between b")
@@ -38,9 +36,7 @@ class LinkCells(TableCells):
         if "between" not in self.columns:
             return [name for key in BETWEEN if (name := self.text(row, key))]
         # a data frame may have lists in its cells
-        text = re.sub(r"[\[\]()'\"]", "", self.text(row, "between"))
-        names = re.split(SEPARATORS, text) if re.search(SEPARATORS, text) else text.split()
-        return [name.strip() for name in names if name.strip()]
+        return names_in(re.sub(r"[\[\]()'\"]", "", self.text(row, "between")))
 
     def joined(self, row: int, path: str, most: int | None = None) -> list[str]:
         """The links that a joint joins, two or up to `most`, at a path of the description."""
