@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
 
 import numpy as np
@@ -17,6 +18,7 @@ from sevenbar.errors import DescriptionError, NotCoveredError
 from sevenbar.kinematics.circuits.poses import joint_frames, poses
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.solvers.general import expanded
+from sevenbar.reporting.repeated import repeated_lines
 
 
 def pin(at, *links, name=None):
@@ -337,68 +339,6 @@ def test_values_count_the_second_link_against_the_first(name):
     assert np.abs(np.angle(np.exp(1j * (plain + turned)))).max() < 1e-12
 
 
-def watt(**changes):
-    return {
-        "format": 1,
-        "ground": "frame",
-        "drive": {"joint": "crank"},
-        "pin": [dict(one) for one in WATT],
-    } | changes
-
-
-def changed(place, **keys):
-    pins = [dict(one) for one in WATT]
-    pins[place] |= keys
-    return watt(pin=pins)
-
-
-def rod(**keys):
-    return watt(rod=[{"between": ["coupler", "lever"], "at": [[0, 0, 0], [10, 0, 0]]} | keys])
-
-
-JOINT = {"kind": "R", "at": [0, 0, 0], "axis": [0, 0, 1]}
-
-
-@pytest.mark.parametrize(
-    ("raw", "message"),
-    [
-        (changed(0, links=["frame"]), "pin[1].links: ['frame'] are no links; give the names of two or more"),
-        (changed(0, links="crank"), "pin[1].links: 'crank' are no links"),
-        (changed(0, links=["frame", "frame"]), "pin[1].links: ['frame', 'frame'] names a link twice"),
-        (changed(0, at=[0, 0, 0]), "pin[1].at: [0, 0, 0] is not a place; give x and y, as in [40, 0]"),
-        (changed(0, at=["a", 0]), "pin[1].at: 'a'"),
-        (changed(0, name=3), "pin[1].name: 3 is not a name"),
-        (changed(0, extra=3), "pin[1].extra: is not known here"),
-        (changed(6, links=["lever", "wall"]), "pin[7].between: 'wall' is named only here; a link needs two joints"),
-        (changed(2, links=["coupler", "crank"]), "coupler and crank are joined twice, by pin_2 and pin_3"),
-        (changed(1, name="crank"), "'crank' is taken already; give each joint its own name"),
-        (watt(ground=3), "ground: no joint is at a link 3"),
-        (watt(ground="fram"), "ground: no joint is at a link 'fram'; did you mean 'frame'? name the link"),
-        ({k: v for k, v in watt().items() if k != "ground"}, "ground: is missing; name the link that stands still"),
-        (watt(drive={"joint": "cranck"}), "drive.joint: no joint 'cranck'"),
-        (watt(drive={"output": "crank", "joint": "crank"}), "drive.output: joint 'crank' is the input"),
-        (watt(point=[{"name": "P", "link": "lvr", "at": [0, 0, 0]}]), "point[1].link: no link 'lvr'; did you mean 'lever'?"),
-        (watt(point=[{"name": "P", "link": 3, "at": [0, 0, 0]}]), "point[1].link: 3 is not a name"),
-        (watt(body=[{"link": "lever", "mass": 1}]), "body: is not known here"),
-        (watt(joint=[JOINT | {"between": ["frame"]}]), "joint[1].between: ['frame'] are not two links"),
-        (watt(joint=[JOINT]), "joint[1].between: is missing; where one joint says which two links"),
-        (watt(joint=[JOINT | {"between": ["a", "a"]}]), "joint[1].between: 'a' is joined to itself"),
-        (watt(joint=[JOINT | {"between": ["a", "b"]}, JOINT | {"between": ["b", "a"]}]), "joined twice"),
-        (watt(joint=[JOINT | {"between": ["link", "frame"], "longer": 3}]), "joint[1].longer: is of a single loop"),
-        (watt(joint=[{"kind": "U", "at": [0, 0, 0], "between": ["link", "frame"]}]), "joint[1].axes: is missing"),
-        (watt(joint=[{"kind": "Z", "at": [0, 0, 0], "between": ["link", "frame"]}]), "joint[1].kind: 'Z' is not a joint kind"),
-        (rod(at=[[0, 0, 0]]), "rod[1].at: [[0, 0, 0]] are not two places"),
-        (rod(at=[[0, 0, 0], [0, 0, 0]]), "rod[1].at: its two ends are one place; give joint S there"),
-        (rod(between=["coupler", "wall"]), "rod[1].between: 'wall' is named only here"),
-        (rod(between=["coupler"]), "rod[1].between: ['coupler'] are not two links"),
-    ],
-)  # fmt: skip
-def test_a_wrong_net_gets_one_clear_message(raw, message):
-    with pytest.raises(DescriptionError) as caught:
-        from_description(raw)
-    assert message in str(caught.value), str(caught.value)
-
-
 def test_links_that_nothing_joins_to_the_ground_are_named():
     apart = [
         *WATT,
@@ -605,3 +545,23 @@ def test_rows_of_a_rod_keep_its_length():
     )
     assert braced.mobility().finite == 0
     assert math.isclose(braced.size, braced.length)
+
+
+def test_constraints_that_repeat_are_told_for_all_cycles_of_a_part_at_once():
+    of_watt = repeated_lines(net(WATT), 6)
+    assert of_watt == [
+        "each of 2 cycles of crank, coupler, rocker, link, lever, frame: a force across the plane and two moments in it"
+    ]
+    assert repeated_lines(net(WATT), 8)[1:] == ["2 more that repeat the others of their cycles"]
+    assert repeated_lines(net(WATT), 5) == ["5 that repeat others"]
+    assert repeated_lines(net(WATT), 0) == []
+    # two single loops that share the crank and the frame
+    two = [
+        *WATT[:4],
+        pin((-20, -30), "crank", "link"),
+        pin((-90, -60), "link", "lever"),
+        pin((-80, 0), "lever", "frame"),
+    ]
+    assert len(repeated_lines(net(two), 6)) == 1
+    with sb.language("zh"):
+        assert not re.search("cycle|plane|repeat", repeated_lines(net(WATT), 8)[0])

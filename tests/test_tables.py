@@ -1,7 +1,9 @@
 """Linkages in tables: what spreadsheets and people write, the place of each mistake, and the way there and back."""
 
 import csv
+import io
 import math
+import re
 import sys
 
 import numpy as np
@@ -196,7 +198,7 @@ def test_the_dimensions_of_an_rssr_are_a_row(tmp_path):
         (" \n", ["is empty; give a table with a header and a row for each joint"]),
         ("what,is,this\n1,2,3\n",
          ["no header of a linkage's table; name the columns as in 'joint, a [mm], alpha [deg], d [mm]' for Denavit-Hartenberg rows, "
-          "or 'name, kind, x [mm], y [mm], z [mm], axis x, axis y, axis z' for joints as drawn"]),
+          "'name, kind, x [mm], y [mm], z [mm], axis x, axis y, axis z' for joints as drawn, or 'name, x [mm], y [mm], links' for pins"]),
     ],
 )  # fmt: skip
 def test_each_mistake_of_a_table_has_its_line_and_column(tmp_path, content, messages):
@@ -429,3 +431,125 @@ def test_a_name_in_a_workbook_that_begins_as_a_remark_does_is_a_name(tmp_path, n
     linkage = sb.from_axes(joints)
     export(linkage.motion(12), None, tmp_path / "named.xlsx")
     assert sb.load(tmp_path / "named.xlsx").columns == linkage.columns
+
+
+# Links by name
+
+PINS = """Watt's six-bar
+name,x [mm],y [mm],links,input
+crank,0,0,frame crank,60 rpm
+,10,40,crank coupler,
+,110,80,coupler; rocker,
+rocker,100,0,"frame, rocker",
+,150,60,rocker link,
+,220,70,link lever,
+lever,200,0,lever frame,
+"""
+
+HUB = """name,kind,x,y,z,x 2,y 2,z 2,axis x,axis y,axis z,between,link,drive
+lower,R,0,0,0,,,,1,0,0,chassis; lower arm,,x
+upper,R,0,50,200,,,,1,0.1,0,chassis; upper arm,,
+foot,S,0,350,-20,,,,,,,lower arm; upright,,
+head,S,10,300,210,,,,,,,upper arm; upright,,
+track rod,rod,120,60,80,110,340,90,,,,chassis; upright,,
+wheel,point,0,400,90,,,,,,,,upright,
+"""
+
+
+def test_a_table_of_pins_is_the_net_of_a_file(tmp_path):
+    path = tmp_path / "pins.csv"
+    path.write_text(PINS)
+    linkage, drawn = sb.load(path), sb.load("examples/watt.toml")
+    assert note_of(path) == "read as 7 pins of a planar linkage, lengths in mm; frame stands still"
+    assert (linkage.name, linkage.drive.joint) == ("Watt's six-bar", "crank")
+    assert linkage.drive.speed == pytest.approx(2 * math.pi)
+    assert np.array_equal(linkage.frames, drawn.frames)
+    assert linkage.link_names == drawn.link_names
+    # and is written as a file
+    assert np.array_equal(sb.loads(toml_text(path)).frames, drawn.frames)
+    book = saved(
+        tmp_path / "pins.xlsx",
+        [line.split(",") for line in PINS.replace('"frame, rocker"', "frame rocker").splitlines()[1:]],
+    )
+    assert np.array_equal(sb.load(book).frames, drawn.frames)
+    run = sevenbar("analyze", "pins.csv", "--json", cwd=tmp_path)
+    assert (run.returncode, "7 pins of a planar linkage" in run.stderr) == (0, True)
+
+
+def test_a_data_frame_of_pins_is_taken_where_pins_are():
+    frame = pd.read_csv(io.StringIO(PINS), skiprows=1)
+    plain = sb.load("examples/watt.toml")
+    without = frame.drop(columns="input")
+    links = [tuple(re.split(r"[;, ]+", cell)) for cell in frame["links"]]
+    for linkage in (
+        sb.from_pins(frame),
+        sb.from_pins(without, drive="crank", ground="frame"),
+        sb.from_table(without.assign(links=links), drive="crank"),
+        sb.from_axes(frame.assign(kind="pin")),
+    ):
+        assert np.array_equal(linkage.frames, plain.frames)
+        assert linkage.drive.joint == "crank"
+    # in its own unit, of a pin of three links the first hinge drives
+    three = pd.DataFrame({"x [cm]": [1, 2, 3], "y [cm]": [0, 1, 0], "links": ["a b c", "b c", "b c"]})
+    with pytest.raises(DescriptionError, match=r"data row 3, column 'links': b and c are joined twice"):
+        sb.from_pins(three, ground="a")
+    four = pd.DataFrame(
+        {"x": [0, 1, 2], "y": [0, 1, 0], "links": ["a b c", "b d", "c d"], "input": ["x", "", ""]}
+    )
+    assert sb.from_pins(four, ground="a").drive.joint == "pin_1.1"
+
+
+def test_a_table_of_joints_has_its_links_rods_and_points_by_name(tmp_path):
+    path = tmp_path / "hub.csv"
+    path.write_text(HUB.replace("chassis", "frame"))
+    linkage = sb.load(path)
+    assert note_of(path) == (
+        "read as 4 joints between links by name, 1 rod, lengths in mm; frame stands still"
+    )
+    assert [rod.name for rod in linkage.rods] == ["track rod"]
+    assert linkage.rods[0].at == ((120, 60, 80), (110, 340, 90))
+    assert linkage.points == (sb.Point("wheel", linkage.link_names.index("upright") + 1, (0, 400, 90)),)
+    assert linkage.mobility().finite == 1
+    # two columns for the two links
+    cells = [line.replace("; ", ",") if ";" in line else line for line in HUB.splitlines()]
+    cells[0] = cells[0].replace("between", "between a,between b")
+    cells[-1] = cells[-1].replace(",,upright", ",,,upright")
+    path.write_text("\n".join(cells))
+    assert np.array_equal(sb.from_table(path, ground="chassis").frames, linkage.frames)
+
+
+def test_a_table_that_names_links_of_one_loop_is_that_loop():
+    pins = pd.DataFrame({"x": [0, 10, 100, 90], "y": [0, 40, 70, 0], "links": ["f c", "c k", "k r", "r f"]})
+    linkage = sb.from_pins(pins, ground="f")
+    assert (linkage.net, linkage.motion(12).motion_type) == (None, "crank-rocker")
+
+
+@pytest.mark.parametrize(
+    ("content", "messages"),
+    [
+        ("x,y,links\n0,0,f\n1,1,a b\n", ["line 2, column 'links': 'f' names 1 link; give two or more, as in 'frame; crank'"]),
+        ("x,y,links\n0,0,\n1,1,ground b\n", ["line 2, column 'links': names no link; give two or more, as in 'frame; crank'"]),
+        ("x,y,links\n0,0,f a\n1,1,a b\n0,1,b f\n",
+         ["no link is called ground or fixed or frame or base; name the link that stands still in a column 'ground', one of f, a, b"]),
+        ("x,y,links\n0,0,base a\n1,1,a frame\n0,1,base frame\n",
+         ["base and frame are links; name the link that stands still in a column 'ground', one of base, a, frame"]),
+        ("x,y,links,ground\n0,0,f a,f\n1,1,a b,b\n0,1,b f,\n", ["line 3, column 'ground': is a second ground; give one"]),
+        ("x,y,links,ground\n0,0,fr a,f\n1,1,a b,\n0,1,b fr,\n",
+         ["line 2, column 'ground': no joint is at a link 'f'; did you mean 'fr'? name the link that stands still, one of fr, a, b"]),
+        ("x,y,links\n0,0,frame a\n1,1,a b\n0,1,b wall\n",
+         ["line 2, column 'links': 'frame' is named only here; a link needs two joints, or a joint and a rod",
+          "line 4, column 'links': 'wall' is named only here; a link needs two joints, or a joint and a rod"]),
+        ("x,y,links\n0,zero,frame a\n1,1,a b\n0,1,b frame\n",
+         ["line 2, column 'y': 'zero': no 'zero' is known; give a length, as in 250, '25 cm' or '50*sin(30deg)'"]),
+        ("kind,x,y,axis z,between\nR,0,0,1,frame a b\nR,1,1,1,a b\nR,1,0,1,b frame\n",
+         ["line 2, column 'between': 'frame a b' names 3 links; give two, as in 'frame; crank'"]),
+        ("kind,x,y,axis z,between\nR,0,0,1,frame a\nR,1,1,1,a b\nrod,1,0,,b frame\n",
+         ["line 4: is a rod without its other end; give it in columns x 2, y 2, z 2"]),
+    ],
+)  # fmt: skip
+def test_each_mistake_of_a_table_of_links_has_its_line_and_column(tmp_path, content, messages):
+    path = tmp_path / "t.csv"
+    path.write_text(content, encoding="utf-8")
+    with pytest.raises(DescriptionError) as refused:
+        sb.load(path)
+    assert [line.removeprefix(f"{path}: ") for line in str(refused.value).splitlines()] == messages

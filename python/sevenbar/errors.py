@@ -162,17 +162,24 @@ def bare(word: str) -> str:
     return word if word.isprintable() and len(word) <= 60 else shown(word)
 
 
-def suggestion(word: object, known: Iterable[str]) -> str:
-    """`did you mean 'L1'? ` for a word near a known one, else nothing."""
-    if not isinstance(word, str):
-        return ""
+def nearest(word: str, known: Iterable[str]) -> str:
+    """The known word near to a word, empty where there is none.
+
+    >>> nearest("crnak", ["crank", "rocker"])
+    'crank'
+    """
     # of words that are wrong only
     from difflib import get_close_matches
 
-    known = list(known)
     lowered = {k.lower(): k for k in known}
     near = get_close_matches(word[:100].lower(), lowered, n=1, cutoff=0.6)
-    return f"did you mean {shown(lowered[near[0]])}? " if near else ""
+    return lowered[near[0]] if near else ""
+
+
+def suggestion(word: object, known: Iterable[str]) -> str:
+    """`did you mean 'L1'? ` for a word near a known one, else nothing."""
+    near = nearest(word, known) if isinstance(word, str) else ""
+    return f"did you mean {shown(near)}? " if near else ""
 
 
 def check_word(key: str, word: object, known: Iterable[str], what: str = "offered") -> None:

@@ -166,7 +166,7 @@ _HEAD = 2000
 _PLACE = r"(.*) \(at (?:line (\d+), column \d+|end of document)\)"
 
 #: Tables of which a file may have several.
-LISTED = ("joint", "link", "point", "body", "load", "spring", "stop", "rod")
+LISTED = ("joint", "pin", "link", "point", "body", "load", "spring", "stop", "rod")
 
 #: Slips that people make in TOML, by how the line looks: a unit next to a number, a decimal comma, a text or
 #: a sign of another language.
@@ -228,7 +228,7 @@ def _is_table(content: bytes, path: Path) -> bool:
 
 def _table(content: bytes, place: str) -> TableDescription:
     # most files are none
-    from sevenbar.description.tables import description_of_bytes
+    from sevenbar.description.table_files import description_of_bytes
 
     return description_of_bytes(content, place)
 

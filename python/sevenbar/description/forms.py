@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import count
@@ -14,6 +15,7 @@ import numpy.typing as npt
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.links import has_links, named_links
 from sevenbar.description.proportions import disproportions
+from sevenbar.description.slots import angle_between, slots_aslant
 from sevenbar.errors import (
     DescriptionError,
     Problem,
@@ -45,8 +47,6 @@ Numbers = Sequence[float | str | None] | npt.NDArray[np.float64] | Any
 
 #: Below this share of the size of a drawn pose a link has no length.
 NO_LENGTH = 1e-12
-#: A slot this far from square to its pin [rad] is refused; of one that is closer the share across it counts.
-ASLANT = 1e-3
 
 
 @ends_here
@@ -82,7 +82,7 @@ def rssr(
 
 @ends_here
 def from_axes(
-    joints: Sequence[Mapping[str, Any]],
+    joints: Sequence[Mapping[str, Any]] | Any,
     *,
     name: str = "linkage",
     length_unit: str = "mm",
@@ -103,6 +103,7 @@ def from_axes(
     With links by name joints stand in any order: each has `between`, the names of its two links, `ground`
     names the link that stands still, and points name their `link`. `rods`, with `between` and two places
     `at`, are links with a ball at each end. More than one loop makes a net. `drive` names the input.
+    `joints` may be a data frame or the path of a table, as `from_table` takes it.
 
         >>> import sevenbar as sb
         >>> linkage = sb.from_axes([
@@ -119,9 +120,9 @@ def from_axes(
 
 @ends_here
 def from_pins(
-    pins: Sequence[Mapping[str, Any]],
+    pins: Sequence[Mapping[str, Any]] | Any,
     *,
-    ground: str,
+    ground: str | None = None,
     drive: str | None = None,
     name: str = "linkage",
     length_unit: str = "mm",
@@ -133,7 +134,9 @@ def from_pins(
 
     Each pin is a mapping with `at` (x, y), `links` (two names or more), and perhaps `name`; a pin of k links
     is k - 1 hinges about z. `ground` names the link that stands still; `drive` the input, the first pin where
-    it is left out. Points and rods are those of `from_axes`.
+    it is left out. Points and rods are those of `from_axes`. `pins` may be a data frame or the path of a
+    table with columns x, y, links (names with blanks or `;` between) and perhaps name, as `from_table` takes
+    it; there `ground` may be left out.
 
         >>> import sevenbar as sb
         >>> linkage = sb.from_pins([
@@ -151,7 +154,10 @@ def from_pins(
 def _drawn(
     name: str, length_unit: str, speed: float | str, drive: str | None, ground: str | None, **lists: Any
 ) -> Linkage:
-    """The linkage of tables as drawn, those that are not empty."""
+    """The linkage of tables as drawn, those that are not empty; the first may be a data frame or a file."""
+    key, first = next(iter(lists.items()))
+    if isinstance(first, str | os.PathLike | Mapping) or hasattr(first, "columns"):
+        return _of_table(key, first, name, length_unit, speed, drive, ground, lists)
     raw = head_of(name, length_unit, speed)
     if drive is not None:
         raw["drive"] = {**raw.get("drive", {}), "joint": drive}
@@ -160,9 +166,36 @@ def _drawn(
     for key, values in lists.items():
         rows = _plain(values)
         check_kind(key, rows, list, f"a list; give one with a mapping for each of the {key}")
-        if rows or key in ("joints", "points"):
+        if rows or key in ("joints", "pins", "points"):
             raw[key.removesuffix("s")] = rows
     return from_description(raw)
+
+
+def _of_table(
+    key: str,
+    source: Any,
+    name: str,
+    length_unit: str,
+    speed: float | str,
+    drive: str | None,
+    ground: str | None,
+    lists: Mapping[str, Any],
+) -> Linkage:
+    """The linkage of a table as drawn, with points and rods besides."""
+    from sevenbar.description.table_files import table_of
+
+    if length_unit != "mm":
+        raise RequestError("length_unit: is given in addition to a table; write it in the head, as in x [cm]")
+    result, place = table_of(source, ground or "")
+    if "link" in result.raw or "rssr" in result.raw:
+        raise RequestError(f"{key}: the table has no {key} as drawn; give it to sevenbar.from_table")
+    if name != "linkage":
+        result.raw["name"] = name
+    result.drive_by(drive, None if speed == 1.0 else _plain(speed))
+    for head in ("point", "rod"):
+        if more := _plain(lists.get(f"{head}s", ())):
+            result.raw[head] = [*result.raw.get(head, []), *more]
+    return result.linkage(from_description, place)
 
 
 @ends_here
@@ -346,17 +379,25 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     It keeps the description, with the number of each formula in its place. Raises `DescriptionError` with
     all that is wrong; `source` is the file it came from.
     """
-    # `import sevenbar` needs no pydantic
-    from sevenbar.description.formulas import context_of, with_numbers
-    from sevenbar.description.loop_schema import loop_alone
-
     if has_links(raw):
         links = named_links(raw, source)
         if not links.is_loop:
             from sevenbar.description.net import net_of
 
             return net_of(links, raw, source)
-        raw = links.loop_tables()
+        try:
+            return _of_loop(links.loop_tables(), source)
+        except DescriptionError as error:
+            raise DescriptionError([*map(links.as_written, error.problems)], source) from None
+    return _of_loop(raw, source)
+
+
+def _of_loop(raw: Mapping[str, Any], source: str) -> Linkage:
+    """The linkage of one loop."""
+    # `import sevenbar` needs no pydantic
+    from sevenbar.description.formulas import context_of, with_numbers
+    from sevenbar.description.loop_schema import loop_alone
+
     context = context_of(raw, source)
     raw = with_numbers(raw, context)
     form, more = loop_alone(raw, context), dict[str, Any]()
@@ -503,7 +544,10 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
     names, kinds = zip(*form.joints, strict=True)
     rssr = "".join(kinds) == "RSSR"
     problems = _coincident(drawn, names) if rssr else _coincident_balls(drawn)
-    if problems := problems or _slots_aslant(drawn) or _too_short(drawn):
+    aslant = [
+        p for i, joint in enumerate(drawn, 1) for p in slots_aslant(joint.kind, joint.axes, f"joint[{i}]")
+    ]
+    if problems := problems or aslant or _too_short(drawn):
         raise DescriptionError(problems, source)
     last = len(drawn) - 1
     joints = tuple(
@@ -512,7 +556,7 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
             joint.kind,
             name,
             joint.pitch or 0.0,
-            _between(*joint.axes) if joint.axes else 0.0,
+            angle_between(*joint.axes) if joint.axes else 0.0,
             backwards=i == last,
             value=joint.value or 0.0,
         )
@@ -539,27 +583,6 @@ def _too_short(drawn: Sequence[JointForm]) -> list[Problem]:
             message = f"{joint.longer:g} leaves nothing of link {i + 1}; give more than {-length:g}"
             problems.append(Problem(place, message))
     return problems
-
-
-def _slots_aslant(drawn: Sequence[JointForm]) -> list[Problem]:
-    """Slots that do not run across their pins."""
-    problems = []
-    for i, joint in enumerate(drawn, 1):
-        if joint.axes and KINDS[joint.kind].has_slot:
-            apart = _between(*joint.axes)
-            if abs(apart - math.pi / 2) > ASLANT:
-                message = (
-                    f"{shown([list(axis) for axis in joint.axes])} are {math.degrees(apart):.3g} deg apart; "
-                    "a slot is square to its pin"
-                )
-                problems.append(Problem(f"joint[{i}].axes", message))
-    return problems
-
-
-def _between(first: tuple[float, ...], second: tuple[float, ...]) -> float:
-    """The angle [rad] from one axis to another."""
-    a, b = unit(first), unit(second)
-    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
 
 
 def _coincident(drawn: tuple[JointForm, ...], names: Sequence[str]) -> list[Problem]:

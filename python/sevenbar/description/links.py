@@ -6,23 +6,27 @@ tables, joints in order, as if they had been written so; anything else is a net.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from sevenbar.description.written import entries
-from sevenbar.errors import DescriptionError, Problem, is_name, shown, suggestion
+from sevenbar.description.edges import Edge, edge_of, hinges_of
+from sevenbar.description.link_flaws import (
+    drive_flaws,
+    graph_flaws,
+    ground_flaws,
+    name_flaws,
+    naming_flaws,
+    spelling_flaws,
+)
+from sevenbar.description.written import drive_of, entries
+from sevenbar.errors import DescriptionError, Problem, is_name, shown
 from sevenbar.kinematics.loop.graph import Graph
-
-#: Most joints and rods of a net.
-MOST_EDGES = 40
 
 #: Keys of a whole file that only links by name need.
 OWN_KEYS = ("ground", "pin")
-
-#: The axis of a pin.
-ACROSS = [0, 0, 1]
 
 #: A pin in a slot, seen from the link with the pin and from that with the slot.
 OTHER_SLOT = {"K": "L", "L": "K"}
@@ -38,16 +42,6 @@ def has_links(raw: Mapping[str, Any]) -> bool:
     return any("between" in table for head in ("joint", "rod") for table in entries(raw, head))
 
 
-@dataclass(frozen=True)
-class Edge:
-    """A joint or a rod as written: its place in the file, its name, its two links, its table."""
-
-    place: str
-    name: str
-    between: tuple[str, str]
-    table: Mapping[str, Any]
-
-
 @dataclass
 class NamedLinks:
     """The joints and rods of a file, with what is wrong in how they join links."""
@@ -58,55 +52,24 @@ class NamedLinks:
     rods: list[Edge] = field(default_factory=list)
 
     def __post_init__(self) -> None:
+        for head in ("joint", "pin"):
+            if head in self.raw and not entries(self.raw, head) and self.raw[head] != []:
+                self.problems.append(Problem(head, f"{shown(self.raw[head])} is no list; write [[{head}]]"))
         for i, table in enumerate(entries(self.raw, "joint"), 1):
-            self._read(f"joint[{i}]", table, f"theta_{i}", self.joints)
+            self._take(edge_of(f"joint[{i}]", table, f"theta_{i}"), self.joints)
         for i, table in enumerate(entries(self.raw, "pin"), 1):
-            self._read_pin(f"pin[{i}]", table, f"pin_{i}")
+            self._take(hinges_of(f"pin[{i}]", table, f"pin_{i}"), self.joints)
         for i, table in enumerate(entries(self.raw, "rod"), 1):
-            if "radius" not in table:
-                self._read(f"rod[{i}]", table, f"rod_{i}", self.rods)
+            if "between" in table or "radius" not in table:
+                self._take(edge_of(f"rod[{i}]", table, f"rod_{i}"), self.rods)
         if not self.problems:
             self.problems += self._flaws()
 
-    def _read(self, place: str, table: Mapping[str, Any], name: str, edges: list[Edge]) -> None:
-        between = table.get("between")
-        if "between" not in table:
-            message = "is missing; where one joint says which two links it is between, all do"
-        elif not isinstance(between, list | tuple) or len(between) != 2 or not all(map(is_name, between)):
-            message = f'{shown(between)} are not two links; give their names, as in ["frame", "crank"]'
-        elif between[0].strip() == between[1].strip():
-            message = f"{shown(between[0])} is joined to itself; give two links"
+    def _take(self, read: Edge | list[Edge] | Problem, edges: list[Edge]) -> None:
+        if isinstance(read, Problem):
+            self.problems.append(read)
         else:
-            first, second = (link.strip() for link in between)
-            label = table.get("name")
-            label = label.strip() if is_name(label) else name
-            edges.append(Edge(place, label, (first, second), table))
-            return
-        self.problems.append(Problem(f"{place}.between", message))
-
-    def _read_pin(self, place: str, table: Mapping[str, Any], name: str) -> None:
-        links, at = table.get("links"), table.get("at")
-        if not isinstance(links, list | tuple) or len(links) < 2 or not all(map(is_name, links)):
-            message = f'{shown(links)} are no links; give the names of two or more, as in ["frame", "crank"]'
-            self.problems.append(Problem(f"{place}.links", message))
-            return
-        if len({link.strip() for link in links}) < len(links):
-            self.problems.append(
-                Problem(f"{place}.links", f"{shown(links)} names a link twice; give each once")
-            )
-            return
-        if not isinstance(at, list | tuple) or len(at) != 2:
-            self.problems.append(
-                Problem(f"{place}.at", f"{shown(at)} is not a place; give x and y, as in [40, 0]")
-            )
-            return
-        label = table.get("name")
-        label = label.strip() if is_name(label) else name
-        first, *others = (link.strip() for link in links)
-        for k, other in enumerate(others, 1):
-            hinge = label if len(others) == 1 else f"{label}.{k}"
-            joint = {"name": hinge, "kind": "R", "at": [*at, 0], "axis": ACROSS}
-            self.joints.append(Edge(place, hinge, (first, other), joint))
+            edges += [read] if isinstance(read, Edge) else read
 
     @property
     def edges(self) -> list[Edge]:
@@ -133,49 +96,18 @@ class NamedLinks:
 
     def _flaws(self) -> list[Problem]:
         """What is wrong with the links and joints together."""
-        named = [link for edge in self.edges for link in edge.between]
         if not self.joints:
             return [Problem("joint", "there is none; give the joints of the linkage")]
-        if not self.ground or self.ground not in named:
-            written = self.raw.get("ground")
-            near = "" if written is None else suggestion(written, named)
-            what = "is missing" if written is None else f"no joint is at a link {shown(written)}"
-            known = ", ".join(dict.fromkeys(named))
-            return [Problem("ground", f"{what}; {near}name the link that stands still, one of {known}")]
-        problems = [
-            Problem(
-                f"{edge.place}.between",
-                f"{shown(link)} is named only here; a link needs two joints, or a joint and a rod",
-            )
-            for edge in self.edges
-            for link in edge.between
-            if named.count(link) == 1
+        if problems := spelling_flaws(self.edges) or ground_flaws(self.raw, self.edges):
+            return problems
+        of_graph = graph_flaws(self.joints, self.rods, self.ground)
+        again = [problem.place for problem in of_graph]
+        return [
+            *of_graph,
+            *name_flaws([edge for edge in self.edges if edge.place not in again]),
+            *naming_flaws(self.raw, self.links, self.rods, NAMING),
+            *drive_flaws(drive_of(self.raw), self.joints, self.rods),
         ]
-        pairs: dict[frozenset[str], Edge] = {}
-        for joint in self.joints:
-            first = pairs.setdefault(frozenset(joint.between), joint)
-            if first is not joint:
-                what = f"{' and '.join(joint.between)} are joined twice, by {first.name} and {joint.name}"
-                remedy = "give one joint with the freedoms that both leave"
-                problems.append(Problem(f"{joint.place}.between", f"{what}; {remedy}"))
-        if len(self.edges) > MOST_EDGES:
-            count = f"{len(self.edges)} joints and rods"
-            problems.append(Problem("joint", f"{count} are not taken; give up to {MOST_EDGES}"))
-        reached = self._reached()
-        if apart := [link for link in self.links if link not in reached]:
-            named_apart = ", ".join(apart)
-            problems.append(Problem("ground", f"{named_apart}: nothing joins them to {shown(self.ground)}"))
-        return problems
-
-    def _reached(self) -> set[str]:
-        reached, ahead = {self.ground}, [self.ground]
-        while ahead:
-            link = ahead.pop()
-            for edge in self.edges:
-                if link in edge.between:
-                    ahead += [other for other in edge.between if other not in reached]
-                    reached |= set(edge.between)
-        return reached
 
     @property
     def is_loop(self) -> bool:
@@ -183,8 +115,9 @@ class NamedLinks:
         ends = [link for joint in self.joints for link in joint.between]
         return not self.rods and all(ends.count(link) == 2 for link in self.links)
 
-    def loop_tables(self) -> dict[str, Any]:
-        """The tables of the one loop that they make, joints in order from the ground, links by number."""
+    @cached_property
+    def loop_order(self) -> list[tuple[Edge, bool]]:
+        """The joints of the one loop that they make, from the ground, and which lead outwards."""
         order, link = [], self.ground
         remaining = list(self.joints)
         # the first joint of the file that is at the ground is the first of the loop
@@ -194,6 +127,11 @@ class NamedLinks:
             a, b = joint.between
             order.append((joint, link == a))
             link = b if link == a else a
+        return order
+
+    def loop_tables(self) -> dict[str, Any]:
+        """The tables of the one loop that they make, joints in order from the ground, links by number."""
+        order = self.loop_order
         tables = []
         for i, (joint, outwards) in enumerate(order):
             # the last joint of a drawing counts the link before it against the ground
@@ -208,6 +146,14 @@ class NamedLinks:
             if head in result and isinstance(result[head], list):
                 result[head] = [_numbered(table, key, numbers) for table in result[head]]
         return result
+
+    def as_written(self, problem: Problem) -> Problem:
+        """A problem of the one loop's tables, at its place in the file."""
+        match = re.match(r"joint\[(\d+)\]", problem.place)
+        if match is None:
+            return problem
+        edge = self.loop_order[int(match[1]) - 1][0]
+        return Problem(edge.place + problem.place[match.end() :], problem.message)
 
 
 def _turned(joint: Edge, *, forward: bool) -> dict[str, Any]:
@@ -245,10 +191,16 @@ def _number(link: Any, numbers: Mapping[str, int]) -> Any:
 
 
 def named_links(raw: Mapping[str, Any], source: str = "") -> NamedLinks:
-    """The links of a file by name; `DescriptionError` with all that is wrong in how joints join them."""
+    """The links of a file by name; `DescriptionError` with all that is wrong in how joints join them.
+
+    That is with what is wrong in their numbers.
+    """
     links = NamedLinks(raw)
     if links.problems:
-        raise DescriptionError(links.problems, source)
+        # of wrong files only
+        from sevenbar.description.net_schema import value_flaws
+
+        raise DescriptionError(_one_each(links.problems, value_flaws(raw, source)), source)
     return links
 
 
@@ -258,3 +210,17 @@ def in_loop_order(raw: Mapping[str, Any], source: str = "") -> Mapping[str, Any]
         return raw
     links = named_links(raw, source)
     return links.loop_tables() if links.is_loop else raw
+
+
+def _one_each(of_links: list[Problem], of_values: list[Problem]) -> list[Problem]:
+    """Both, without a second one on the links of a table, and on what is no table at all."""
+    no_tables = [problem.place for problem in of_values if "." not in problem.place]
+    first = [problem for problem in of_links if problem.place.partition(".")[0] not in no_tables]
+    tables = {problem.place.partition(".")[0] for problem in first}
+    rest = [
+        problem
+        for problem in of_values
+        if not (problem.place.partition(".")[0] in tables and re.search(r"\.(links|between)", problem.place))
+        and problem.place not in [known.place for known in first]
+    ]
+    return first + rest

@@ -9,7 +9,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.links import NamedLinks
-from sevenbar.errors import DescriptionError, Problem, shown, suggestion
+from sevenbar.description.written import Written, drive_of, driven, entries, joints_of
+from sevenbar.errors import DescriptionError, Problem
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import BallRod, Drive, Joint, Point
 from sevenbar.kinematics.loop.joints import KINDS
@@ -22,26 +23,26 @@ if TYPE_CHECKING:
 def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
     """The net of links by name; raises `DescriptionError` with all that is wrong."""
     from sevenbar.description.formulas import context_of, with_numbers
-    from sevenbar.description.net_schema import check_net, name_flaws
+    from sevenbar.description.net_schema import check_net
 
+    thick = [
+        Problem(f"rod[{i}].radius", "is of a single loop so far; leave this rod out")
+        for i, table in enumerate(entries(raw, "rod"), 1)
+        if "between" not in table
+    ]
+    if thick:
+        raise DescriptionError(thick, source)
     # pins are joints from here on
     tables = [{**edge.table, "name": edge.name, "between": list(edge.between)} for edge in links.joints]
     whole = {**raw, "joint": tables}
     context = context_of(whole, source)
     raw = with_numbers(raw, context)
     check_net(raw, context, source=source)
+    if problems := driven(joints_of(whole), drive_of(whole))[2]:
+        raise DescriptionError(problems, source)
     form = check_net({**with_numbers(whole, context), "pin": []}, context, source=source)
     number = {name: i for i, name in enumerate(links.links, 1)}
-    points, problems = [], name_flaws(whole)
-    for i, point in enumerate(form.point, 1):
-        if point.link in number:
-            points.append(Point(point.name, number[point.link], point.at))
-        else:
-            near = suggestion(point.link, number)
-            what = f"no link {shown(point.link)}; {near}this net has {', '.join(number)}"
-            problems.append(Problem(f"point[{i}].link", what))
-    if problems:
-        raise DescriptionError(problems, source)
+    points = tuple(Point(point.name, number[point.link], point.at) for point in form.point)
     joints, frames = [], []
     for edge, table in zip(links.joints, form.joint, strict=True):
         before, after, angle = drawn_frames(table.kind, table.at, table.axis, table.axes)
@@ -59,7 +60,7 @@ def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
         point_frames=np.broadcast_to(np.eye(4), (len(number), 4, 4)).copy(),
         drive=Drive(*_ends(form, joints), form.drive.speed),
         length_unit=form.length_unit,
-        points=tuple(points),
+        points=points,
         description=raw,
         net=links.graph,
         link_names=tuple(links.links),
@@ -69,8 +70,6 @@ def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
 
 def _ends(form: NetForm, joints: list[Joint]) -> tuple[str, str]:
     """The columns of input and output."""
-    from sevenbar.description.written import Written, driven
-
     drive = {"joint": form.drive.joint, "output": form.drive.output}
     return driven([Written("", joint.name, joint.kind) for joint in joints], drive)[:2]
 

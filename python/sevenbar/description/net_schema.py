@@ -7,9 +7,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ValidationError, ValidationInfo
 
-from sevenbar.description.contradictions import taken_names, wrong_keys
+from sevenbar.description.contradictions import wrong_keys
+from sevenbar.description.formulas import context_of
 from sevenbar.description.loop_schema import DriveForm, JointForm
 from sevenbar.description.mistakes import FileForms
+from sevenbar.description.slots import slots_aslant
 from sevenbar.description.values import (
     Component,
     TableForm,
@@ -22,7 +24,7 @@ from sevenbar.description.values import (
     refuse,
     three,
 )
-from sevenbar.description.written import drive_of, driven, joints_of
+from sevenbar.description.written import entries
 from sevenbar.errors import DescriptionError, Problem
 from sevenbar.kinematics.loop.joints import JOINT_KINDS
 from sevenbar.text.units import ANGLES, LENGTHS
@@ -102,27 +104,64 @@ _FORMS = FileForms(
 )
 
 
+#: What to say of keys of the whole file, and of its tables, that people write for a net.
+_OF_ONE_LOOP = "is of a single loop so far; leave it out"
+_NOT_OF_NETS: dict[tuple[str, ...], str] = {
+    **{
+        (key,): "describes one loop; a net has [[joint]] with between, [[pin]] and [[rod]]; leave it out"
+        for key in ("link", "rssr", "layout")
+    },
+    **{(key,): _OF_ONE_LOOP for key in ("forces", "body", "load", "spring", "stop")},
+    **{(key,): "is not covered: a net has one input, drive.joint; leave it out" for key in ("tie", "ties")},
+    **{
+        ("drive", key): "is not covered: the input is a joint; give drive.joint"
+        for key in ("rod", "point", "along")
+    },
+    **{
+        ("pin", key): "is not of a pin, a hinge about z; write other joints as [[joint]] with between"
+        for key in ("kind", "axis", "axes", "value", "pitch")
+    },
+    ("joint", "longer"): "is of a single loop; draw the link as long as it is",
+    ("joint", "held"): "is not covered; to hold a joint give its two links one name",
+    ("rod", "length"): "follows from its two places; leave it out",
+    ("rod", "radius"): _OF_ONE_LOOP,
+}
+
+
 def check_net(raw: Mapping[str, Any], context: Mapping[str, Any], *, source: str = "") -> NetForm:
     """The checked form of a net's tables; `DescriptionError` with every problem of the file."""
-    problems: list[Problem] = []
-    form: NetForm | None = None
-    try:
-        form = NetForm.model_validate(raw, context=context)
-    except ValidationError as error:
-        problems += [_FORMS.problem(detail) for detail in error.errors(include_url=False)]
-    for i, table in enumerate(raw.get("joint", ()), 1):
-        if table.get("kind") in JOINT_KINDS:
-            problems += [Problem(f"joint[{i}].{name}", message) for name, message in wrong_keys(table)]
-        if "longer" in table:
-            problems.append(
-                Problem(f"joint[{i}].longer", "is of a single loop; draw the link as long as it is")
-            )
+    form, problems = _checked(raw, context)
     if form is None or problems:
         raise DescriptionError(problems, source)
     return form
 
 
-def name_flaws(raw: Mapping[str, Any]) -> list[Problem]:
-    """Names of joints that are taken twice, and ends of the drive that are not there."""
-    joints = joints_of(raw)
-    return taken_names(joints) + driven(joints, drive_of(raw))[2]
+def _checked(raw: Mapping[str, Any], context: Mapping[str, Any]) -> tuple[NetForm | None, list[Problem]]:
+    problems: list[Problem] = []
+    form: NetForm | None = None
+    try:
+        form = NetForm.model_validate(raw, context=context)
+    except ValidationError as error:
+        for detail in error.errors(include_url=False):
+            words = tuple(part for part in detail["loc"] if isinstance(part, str))
+            extra = detail["type"] == "extra_forbidden"
+            known = _NOT_OF_NETS.get(words, "") if extra else ""
+            if words == ("joint", "kind") and str(detail["input"]).lower() == "rod":
+                known = "'rod' is not a joint kind; write [[rod]] with between and its two places at"
+            problem = _FORMS.problem(detail)
+            problems.append(Problem(problem.place, known) if known else problem)
+    for i, table in enumerate(entries(raw, "joint"), 1):
+        if table.get("kind") in JOINT_KINDS:
+            problems += [Problem(f"joint[{i}].{name}", message) for name, message in wrong_keys(table)]
+        if "longer" in table:
+            problems.append(Problem(f"joint[{i}].longer", _NOT_OF_NETS["joint", "longer"]))
+    for i, joint in enumerate(form.joint if form else (), 1):
+        problems += slots_aslant(joint.kind, joint.axes, f"joint[{i}]")
+    return form, problems
+
+
+def value_flaws(raw: Mapping[str, Any], source: str) -> list[Problem]:
+    """What is wrong with numbers, words and units of joints, pins and rods between links by name."""
+    _, problems = _checked(raw, context_of(raw, source))
+    units = ("format", "length_unit", "angle_unit")
+    return [p for p in problems if p.place in units or p.place.startswith(("joint[", "pin[", "rod["))]

@@ -26,12 +26,17 @@ SPELLINGS: Mapping[str, tuple[str, ...]] = {
     "longer": ("longer",),
     "value": ("value",),
     "link": ("link", "body", "on link"),
+    "between": ("between", "links", "joins", "bodies", "link names"),
+    "between a": ("between a", "between 1", "link a", "link 1", "first link", "from link"),
+    "between b": ("between b", "between 2", "link b", "link 2", "second link", "to link"),
+    "ground": ("ground", "fixed link", "ground link"),
     "order": ("order", "sequence", "loop order"),
     "input": ("input", "drive", "driver", "driven", "driving"),
     "output": ("output", "out"),
     "layout": ("layout",),
     "speed": ("speed", "drive speed", "input speed"),
     **{letter: tuple(f"{head}{letter}" for head in _PLACES) for letter in "xyz"},
+    **{f"end {letter}": (f"end {letter}", f"to {letter}", f"{letter} 2") for letter in "xyz"},
     **{letter: (letter,) for letter in "uvw"},
     **{f"axis {letter}": tuple(f"{head}{letter}" for head in _AXES) for letter in "xyz"},
     **{f"axis 2 {letter}": tuple(f"{head}{letter}" for head in _SECOND_AXES) for letter in "xyz"},
@@ -68,7 +73,16 @@ def key_of(label: str) -> str:
 
 def is_header(labels: Sequence[str]) -> bool:
     """Whether cells are the header of a table of a linkage: two columns of a kind that no text has."""
-    known = {key_of(label) for label in labels} - {"", "kind", "joint", "name", "link", "order", "value"}
+    known = {key_of(label) for label in labels} - {
+        "",
+        "kind",
+        "joint",
+        "name",
+        "link",
+        "ground",
+        "order",
+        "value",
+    }
     return len(known) >= 2 or has_dimensions(labels) or any(map(is_modified, labels))
 
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from sevenbar.description.table_cells import TableCells
 from sevenbar.description.table_columns import DIMENSIONS, PLACES, ROWS
+from sevenbar.description.table_links import BETWEEN, ROD_WORDS, LinkCells
 from sevenbar.description.toml_text import toml_text
 from sevenbar.description.written import meant_kind, names_ground
 from sevenbar.errors import DescriptionError, Problem, RequestError, shown
@@ -28,8 +28,9 @@ NO_MARKS = frozenset({"", "0", "0.0", "no", "n", "false", "-"})
 POINT_WORDS = ("point", "tracer", "coupler point", "marker")
 
 EXAMPLES = (
-    "'joint, a [mm], alpha [deg], d [mm]' for Denavit-Hartenberg rows, or "
-    "'name, kind, x [mm], y [mm], z [mm], axis x, axis y, axis z' for joints as drawn"
+    "'joint, a [mm], alpha [deg], d [mm]' for Denavit-Hartenberg rows, "
+    "'name, kind, x [mm], y [mm], z [mm], axis x, axis y, axis z' for joints as drawn, or "
+    "'name, x [mm], y [mm], links' for pins"
 )
 
 _LENGTHS_OF_ROWS = ("length", "offset", "pitch")
@@ -50,6 +51,12 @@ class TableDescription:
     note: str
     places: dict[str, str] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
+
+    def drive_by(self, joint: str | None, speed: float | str | None) -> None:
+        """Takes another input, or another speed, than those of the table where they are not `None`."""
+        drive = {"joint": joint, "speed": speed}
+        if drive := {key: value for key, value in drive.items() if value is not None}:
+            self.raw["drive"] = {**self.raw.get("drive", {}), **drive}
 
     def linkage(self, make: Make, source: str) -> Linkage:
         """The linkage that `make` makes; `DescriptionError` with each mistake at its place in the table."""
@@ -72,7 +79,7 @@ class TableDescription:
     def _place(self, place: str) -> str:
         if place in self.places:
             return self.places[place]
-        if place in ("link", "joint", "point"):
+        if place in ("link", "joint", "pin", "rod", "point", "ground"):
             return ""
         parts = place.split(".")
         whole = (".".join(parts[:n]) for n in range(len(parts), 0, -1))
@@ -83,7 +90,7 @@ class TableDescription:
         return ": ".join(filter(None, [self.places[above], rest]))
 
 
-def described_frame(source: Any) -> TableDescription:
+def described_frame(source: Any, ground: str = "") -> TableDescription:
     """What a data frame describes, or a mapping of names to columns."""
     if not (hasattr(source, "columns") or isinstance(source, Mapping)):
         raise RequestError(
@@ -93,12 +100,15 @@ def described_frame(source: Any) -> TableDescription:
         grid = grid_of_frame(source)
     except (TypeError, ValueError):
         raise RequestError("table: its columns are no lists of one length; give a data frame") from None
-    return described(grid, "table", "linkage")
+    return described(grid, "table", "linkage", ground)
 
 
-def described(grid: CellTable, source: str, name: str) -> TableDescription:
-    """What a table describes; `source` is what messages call it, `name` the linkage's without a title."""
-    result = _Reader(grid, source).description()
+def described(grid: CellTable, source: str, name: str, ground: str = "") -> TableDescription:
+    """What a table describes; `source` is what messages call it, `name` the linkage's without a title.
+
+    `ground` is the link that stands still, where the table need not say it.
+    """
+    result = _Reader(grid, source, ground).description()
     result.raw["name"] = grid.title or name
     return result
 
@@ -114,7 +124,7 @@ def add_points(found: TableDescription, grid: CellTable, source: str) -> None:
         found.raw["point"] = [*found.raw.get("point", []), *points]
 
 
-class _Reader(TableCells):
+class _Reader(LinkCells):
     """Makes the description of one table."""
 
     def description(self) -> TableDescription:
@@ -138,13 +148,11 @@ class _Reader(TableCells):
                 self.finish()
             # columns of rows say nothing of a joint as drawn, such as the radius r of a part's hole
             for key in ("length", "angle", "joint" if "name" in self.columns else ""):
-                if key in self.columns:
-                    self.unread.append(self.grid.names[self.columns.pop(key)])
-            result = self._of_joints("joint")
+                self._leave_unread(key)
+            result = self._of_named() if self.names_links else self._of_joints("joint")
         elif any(key in self.columns for key in ROWS):
-            if "value" in self.columns:
-                # rows have their own angle, or offset of P
-                self.unread.append(self.grid.names[self.columns.pop("value")])
+            # rows have their own angle, or offset of P
+            self._leave_unread("value")
             result = self._of_joints("link")
         else:
             self.wrong(f"the columns describe no linkage; name them as in {EXAMPLES}")
@@ -154,6 +162,11 @@ class _Reader(TableCells):
         raw, what = result
         unread = f"; not read: {', '.join(self.unread)}" if self.unread else ""
         return TableDescription({**described, **raw}, what + unread, self.places, self.problems)
+
+    def _leave_unread(self, key: str) -> None:
+        """Notes that a column is not read, where there is one."""
+        if key in self.columns:
+            self.unread.append(self.grid.names[self.columns.pop(key)])
 
     def _of_dimensions(self) -> tuple[dict[str, Any], str]:
         if len(self.filled) != 1:
@@ -197,6 +210,60 @@ class _Reader(TableCells):
         left = len(self.filled) - len(rows)
         more = f"; {left} row{'s' * (left > 1)} without a kind left out" if left else ""
         return raw, f"read as {count}joints as drawn, in loop order, lengths in {self.length_unit}{more}"
+
+    def _of_named(self) -> tuple[dict[str, Any], str]:
+        """The rows of a table with links by name: pins, or joints and rods; points."""
+        rows = [row for row in self.filled if not self._is_left_out(row)]
+        words = {row: self.text(row, "kind").lower() for row in rows}
+        points = [row for row in rows if words[row] in POINT_WORDS]
+        rods = [row for row in rows if words[row] in ROD_WORDS]
+        joints = self._ordered([row for row in rows if row not in (*points, *rods)])
+        names = self._names([*joints, *rods])
+        axes = [key for key in self.columns if key.startswith("axis")]
+        turning = all(self._kind_of(row)[0] in ("", "R") for row in joints)
+        form = "pin" if turning and not axes and not rods else "joint"
+        if form == "pin" and not points:
+            self._leave_unread("z")
+        read = self._pin if form == "pin" else self._between
+        raw: dict[str, Any] = {form: [read(row, i, names[row]) for i, row in enumerate(joints)]}
+        if rods:
+            raw["rod"] = [self._rod(row, i, names[row]) for i, row in enumerate(rods)]
+        if points:
+            raw["point"] = [self.point(row, k) for k, row in enumerate(points)]
+        # a pin of several hinges drives by its first
+        several = {row: ".1" if form == "pin" and len(self.links_of(row)) > 2 else "" for row in joints}
+        word = "pin" if form == "pin" else "theta"
+        ends = {row: f"{names[row] or f'{word}_{i}'}{several[row]}" for i, row in enumerate(joints, 1)}
+        drive = self._drive(ends)
+        tables = [*raw[form], *raw.get("rod", [])]
+        head: dict[str, Any] = {"ground": ground} if (ground := self.ground_of(tables)) else {}
+        head |= {"drive": drive} if drive else {}
+        count = "pins of a planar linkage" if form == "pin" else "joints between links by name"
+        more = f", {len(rods)} rod{'s' * (len(rods) > 1)}" if rods else ""
+        what = f"read as {len(raw[form])} {count}{more}, lengths in {self.length_unit}"
+        return head | raw, f"{what}; {ground} stands still"
+
+    def _pin(self, row: int, i: int, name: str) -> dict[str, Any]:
+        """A pin of a planar linkage."""
+        place = f"pin[{i + 1}]"
+        table = self._head(row, place, name, "kind", "", "kind")
+        table["at"] = self.vector(row, "", "length", "xy")
+        self.places[f"{place}.at"] = self.span(row, "")
+        return table | {"links": self.joined(row, f"{place}.links")}
+
+    def _between(self, row: int, i: int, name: str) -> dict[str, Any]:
+        """A joint as drawn between two links by name."""
+        return self._drawn(row, i, name) | {"between": self.joined(row, f"joint[{i + 1}].between", 2)}
+
+    def _rod(self, row: int, i: int, name: str) -> dict[str, Any]:
+        """A link with a ball at each end."""
+        place = f"rod[{i + 1}]"
+        table = self._head(row, place, name, "kind", "", "kind")
+        if not any(f"end {letter}" in self.columns for letter in "xyz"):
+            self.wrong("is a rod without its other end; give it in columns x 2, y 2, z 2", row)
+        table["at"] = [self.vector(row, "", "length"), self.vector(row, "end ", "length")]
+        self.places[f"{place}.at"] = self.span(row, "end ")
+        return table | {"between": self.joined(row, f"{place}.between", 2)}
 
     def _is_left_out(self, row: int) -> bool:
         """A row without kind and order, where the others have an order: axes of a part that are no joints."""
@@ -325,6 +392,14 @@ class _Reader(TableCells):
         for key in ("name", "link"):
             if key in self.columns:
                 self.note_place(f"{place}.{key}", row, key)
+        name = self.text(row, "name") or self.text(row, "joint") or f"P{k + 1}"
+        if self.names_links:
+            carrier = self.text(row, "link") or " ".join(self.links_of(row))
+            if "link" not in self.columns:
+                self.note_place(
+                    f"{place}.link", row, next(k for k in ("between", *BETWEEN) if k in self.columns)
+                )
+            return {"name": name, "link": carrier, "at": self.vector(row, "", "length")}
         link = number(self.text(row, "link"))
         whole = link is not None and math.isfinite(link) and link.is_integer()
         if not whole:
@@ -332,7 +407,6 @@ class _Reader(TableCells):
             self.wrong(
                 f"{given} is not a link; give its number, counted from 1", row, self.columns.get("link")
             )
-        name = self.text(row, "name") or self.text(row, "joint") or f"P{k + 1}"
         at = self.vector(row, "", "length", letters)
         return {"name": name, "link": int(link or 1) if whole else 1, "at": at}
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from sevenbar.description.table_files import SHEET
 from sevenbar.description.table_writer import linkage_table, points_table
-from sevenbar.description.tables import SHEET
 from sevenbar.errors import RequestError, of_extra
 from sevenbar.export.tables import Units
 from sevenbar.kinematics.circuits.motion import Motion

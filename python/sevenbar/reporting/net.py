@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import replace
 
 from sevenbar.kinematics.linkage import Linkage
@@ -10,8 +9,9 @@ from sevenbar.kinematics.loop.geometry import Drive
 from sevenbar.kinematics.loop.joint_text import joint_speed
 from sevenbar.kinematics.nets.order import LinkBlock, Order
 from sevenbar.reporting.page import Facts, Page, facts_table, page, page_report
+from sevenbar.reporting.repeated import repeated_lines
 from sevenbar.reporting.shown import drive_text
-from sevenbar.text.words import say
+from sevenbar.text.words import retold, say
 
 #: How links of a block are found, in words.
 SOLVERS = {
@@ -38,9 +38,10 @@ def net_page(linkage: Linkage) -> Page:
         "links": linkage.graph.ground,
         "joints": linkage.graph.joints.stop,
         "rods": len(linkage.rods),
+        "s": "" if len(linkage.rods) == 1 else "s",
         "ground": linkage.link_names[-1],
     }
-    facts.add("net", say("{links} links, {joints} joints, {rods} rods; {ground} stands still", **count))
+    facts.add("net", say("{links} links, {joints} joints, {rods} rod{s}; {ground} stands still", **count))
     drive = linkage.column_of(linkage.input_column())
     speed = linkage.speed_of(drive.number)
     facts.add("drive", drive_text(drive.name, speed, drive.unit), drive={"input": drive.name, "speed": speed})
@@ -55,9 +56,9 @@ def net_page(linkage: Linkage) -> Page:
         },
     )
     for line in mobility.idle:
-        facts.add("idle", say(line))
-    for line, times in Counter(mobility.redundant).items():
-        facts.add("repeated", f"{times} x {line}" if times > 1 else line)
+        facts.add("idle", retold(line))
+    for line in repeated_lines(linkage, len(mobility.redundant)):
+        facts.add("repeated", line)
     facts.add("solving", _order_text(order), order=[_block(block, linkage).as_dict for block in order.blocks])
     parts = [facts_table([_block(block, linkage) for block in order.blocks])] if order.blocks else []
     return page(linkage.heading, facts, *parts)
@@ -84,7 +85,7 @@ def _block(block: LinkBlock, linkage: Linkage) -> Facts:
         linkage.rods[rod].name for rod in block.rods
     ]
     row = Facts()
-    row.add("links", ", ".join(names), links=names)
+    row.add("block", ", ".join(names), links=names)
     row.add("joints and rods", ", ".join(by), by=by)
     row.add("moving", say(block.group), group=block.group)
     row.add("solved", say(SOLVERS[block.solver]), solver=block.solver)

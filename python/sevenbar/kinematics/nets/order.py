@@ -98,6 +98,15 @@ class Parts:
         parts = _core.biconnected_parts(count, self.between, count - 1)
         return [(edges, self._group(edges)) for edges in parts]
 
+    @cached_property
+    def cycles(self) -> list[tuple[list[int], int, Group]]:
+        """The links of each part, counted from 1, how many cycles its joints make, and how its links move."""
+        result = []
+        for edges, group in self.whole:
+            links = sorted({link + 1 for edge in edges for link in self.between[edge]})
+            result.append((links, sum(edge < self.first_rod for edge in edges) - len(links) + 1, group))
+        return result
+
     def _group(self, edges: Sequence[int]) -> Group:
         joints = [edge for edge in edges if edge < self.first_rod]
         links = {link for edge in edges for link in self.between[edge]}

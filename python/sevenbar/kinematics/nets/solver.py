@@ -45,9 +45,7 @@ class NetSolver:
         freedoms = sum(len(joint.row.freedoms) for joint in linkage.joints)
         lines, graph = [], linkage.graph
         parts = Parts(linkage)
-        for edges, group in parts.whole:
-            links = {link for edge in edges for link in parts.between[edge]}
-            cycles = sum(edge < parts.first_rod for edge in edges) - len(links) + 1
+        for links, cycles, group in parts.cycles:
             lines += [
                 f"{line}, in cycle {cycle} of {_listed(linkage, links)}"
                 for cycle in range(1, cycles + 1)
@@ -147,5 +145,5 @@ class NetSolver:
         return tuple(f"turn of {name} about the line of its two balls" for name in spinning)
 
 
-def _listed(linkage: Solvable, links: set[int]) -> str:
-    return ", ".join(linkage.link_name(link + 1) for link in sorted(links))
+def _listed(linkage: Solvable, links: list[int]) -> str:
+    return ", ".join(map(linkage.link_name, links))
