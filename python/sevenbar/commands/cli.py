@@ -183,6 +183,14 @@ def analyze(
         # the report has it
         warnings.simplefilter("ignore", AngleUnitWarning)
     loaded = opened(linkage, agree)
+    if loaded.net is not None:
+        from sevenbar.reporting.net import NET, driven_by
+
+    if loaded.net is not None and (moved_net := driven_by(loaded, input_joint, speed)).mobility().finite != 1:
+        # there is no motion to report
+        check_out(NET, out, force=force)
+        deliver(moved_net, NET, out, json=json, force=force)
+        return
     report = motion_report(formats)
     check_out(report, out, force=force)
     read = law_of(law, loaded, input_joint, law_joint, law_circuit)

@@ -266,7 +266,7 @@ class Linkage(Solvable):
         """
         from sevenbar.kinematics.solvers.plane_and_sphere import plane_of
 
-        return None if self.net else plane_of(self)
+        return plane_of(self)
 
     @property
     def is_planar(self) -> bool:

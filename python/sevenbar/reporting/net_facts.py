@@ -42,7 +42,9 @@ def order_text(linkage: Solvable) -> str:
     if order.held:
         return say("by the count these hold links twice over: {joints}", joints=", ".join(order.held))
     blocks = (
-        say("{links} ({solver})", links=", ".join(names_of(linkage, block)), solver=say(SOLVERS[block.solver]))
+        say(
+            "{links} ({solver})", links=", ".join(names_of(linkage, block)), solver=say(SOLVERS[block.solver])
+        )
         for block in order.blocks
     )
     return say("with the input held: {blocks}", blocks=say("; ").join(blocks))

@@ -62,7 +62,7 @@ class Coupling:
 
 
 def coupling_of(loop: Loop, input: int, output: int) -> Coupling | None:
-    """How a loop driven by one column moves another; `None` where no transmission angle is defined, and of nets."""
+    """How a loop driven by one column moves another; `None` where no transmission angle is defined."""
     if loop.net is not None:
         return None
     parts = expanded(loop)
