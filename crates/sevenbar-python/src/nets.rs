@@ -97,7 +97,7 @@ fn stage((normal, joints, links, known): RawDyad) -> Stage {
 
 #[pymethods]
 impl Net {
-    /// From the steps' letters R P H, the advance of each for a radian (H), the step before each (none on the ground), places on their axes as
+    /// From the steps' letters R P H, or S R R for a ball, the advance of each for a radian (H), the step before each (none on the ground), places on their axes as
     /// drawn and their directions, each (n, 3), what they read as drawn, the rows, directions of two links that are not opposite, the size of
     /// which residuals are parts, the joints, and their frames (joints, 4, 4) where they read 0 on the link before and on that after.
     #[new]
@@ -140,12 +140,12 @@ impl Net {
         let mut steps = Vec::with_capacity(count);
         for (k, letter) in letters.chars().enumerate() {
             let moves = match letter {
-                'R' => Move::Turn,
+                'R' | 'S' => Move::Turn,
                 'P' => Move::Slide,
                 'H' => Move::Screw(advances[k]),
                 other => {
                     return Err(CoreError::new_err(format!(
-                        "'{other}' is no step; give R, P or H"
+                        "'{other}' is no step; give R, P, H or S"
                     )));
                 }
             };
@@ -180,7 +180,12 @@ impl Net {
             .zip(before.into_iter().zip(after))
             .map(|(raw, (before, after))| joint(raw, [before, after]))
             .collect::<PyResult<_>>()?;
-        let net = nets::Net { steps, rows, facing, size };
+        let balls = letters.chars().enumerate().filter(|(_, letter)| *letter == 'S');
+        let balls: Vec<usize> = balls.map(|(k, _)| k).collect();
+        if balls.iter().any(|first| first + 2 >= count) {
+            return Err(CoreError::new_err("a ball has three steps"));
+        }
+        let net = nets::Net { steps, rows, facing, balls, size };
         let columns = joints.into_iter().map(|j| j.3);
         let described = DescribedNet::new(net.clone(), read.into_iter().zip(columns).collect());
         Ok(Self { net, described })

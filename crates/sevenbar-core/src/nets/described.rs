@@ -5,10 +5,11 @@
 use super::joints::{NetJoint, TERMS};
 use super::net::{Net, on};
 use super::rows::On;
-use super::series::Series;
+use super::series::{Series, rotating};
 use super::steps::{Placement, Screw};
 use crate::loops::description::described_loop::{Column, Described};
-use crate::loops::equation::rotations::short_way;
+use crate::loops::equation::chain::AGREE;
+use crate::loops::equation::rotations::{Rotation, short_way};
 use crate::outcome::RowStatus;
 use crate::rigid::Vec3;
 use crate::stopping;
@@ -23,6 +24,12 @@ struct Outer {
     followed: Option<usize>,
 }
 
+/// Columns as they are followed, as series by time.
+struct Columns {
+    values: Vec<Series<f64, TERMS>>,
+    balls: Vec<Rotation<Series<f64, TERMS>>>,
+}
+
 /// A net, and its joints as they are described.
 #[derive(Clone, Debug)]
 pub struct DescribedNet {
@@ -35,6 +42,7 @@ pub struct DescribedNet {
 #[derive(Clone, Debug)]
 pub struct NetRow {
     pub(super) values: Vec<f64>,
+    pub(super) balls: Vec<Rotation>,
     pub(super) rates: [Vec<f64>; TERMS - 1],
     /// What it holds.
     pub status: RowStatus,
@@ -93,6 +101,11 @@ impl DescribedNet {
         Some(Column { outer, inner: self.columns.get(outer)?.followed? })
     }
 
+    /// Whether all rows close, to what agrees, at values of the columns that are followed.
+    pub(super) fn closes(&self, values: &[f64], balls: &[Rotation]) -> bool {
+        self.net.errors(values, balls).iter().all(|e| e.abs() < AGREE)
+    }
+
     /// How many columns the description has.
     pub fn column_count(&self) -> usize {
         self.columns.len()
@@ -110,25 +123,31 @@ impl DescribedNet {
     }
 
     /// The columns of the description [rad, or length] at values of those that are followed; NaN where they are not determined.
-    pub(super) fn outer_values(&self, values: &[f64]) -> Vec<f64> {
+    pub(super) fn outer_values(&self, values: &[f64], balls: &[Rotation]) -> Vec<f64> {
         let still = |value: &f64| Series([*value, 0.0, 0.0, 0.0]);
-        let series: Vec<Series<f64, TERMS>> = values.iter().map(still).collect();
-        let table = self.table(&series);
-        table.iter().map(Taylor::value).collect()
+        let series = Columns {
+            values: values.iter().map(still).collect(),
+            balls: balls
+                .iter()
+                .map(|ball| ball.map(|row| row.map(|x| still(&x))))
+                .collect(),
+        };
+        self.table(&series).iter().map(Taylor::value).collect()
     }
 
     /// Where each step leads, as series by time, lengths relative to the size.
-    fn poses(&self, values: &[Series<f64, TERMS>]) -> Vec<Placement<Series<f64, TERMS>>> {
+    fn poses(&self, columns: &Columns) -> Vec<Placement<Series<f64, TERMS>>> {
         let count = self.net.steps.len();
         let mut poses = vec![Placement::still(); count];
         let relative = self.net.relative();
-        relative.place(values, &mut poses, &mut vec![Screw::still(); count]);
+        let mut screws = vec![Screw::still(); count];
+        relative.place(&columns.values, &columns.balls, &mut poses, &mut screws);
         poses
     }
 
     /// Each column of the description as a series by time [rad, or length].
-    fn table(&self, values: &[Series<f64, TERMS>]) -> Vec<Taylor<TERMS>> {
-        let poses = self.poses(values);
+    fn table(&self, columns: &Columns) -> Vec<Taylor<TERMS>> {
+        let poses = self.poses(columns);
         let undetermined = Taylor([f64::NAN; TERMS]);
         let mut out = Vec::with_capacity(self.columns.len());
         for (joint, described) in self.joints.iter().enumerate() {
@@ -138,7 +157,7 @@ impl DescribedNet {
             for (column, read) in own.zip(read) {
                 // of a ball it is read off, since a tree's three turns have two ways to one pose
                 let value = match column.followed.filter(|_| described.reading.slides().len() < 3) {
-                    Some(inner) => Taylor(values[inner].0),
+                    Some(inner) => Taylor(columns.values[inner].0),
                     None => read.unwrap_or(undetermined),
                 };
                 out.push(value.scale(if column.slides { self.net.size } else { 1.0 }));
@@ -157,7 +176,7 @@ impl DescribedNet {
             if row.status == RowStatus::NoSolution {
                 continue;
             }
-            for (c, series) in self.table(&row.series(rows.speed)).iter().enumerate() {
+            for (c, series) in self.table(&row.series(&self.net, rows.speed)).iter().enumerate() {
                 for order in 1..TERMS {
                     out[(order * count + n) * columns + c] = series.derivative(order);
                 }
@@ -187,7 +206,7 @@ impl DescribedNet {
             if row.status == RowStatus::NoSolution {
                 continue;
             }
-            let poses = self.poses(&row.series(rows.speed));
+            let poses = self.poses(&row.series(&self.net, rows.speed));
             let place = on(&poses, link).carry(&small);
             for k in 0..3 {
                 let series = Taylor(place[k].0);
@@ -202,7 +221,7 @@ impl DescribedNet {
 
 impl NetRow {
     /// Its columns as series by time, the input at a speed.
-    fn series(&self, speed: f64) -> Vec<Series<f64, TERMS>> {
+    fn series(&self, net: &Net, speed: f64) -> Columns {
         let one = |(c, &value): (usize, &f64)| {
             let mut series = [value; TERMS];
             let mut factor = 1.0;
@@ -212,6 +231,13 @@ impl NetRow {
             }
             Series(series)
         };
-        self.values.iter().enumerate().map(one).collect()
+        let values: Vec<Series<f64, TERMS>> = self.values.iter().enumerate().map(one).collect();
+        let balls = net.balls.iter().zip(&self.balls).map(|(&first, ball)| {
+            let spin: [[f64; 3]; TERMS - 1] =
+                std::array::from_fn(|n| std::array::from_fn(|k| values[first + k].0[n + 1] * (n + 1) as f64));
+            rotating(ball, &spin)
+        });
+        let balls = balls.collect();
+        Columns { values, balls }
     }
 }

@@ -7,12 +7,16 @@
 use super::net::{NO_RANK, Net};
 use crate::loops::singular_values;
 use crate::random::Random;
+use std::f64::consts::PI;
 
 /// Moves from the drawn pose, each as long [rad, or relative to the size] as all columns together, and how often a move is halved that does not
 /// close again.
 const MOVES: usize = 6;
 const MOVE: f64 = 0.15;
 const HALVED: usize = 4;
+
+/// Places anywhere from which other poses are sought where the net seems not to move with one freedom.
+const ANYWHERE: usize = 40;
 
 /// A row repeats others where less than this part of it is square to them.
 const REPEATS: f64 = 1e-6;
@@ -35,10 +39,10 @@ pub struct Freedoms {
 
 /// The freedoms of a net about the pose that is drawn.
 pub fn freedoms(net: &Net) -> Freedoms {
-    let start = net.drawn();
-    let mut best = at_pose(net, &start);
+    let drawn = net.drawn();
+    let mut best = at_pose(net, &drawn);
     let mut random = Random(SEED);
-    let (mut here, mut free) = (start, best.free.clone());
+    let (mut here, mut free) = (drawn.clone(), best.free.clone());
     for _ in 0..MOVES {
         if free.is_empty() {
             break;
@@ -51,6 +55,22 @@ pub fn freedoms(net: &Net) -> Freedoms {
         here = next;
         if there.rank > best.rank {
             best = there;
+        }
+    }
+    // a net that is drawn at a change point may stay at such poses: others from anywhere
+    for _ in 0..ANYWHERE {
+        if best.free.len() == 1 {
+            break;
+        }
+        let rough: Vec<f64> = drawn
+            .iter()
+            .map(|x| x + PI * (2.0 * random.uniform() - 1.0))
+            .collect();
+        if let Some(pose) = net.closed(&rough) {
+            let there = at_pose(net, &pose);
+            if there.rank > best.rank {
+                best = there;
+            }
         }
     }
     best
@@ -149,12 +169,12 @@ mod tests {
     fn a_planar_four_bar_has_one_freedom_as_pins_and_as_a_rod() {
         let steps = vec![pin(None, 0.0, 0.0), pin(Some(0), 0.3, 1.0), pin(None, 4.0, 0.0)];
         let rows = closing(1, Some(2), 4.5, 2.0).to_vec();
-        let pins = freedoms(&Net { steps, rows, facing: Vec::new(), size: 8.0 });
+        let pins = freedoms(&Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 8.0 });
         assert_eq!((pins.rank, pins.free.len(), pins.repeated.len()), (2, 1, 0));
         let steps = vec![pin(None, 0.0, 0.0), pin(None, 4.0, 0.0)];
         let rows = vec![rod(0, Some(1), [0.3, 1.0, 0.0], [4.5, 2.0, 0.0])];
         assert_eq!(
-            freedoms(&Net { steps, rows, facing: Vec::new(), size: 8.0 }).rank,
+            freedoms(&Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 8.0 }).rank,
             1
         );
     }
@@ -170,7 +190,7 @@ mod tests {
         ];
         let mut rows = closing(1, Some(2), 2.6, 1.0).to_vec();
         rows.extend(closing(1, Some(3), 5.6, 1.0));
-        let found = freedoms(&Net { steps, rows, facing: Vec::new(), size: 8.0 });
+        let found = freedoms(&Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 8.0 });
         assert_eq!((found.rank, found.free.len(), found.repeated.len()), (3, 1, 1));
     }
 
@@ -210,7 +230,7 @@ mod tests {
             Row::Along { on, at: [0.7, 0.2, -1.0], v: tilted },
             Row::Angle { on, u: Z, v: tilted, cosine: 0.3 },
         ];
-        let net = Net { steps, rows, facing: Vec::new(), size: 3.0 };
+        let net = Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 3.0 };
         let pose = [0.3, -0.7, 0.2, 1.1];
         let (_, columns) = net.closure(&pose);
         let h = 1e-5;

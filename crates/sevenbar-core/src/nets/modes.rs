@@ -145,7 +145,7 @@ mod tests {
         };
         let mut rows = closing(1, 2, at[2]).to_vec();
         rows.extend(closing(3, 4, at[5]));
-        let net = Net { steps, rows, facing: Vec::new(), size: 40.0 };
+        let net = Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 40.0 };
         let dyad = |a, b, c| Dyad { normal: z, pairs: [Pair::Hinge(a), Pair::Hinge(b), Pair::Hinge(c)] };
         let stages = [
             Stage { dyad: dyad(at[1], at[2], at[3]), links: [1, 2], known: [Some(0), None] },

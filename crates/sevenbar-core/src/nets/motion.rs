@@ -6,7 +6,7 @@
 
 use super::described::{DescribedNet, NetRow, NetRows};
 use super::freedoms::{Freedoms, freedoms};
-use super::modes::{Stage, modes};
+use super::modes::{Stage, modes as dyad_modes};
 use super::search::{STARTS, STARTS_OF_MANY, searched, settled};
 use super::sized::SizedNet;
 use crate::loops::circuits::change_points as curve_points;
@@ -99,7 +99,7 @@ pub enum NetThrough {
 /// Work on a net whose size the compiler knows.
 trait Sized {
     type Out;
-    fn run<const C: usize, const R: usize>(self, net: &SizedNet<C, R>) -> Self::Out;
+    fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> Self::Out;
 }
 
 /// Does work on a net of one freedom, of the rows that repeat no others.
@@ -111,9 +111,8 @@ fn sized<W: Sized>(described: &DescribedNet, work: W) -> Result<W::Out, NotFollo
     }
     let net = &described.net;
     match count {
-        0..=5 => Ok(work.run(&SizedNet::<5, 4>::new(net, &independent))),
-        6..=9 => Ok(work.run(&SizedNet::<9, 8>::new(net, &independent))),
-        10..=17 => Ok(work.run(&SizedNet::<17, 16>::new(net, &independent))),
+        0..=9 => Ok(work.run(&SizedNet::<9, 8, 3>::new(net, &independent))),
+        10..=17 => Ok(work.run(&SizedNet::<17, 16, 5>::new(net, &independent))),
         _ => Err(NotFollowed::Columns(count)),
     }
 }
@@ -128,10 +127,11 @@ pub fn searched_modes(
     struct Modes<'a>(&'a DescribedNet, usize, f64);
     impl Sized for Modes<'_> {
         type Out = Vec<(Vec<f64>, f64)>;
-        fn run<const C: usize, const R: usize>(self, net: &SizedNet<C, R>) -> Self::Out {
-            let found = searched(net, self.1, self.2, STARTS);
-            let values_of = |at: &At<SizedNet<C, R>>| {
-                let values = self.0.outer_values(&at.values[..net.used()]);
+        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> Self::Out {
+            let mut found = searched(net, self.1, self.2, STARTS);
+            found.retain(|at| self.0.closes(net.values(at), net.balls(at)));
+            let values_of = |at: &At<SizedNet<C, R, B>>| {
+                let values = self.0.outer_values(net.values(at), net.balls(at));
                 (values, net.residual(&net.place(at)))
             };
             found.iter().map(values_of).collect()
@@ -153,7 +153,7 @@ pub fn net_motion(
     struct Motion<'a>(Asked<'a>, Option<&'a [Stage]>);
     impl Sized for Motion<'_> {
         type Out = NetMotion;
-        fn run<const C: usize, const R: usize>(self, net: &SizedNet<C, R>) -> NetMotion {
+        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> NetMotion {
             self.0.motion(net, self.1)
         }
     }
@@ -169,7 +169,7 @@ pub fn net_circuit_through(
     struct Circuit<'a>(Asked<'a>, Vec<f64>);
     impl Sized for Circuit<'_> {
         type Out = NetThrough;
-        fn run<const C: usize, const R: usize>(self, net: &SizedNet<C, R>) -> NetThrough {
+        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> NetThrough {
             self.0.through(net, &self.1)
         }
     }
@@ -191,9 +191,9 @@ impl<'a> Asked<'a> {
         Ok(Self { described, ends, over: *over })
     }
 
-    fn motion<const C: usize, const R: usize>(
+    fn motion<const C: usize, const R: usize, const B: usize>(
         &self,
-        net: &SizedNet<C, R>,
+        net: &SizedNet<C, R, B>,
         stages: Option<&[Stage]>,
     ) -> NetMotion {
         let curves = self.curves(net, stages);
@@ -205,15 +205,17 @@ impl<'a> Asked<'a> {
     }
 
     /// The circuits of curves, their common type aside, and how far each goes.
-    fn over<const C: usize, const R: usize>(
+    fn over<const C: usize, const R: usize, const B: usize>(
         &self,
-        net: &SizedNet<C, R>,
-        curves: Curves<SizedNet<C, R>>,
+        net: &SizedNet<C, R, B>,
+        curves: Curves<SizedNet<C, R, B>>,
     ) -> (NetMotion, Vec<Reach>) {
         let Over { samples, speed, law, .. } = self.over;
         let over = over_input(self.described, net, curves, self.ends, (samples, speed, law));
-        let values_of = |(point, circuits): (curve_points::ChangePoint<SizedNet<C, R>>, Vec<usize>)| {
-            let values = self.described.outer_values(&point.at.values[..net.used()]);
+        let values_of = |(point, circuits): (curve_points::ChangePoint<SizedNet<C, R, B>>, Vec<usize>)| {
+            let values = self
+                .described
+                .outer_values(net.values(&point.at), net.balls(&point.at));
             (values, circuits, point.rays.len() + point.lost, point.finite)
         };
         let change_points = over.change_points.into_iter().map(values_of).collect();
@@ -229,11 +231,11 @@ impl<'a> Asked<'a> {
     }
 
     /// The curves through the modes at many values of the input.
-    fn curves<const C: usize, const R: usize>(
+    fn curves<const C: usize, const R: usize, const B: usize>(
         &self,
-        net: &SizedNet<C, R>,
+        net: &SizedNet<C, R, B>,
         stages: Option<&[Stage]>,
-    ) -> Curves<SizedNet<C, R>> {
+    ) -> Curves<SizedNet<C, R, B>> {
         let input = self.ends.0.inner;
         let turns = net.is_turn(input);
         let drawn = self.described.net.drawn();
@@ -253,27 +255,50 @@ impl<'a> Asked<'a> {
         curves.search.values = values.len();
         curves.take(net, &[net.at(&drawn)], input);
         for value in values {
-            let found: Vec<At<SizedNet<C, R>>> = match stages {
-                Some(stages) => modes(&self.described.net, stages, input, value)
+            let modes: Vec<At<SizedNet<C, R, B>>> = match stages {
+                Some(stages) => dyad_modes(&self.described.net, stages, input, value)
                     .iter()
                     .filter(|mode| !mode.on_curve)
                     .map(|mode| net.at(&mode.values))
                     .collect(),
                 None => searched(net, input, value, STARTS_OF_MANY),
             };
-            let unknown = curves.unknown(net, &found);
+            let unknown = curves.unknown(net, &modes);
             curves.take(net, &unknown, input);
         }
         curves.finish(net);
+        self.forget_open(net, &mut curves);
         curves
     }
 
-    fn through<const C: usize, const R: usize>(&self, net: &SizedNet<C, R>, pose: &[f64]) -> NetThrough {
+    /// Forgets curves along which rows that were left out, as they repeat others, do not agree: those of a net without these rows.
+    fn forget_open<const C: usize, const R: usize, const B: usize>(
+        &self,
+        net: &SizedNet<C, R, B>,
+        curves: &mut Curves<SizedNet<C, R, B>>,
+    ) {
+        let closes = |at: &At<SizedNet<C, R, B>>| self.described.closes(net.values(at), net.balls(at));
+        let before = curves.curves.len();
+        curves.curves.retain(|c| c.nodes.iter().all(|n| closes(&n.at)));
+        if curves.curves.len() < before {
+            curves.search.completeness = Completeness::Searched;
+            let own = &curves.curves;
+            curves
+                .change_points
+                .retain(|p| own.iter().any(|c| p.is_on(net, c)));
+        }
+    }
+
+    fn through<const C: usize, const R: usize, const B: usize>(
+        &self,
+        net: &SizedNet<C, R, B>,
+        pose: &[f64],
+    ) -> NetThrough {
         let input = self.ends.0.inner;
         let rough = net.at(pose);
-        let near = |at: &At<SizedNet<C, R>>| {
+        let near = |at: &At<SizedNet<C, R, B>>| {
             let moved = net.difference(&rough, at);
-            moved.iter().all(|d| d.abs() < PUT_RIGHT)
+            moved.iter().all(|d| d.abs() < PUT_RIGHT) && self.described.closes(net.values(at), net.balls(at))
         };
         let Some(at) = settled(net, input, &rough).filter(near) else {
             return NetThrough::Apart(net.residual(&net.place(&rough)));
@@ -296,13 +321,14 @@ impl<'a> Asked<'a> {
 }
 
 /// A circuit whose size the compiler need not know, and how far it goes.
-fn circuit_of<const C: usize, const R: usize>(
-    net: &SizedNet<C, R>,
-    circuit: OverInput<SizedNet<C, R>>,
+fn circuit_of<const C: usize, const R: usize, const B: usize>(
+    net: &SizedNet<C, R, B>,
+    circuit: OverInput<SizedNet<C, R, B>>,
 ) -> (NetCircuit, Reach) {
     let used = net.used();
     let rows = circuit.rows.iter().map(|row| NetRow {
-        values: row.at.values[..used].to_vec(),
+        values: net.values(&row.at).to_vec(),
+        balls: net.balls(&row.at).to_vec(),
         rates: row.rates.map(|rates| rates[..used].to_vec()),
         status: row.status,
         pass: row.pass,

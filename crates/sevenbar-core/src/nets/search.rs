@@ -16,11 +16,11 @@ const MOST_STEPS: usize = 60;
 const LONGEST: f64 = 1.0;
 
 /// The closed pose that Newton's method leads to with a column held; `None` where it leads to none.
-pub(super) fn settled<const C: usize, const R: usize>(
-    net: &SizedNet<C, R>,
+pub(super) fn settled<const C: usize, const R: usize, const B: usize>(
+    net: &SizedNet<C, R, B>,
     held: usize,
-    rough: &At<SizedNet<C, R>>,
-) -> Option<At<SizedNet<C, R>>> {
+    rough: &At<SizedNet<C, R, B>>,
+) -> Option<At<SizedNet<C, R, B>>> {
     let mut at = *rough;
     let row: [f64; C] = input_row(held);
     let mut before = f64::INFINITY;
@@ -46,14 +46,14 @@ pub(super) fn settled<const C: usize, const R: usize>(
 }
 
 /// The poses to which so many places lead, each once, with a column held at a value.
-pub(super) fn searched<const C: usize, const R: usize>(
-    net: &SizedNet<C, R>,
+pub(super) fn searched<const C: usize, const R: usize, const B: usize>(
+    net: &SizedNet<C, R, B>,
     held: usize,
     value: f64,
     starts: usize,
-) -> Vec<At<SizedNet<C, R>>> {
+) -> Vec<At<SizedNet<C, R, B>>> {
     let mut random = Random(0x5ea4c4);
-    let mut modes: Vec<At<SizedNet<C, R>>> = Vec::new();
+    let mut modes: Vec<At<SizedNet<C, R, B>>> = Vec::new();
     for _ in 0..starts {
         let mut rough = anywhere(net, held, value, &mut random);
         rough.values[net.used()..].fill(0.0);

@@ -2,12 +2,38 @@
 //!
 //! Of one number or of several side by side; [`crate::taylor`] has what a plain number needs besides.
 
+use crate::loops::equation::rotations::{Rotation, cross};
 use crate::number::Number;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The first coefficients of a series.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Series<N, const TERMS: usize>(pub [N; TERMS]);
+
+/// A rotation with the series of its angular velocity, in the frame before it, by `B' = w x B`.
+#[inline]
+pub(super) fn rotating<N: Number, const TERMS: usize>(
+    now: &Rotation<N>,
+    spin: &[[N; 3]],
+) -> Rotation<Series<N, TERMS>> {
+    let mut out = [[Series::splat(0.0); 3]; 3];
+    for j in 0..3 {
+        for i in 0..3 {
+            out[i][j].0[0] = now[i][j];
+        }
+        for order in 1..=spin.len() {
+            let part = N::splat(1.0 / order as f64);
+            for a in 0..order {
+                let column = [0, 1, 2].map(|i: usize| out[i][j].0[order - 1 - a]);
+                let turned = cross(&spin[a], &column);
+                for i in 0..3 {
+                    out[i][j].0[order] = out[i][j].0[order].plus_product(turned[i], part);
+                }
+            }
+        }
+    }
+    out
+}
 
 /// Term by term. Closures would not be compiled for the vector unit.
 macro_rules! termwise {

@@ -7,18 +7,18 @@
 
 use super::net::{Net, on};
 use super::rows::Row;
-use super::series::Series;
+use super::series::{Series, rotating};
 use super::square::Square;
 use super::steps::{Move, Placement, Screw};
 use crate::loops::equation::chain::AGREE;
 use crate::loops::equation::closed::{At, Closed, Inverse, Joint, Placed, Screws};
-use crate::loops::equation::rotations::dot3;
+use crate::loops::equation::rotations::{Rotation, dot3, product};
 use crate::number::Number;
 use crate::rigid::{Vec3, dot, norm, sub};
 use std::fmt::Debug;
 
 /// A net of one freedom with at most so many columns and one row less; lengths relative to the size.
-pub(super) struct SizedNet<const C: usize, const R: usize> {
+pub(super) struct SizedNet<const C: usize, const R: usize, const B: usize> {
     pub net: Net,
     joints: Vec<Joint>,
     first: Vec<usize>,
@@ -113,42 +113,65 @@ impl Cycle {
     }
 }
 
-impl<const C: usize, const R: usize> SizedNet<C, R> {
+impl<const C: usize, const R: usize, const B: usize> SizedNet<C, R, B> {
     /// Of a net with some of its rows, one fewer than it has columns.
     pub fn new(net: &Net, rows: &[usize]) -> Self {
         let mut net = net.relative();
         net.rows = rows.iter().map(|&r| net.rows[r]).collect();
-        let joint = |c: usize| match net.steps.get(c).map(|s| s.moves) {
-            Some(Move::Turn) => Joint::Turn,
-            Some(Move::Screw(advance)) => Joint::Screw(advance),
-            // what is past the net's own columns rests
-            Some(Move::Slide) | None => Joint::Slide,
-        };
-        let cycles = (0..net.rows.len()).map(|r| Cycle::of(&net, r)).collect();
-        Self {
-            joints: (0..C).map(joint).collect(),
-            first: (0..C).collect(),
-            cycles,
-            net,
+        let (mut joints, mut first) = (Vec::new(), Vec::new());
+        let mut column = 0;
+        while column < C {
+            let joint = match net.steps.get(column).map(|s| s.moves) {
+                Some(_) if net.balls.contains(&column) => {
+                    let ball = net.balls.iter().position(|&b| b == column);
+                    Joint::Ball(ball.unwrap_or_default())
+                }
+                Some(Move::Turn) => Joint::Turn,
+                Some(Move::Screw(advance)) => Joint::Screw(advance),
+                // what is past the net's own columns rests
+                Some(Move::Slide) | None => Joint::Slide,
+            };
+            joints.push(joint);
+            first.push(column);
+            column += joint.columns();
         }
+        let cycles = (0..net.rows.len()).map(|r| Cycle::of(&net, r)).collect();
+        Self { joints, first, cycles, net }
     }
 
-    /// The place of columns.
+    /// The place of columns, a ball's three turns as its rotation.
     pub fn at(&self, values: &[f64]) -> At<Self> {
         let mut at = At::<Self>::zero();
         at.values[..values.len()].copy_from_slice(values);
+        for (ball, &first) in at.balls.iter_mut().zip(&self.net.balls) {
+            for k in first..first + 3 {
+                let turned = self.net.steps[k].moved(values[k]);
+                *ball = product(ball, &turned.rotation);
+                at.values[k] = 0.0;
+            }
+        }
         at
     }
 
-    /// The columns in use.
+    /// The values of the columns in use at a place.
+    pub fn values<'a>(&self, at: &'a At<Self>) -> &'a [f64] {
+        &at.values[..self.used()]
+    }
+
+    /// The balls in use at a place.
+    pub fn balls<'a>(&self, at: &'a At<Self>) -> &'a [Rotation] {
+        &at.balls[..self.net.balls.len()]
+    }
+
+    /// How many columns are in use.
     pub fn used(&self) -> usize {
         self.net.steps.len()
     }
 
-    fn placed<N: Number>(&self, values: &[N; C]) -> Placed<Self, N> {
+    fn placed<N: Number>(&self, values: &[N; C], balls: &[Rotation<N>]) -> Placed<Self, N> {
         let zero = N::splat(0.0);
         let (mut poses, mut screws) = ([Placement::still(); C], [Screw::still(); C]);
-        self.net.place(values, &mut poses, &mut screws);
+        self.net.place(values, balls, &mut poses, &mut screws);
         let mut placed = Placed::<Self, N> {
             screws: [[zero; R]; C],
             error: [zero; R],
@@ -177,13 +200,13 @@ impl<const C: usize, const R: usize> SizedNet<C, R> {
     }
 }
 
-impl<const C: usize, const R: usize> Closed for SizedNet<C, R> {
+impl<const C: usize, const R: usize, const B: usize> Closed for SizedNet<C, R, B> {
     const SIDE_BY_SIDE: bool = false;
 
     type Columns<T: Copy + Debug> = [T; C];
     type Rows<T: Copy + Debug> = [T; R];
     type Bordered<T: Copy + Debug> = [T; C];
-    type Balls<T: Copy + Debug> = [T; 0];
+    type Balls<T: Copy + Debug> = [T; B];
     type Cycles<T: Copy + Debug> = [T; R];
 
     fn joints(&self) -> &[Joint] {
@@ -203,7 +226,7 @@ impl<const C: usize, const R: usize> Closed for SizedNet<C, R> {
     }
 
     fn place<N: Number>(&self, at: &At<Self, N>) -> Placed<Self, N> {
-        self.placed(&at.values)
+        self.placed(&at.values, &at.balls[..self.net.balls.len()])
     }
 
     fn residual<N: Number>(&self, placed: &Placed<Self, N>) -> N {
@@ -249,7 +272,15 @@ impl<const C: usize, const R: usize> Closed for SizedNet<C, R> {
                 values[c].0[k] = rates[k - 1][c] * N::splat(1.0 / k as f64);
             }
         }
-        let placed = self.placed(&values);
+        let mut balls = [[[Series::<N, TERMS>::splat(0.0); 3]; 3]; B];
+        let mut spin = [[N::splat(0.0); 3]; TERMS];
+        for (b, &first) in self.net.balls.iter().enumerate() {
+            for k in 0..order {
+                spin[k].copy_from_slice(&rates[k][first..first + 3]);
+            }
+            balls[b] = rotating(&at.balls[b], &spin[..order]);
+        }
+        let placed = self.placed(&values, &balls[..self.net.balls.len()]);
         for c in 0..C {
             for r in 0..R {
                 screws[order][c][r] = placed.screws[c][r].0[order];
@@ -311,7 +342,7 @@ mod tests {
     use super::super::steps::Step;
     use super::*;
 
-    fn four_bar() -> SizedNet<5, 4> {
+    fn four_bar() -> SizedNet<5, 4, 1> {
         let z = [0.0, 0.0, 1.0];
         let pin = |parent, x: f64, y: f64| Step {
             parent,
@@ -326,6 +357,7 @@ mod tests {
             steps: vec![pin(None, 0.0, 0.0), pin(Some(0), 0.3, 1.0), pin(None, 4.0, 0.0)],
             rows: vec![along([1.0, 0.0, 0.0]), along([0.0, 1.0, 0.0])],
             facing: Vec::new(),
+            balls: Vec::new(),
             size: 4.0,
         };
         SizedNet::new(&net, &[0, 1])

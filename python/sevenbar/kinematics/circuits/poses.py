@@ -116,9 +116,10 @@ def poses(linkage: Loop, q: Floats) -> Floats:
 
 
 def _poses_of_net(linkage: Loop, q: Floats) -> Floats:
-    """The same of a net, along a tree of its joints from the ground outwards."""
+    """The same of a net, along a tree of its joints from the ground outwards; NaN of links that only rods hold."""
     graph = linkage.graph
-    result = np.broadcast_to(np.eye(4), (len(q), graph.ground, 4, 4)).copy()
+    result = np.full((len(q), graph.ground, 4, 4), np.nan)
+    result[:, -1] = np.eye(4)
     reached = {graph.ground}
     for joint in graph.tree:
         before, after = graph.between[joint]

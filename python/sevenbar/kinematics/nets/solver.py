@@ -10,11 +10,10 @@ from sevenbar.kinematics.circuits.from_core import circuit_from, motion_from, tr
 from sevenbar.kinematics.loop.mobility import Mobility
 from sevenbar.kinematics.nets.modes import dyads_of, net_modes
 from sevenbar.kinematics.nets.order import Parts, order_of
-from sevenbar.kinematics.nets.tree import Tree
+from sevenbar.kinematics.nets.tree import CoreCircuit, Tree
 from sevenbar.kinematics.solvers.general import AGREE, at_rest, no_circuit
 
 if TYPE_CHECKING:
-    from sevenbar._core import NetRows, RawCircuit
     from sevenbar.kinematics.circuits.circuit import Circuit
     from sevenbar.kinematics.circuits.modes import Modes
     from sevenbar.kinematics.circuits.motion import Motion, Solvable
@@ -116,7 +115,7 @@ class NetSolver:
         self,
         index: int,
         tree: Tree,
-        own: tuple[RawCircuit, NetRows],
+        own: CoreCircuit,
         columns: tuple[int, int],
         speed: float,
         law: Law | None,

@@ -25,6 +25,9 @@ from sevenbar.kinematics.nets.order import Order
 
 T = TypeVar("T")
 
+#: A circuit and its rows as the core has them.
+CoreCircuit = tuple[_core.RawCircuit, _core.NetRows]
+
 
 @dataclass
 class Tree:
@@ -95,7 +98,7 @@ class Tree:
             frame = second if step.tilted else first
             # the link before against the link after moves the other way round
             axis = frame[:3, step.axis] if outwards else -frame[:3, step.axis]
-            letter = "H" if row.is_screw else step.letter
+            letter = "H" if row.is_screw else "S" if row.is_ball and not own else step.letter
             at = self._step(letter, advance if row.is_screw else 0.0, at, frame[:3, 3], axis, reads)
             own.insert(len(own) if outwards else 0, at)
         self.carrier[after if outwards else before] = at
@@ -109,9 +112,8 @@ class Tree:
             if carrier == link
         ]
         place, at = np.mean(ends, axis=0), None
-        for letter in "PR":
-            for axis in np.eye(3):
-                at = self._step(letter, 0.0, at, place, axis)
+        for letter, axis in zip("PPPSRR", np.tile(np.eye(3), (2, 1)), strict=True):
+            at = self._step(letter, 0.0, at, place, axis)
         self.carrier[link] = at
 
     def _step(

@@ -44,7 +44,7 @@ pub(crate) struct OverInput<S: Closed> {
     pub rows: Vec<Row<S>>,
     /// Whole turns to be added to each column of the description.
     pub offsets: Vec<f64>,
-    /// d(input)/dt of the rows that are asked for, as it is followed.
+    /// d(input)/dt of the rows that are wanted, as it is followed.
     pub speed: f64,
     /// What it is measured by, at that speed.
     pub measures: CircuitMeasures,
