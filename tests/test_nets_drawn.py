@@ -44,7 +44,7 @@ def lines(linkage):
     return drawn_lines(linkage, mobility, drawn_of(linkage, mobility))
 
 
-def test_a_pose_like_others_is_not_spoken_of():
+def test_of_a_pose_like_others_there_is_no_sentence():
     for linkage in (watt(), watt(drive="p7"), cranks((56, 10))):
         assert (drawn(linkage).word, lines(linkage)) == ("regular", [])
 

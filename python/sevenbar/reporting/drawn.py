@@ -1,4 +1,4 @@
-"""What is said of a net as drawn: nothing moves, one input is too few, a dead centre, nearly movable."""
+"""Sentences on a net as drawn: nothing moves, one input is too few, a dead centre, nearly movable."""
 
 from __future__ import annotations
 
