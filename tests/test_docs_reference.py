@@ -111,6 +111,18 @@ def test_every_key_of_a_file_has_its_meaning_on_the_page():
     assert "| `L1` | number > 0 or text | length | required | crank |" in keys_of(DOCS, "rssr")
 
 
+def test_the_keys_of_links_by_name_have_their_meaning_on_the_page():
+    from key_tables import NAMED, keys_of
+
+    page = (DOCS / "file-format.md").read_text(encoding="utf-8")
+    for head, form in NAMED.items():
+        assert f"<!-- made: keys {head} -->" in page
+        rows = keys_of(DOCS, head).splitlines()[2:]
+        assert [re.match(r"\| `(\w+)`", row)[1] for row in rows] == [*form.model_fields]
+        assert all(row.rstrip("| ").rpartition("|")[2].strip() for row in rows)
+    assert "| `at` | 2 numbers | length | required | its place as drawn: x, y |" in keys_of(DOCS, "pin")
+
+
 def test_the_pages_have_the_tables_that_the_program_makes():
     from written_parts import PAGES, written
 

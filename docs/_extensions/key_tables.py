@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from page_tables import code, table
+from sevenbar.description.net_schema import NetPointForm, NetRodForm, PinForm
 from sevenbar.description.schema import TABLES, LinkageForm, TomlSchema, json_schema
 from sevenbar.design.task.file.schema import MUSTS, WANTS, LimitsForm, TaskForm
 from sevenbar.design.task.wants.pose_form import PoseForm
@@ -23,8 +24,14 @@ KINDS = {
 }
 
 
+#: The forms of tables that only a file with links by name has.
+NAMED = {"pin": PinForm, "net_rod": NetRodForm, "net_point": NetPointForm}
+
+
 def keys_of(_pages: Path, head: str) -> str:
     """A table of the keys of `[head]`, of the whole file without one."""
+    if head in NAMED:
+        return _table(NAMED[head].model_json_schema(schema_generator=TomlSchema))
     schema = json_schema()
     form = TABLES[head] if head else LinkageForm
     return _table(schema["$defs"][form.__name__] if head else schema)

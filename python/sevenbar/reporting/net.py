@@ -7,6 +7,7 @@ from dataclasses import replace
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Drive
 from sevenbar.kinematics.loop.joint_text import joint_speed
+from sevenbar.reporting.drawn import drawn_lines, drawn_of
 from sevenbar.reporting.net_facts import block_facts, net_text, order_text
 from sevenbar.reporting.page import Facts, Page, facts_table, page, page_report
 from sevenbar.reporting.repeated import repeated_lines
@@ -41,6 +42,10 @@ def net_page(linkage: Linkage) -> Page:
             "redundant": list(mobility.redundant),
         },
     )
+    drawn = drawn_of(linkage, mobility)
+    facts.also(drawn=drawn.word)
+    for line in drawn_lines(linkage, mobility, drawn):
+        facts.add("as drawn", line)
     for line in mobility.idle:
         facts.add("idle", retold(line))
     for line in repeated_lines(linkage, len(mobility.redundant)):
