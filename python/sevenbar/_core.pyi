@@ -18,6 +18,7 @@ __all__ = [
     "LoopBatch",
     "LoopWord",
     "Net",
+    "NetRows",
     "Numbers",
     "Product",
     "RawCircuit",
@@ -154,6 +155,18 @@ class Loop:
     ) -> RawCircuit: ...
     def point(self, rows: Rows, link: int, at: _Floats) -> _Floats: ...
 
+#: Its normal, each joint's letter with its place or direction, the steps of its links and those it hangs at.
+_RawDyad = tuple[
+    tuple[float, float, float],
+    Sequence[tuple[str, tuple[float, float, float]]],
+    tuple[int, int],
+    tuple[int | None, int | None],
+]
+
+@final
+class NetRows:
+    """The rows of a circuit of a net, which makes points of them."""
+
 @final
 class Net:
     """A tree of one-freedom steps closed by rows."""
@@ -165,6 +178,7 @@ class Net:
         parents: Sequence[int | None],
         origins: _Floats,
         axes: _Floats,
+        reads: _Floats,
         rows: Sequence[
             tuple[
                 str,
@@ -173,24 +187,35 @@ class Net:
                 float,
             ]
         ],
+        facing: Sequence[tuple[tuple[int | None, int | None], tuple[float, float, float]]],
         size: float,
+        joints: Sequence[tuple[str, float, tuple[int | None, int | None], Sequence[int]]],
+        before: _Floats,
+        after: _Floats,
     ) -> Net: ...
     def freedoms(
         self,
     ) -> tuple[int, list[list[float]], list[list[float]]]: ...
     def modes(
         self,
-        dyads: Sequence[
-            tuple[
-                tuple[float, float, float],
-                Sequence[tuple[str, tuple[float, float, float]]],
-                tuple[int, int],
-                tuple[int | None, int | None],
-            ]
-        ],
+        dyads: Sequence[_RawDyad],
         driven: int,
         value: float,
     ) -> list[tuple[list[float], list[tuple[list[list[float]], list[float]]], float, bool]]: ...
+    def searched_modes(self, column: int, value: float) -> tuple[_Floats, _Floats]: ...
+    def motion(
+        self,
+        dyads: Sequence[_RawDyad] | None,
+        input: int,
+        output: int,
+        samples: int,
+        speed: float,
+        law: _Floats | None = None,
+    ) -> tuple[RawMotion, list[NetRows]]: ...
+    def circuit_through(
+        self, pose: _Floats, input: int, output: int, samples: int, speed: float, law: _Floats | None = None
+    ) -> tuple[RawCircuit, NetRows] | float | list[int] | None: ...
+    def point(self, rows: NetRows, link: int | None, at: _Floats) -> _Floats: ...
 
 def biconnected_parts(links: int, between: Sequence[tuple[int, int]], root: int) -> list[list[int]]: ...
 def net_blocks(

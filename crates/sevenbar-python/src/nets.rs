@@ -1,14 +1,63 @@
 //! Nets of several loops, for Python.
 
-use crate::{CoreError, in_rows};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use crate::loops::pose;
+use crate::values::{RawCircuit, RawMotion, RawSearch, RowArrays};
+use crate::working::working;
+use crate::{CoreError, in_rows, law_rows};
+use numpy::ndarray::{ArrayView3, Axis};
+use numpy::{
+    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyReadonlyArray3,
+};
 use pyo3::prelude::*;
-use sevenbar_core::nets::{self, Dyad, Edge, Move, Pair, Row, Stage, Step, Unbalanced};
+use sevenbar_core::nets::{
+    self, DescribedNet, Dyad, Edge, Facing, Move, NetCircuit, NetJoint, NetThrough, NotFollowed, Over, Pair,
+    Reading, Row, Stage, Step, Unbalanced,
+};
 use sevenbar_core::rigid::{Pose, Vec3};
 
-/// A tree of one-freedom steps closed by rows.
+/// A tree of one-freedom steps closed by rows, and the joints that read it.
 #[pyclass(frozen, module = "sevenbar._core")]
-pub(crate) struct Net(nets::Net);
+pub(crate) struct Net {
+    net: nets::Net,
+    described: DescribedNet,
+}
+
+/// The rows of a circuit of a net, which makes points of them.
+#[pyclass(frozen, module = "sevenbar._core")]
+pub(crate) struct NetRows(nets::NetRows);
+
+/// A joint: its letter, the angle of its cross (U), the steps that carry its links (none for the ground), and those of its columns, if it is
+/// in the tree.
+type RawJoint = (char, f64, [Option<usize>; 2], Vec<usize>);
+
+fn joint(&(letter, angle, on, _): &RawJoint, frames: [Pose; 2]) -> PyResult<NetJoint> {
+    let reading = match letter {
+        'R' | 'H' => Reading::Turn,
+        'P' => Reading::Slide,
+        'C' => Reading::Cylinder,
+        'U' => Reading::Cross(angle),
+        'S' => Reading::Ball,
+        'E' => Reading::Plane,
+        'K' => Reading::Slot,
+        'L' => Reading::SlotOnPin,
+        other => return Err(CoreError::new_err(format!("'{other}' is no joint"))),
+    };
+    Ok(NetJoint { reading, on, frames })
+}
+
+fn frames(array: ArrayView3<'_, f64>) -> Vec<Pose> {
+    array.axis_iter(Axis(0)).map(pose).collect()
+}
+
+/// Why it is not followed, in the words of a message.
+fn not_followed(why: NotFollowed) -> PyErr {
+    CoreError::new_err(match why {
+        NotFollowed::Freedoms(count) => format!("it has {count} freedoms"),
+        NotFollowed::Columns(count) => format!("its tree has {count} columns; at most 17 are followed"),
+        NotFollowed::NoColumn => String::from("the joint closes a loop"),
+    })
+}
 
 /// The rank, repeated rows, free motions.
 type RawFreedoms = (usize, Vec<Vec<f64>>, Vec<Vec<f64>>);
@@ -48,17 +97,24 @@ fn stage((normal, joints, links, known): RawDyad) -> Stage {
 
 #[pymethods]
 impl Net {
-    /// From the steps' letters R P H, the advance of each for a radian (H), the step before each (none on the ground), places on their axes as
-    /// drawn and their directions, each (n, 3), the rows, and the size of which residuals are parts.
+    /// From the steps' letters R P H, or S R R for a ball, the advance of each for a radian (H), the step before each (none on the ground), places on their axes as
+    /// drawn and their directions, each (n, 3), what they read as drawn, the rows, directions of two links that are not opposite, the size of
+    /// which residuals are parts, the joints, and their frames (joints, 4, 4) where they read 0 on the link before and on that after.
     #[new]
+    #[expect(clippy::too_many_arguments)]
     fn new(
         letters: &str,
         advances: PyReadonlyArray1<'_, f64>,
         parents: Vec<Option<usize>>,
         origins: PyReadonlyArray2<'_, f64>,
         axes: PyReadonlyArray2<'_, f64>,
+        reads: PyReadonlyArray1<'_, f64>,
         rows: Vec<RawRow>,
+        facing: Vec<([Option<usize>; 2], Vec3)>,
         size: f64,
+        joints: Vec<RawJoint>,
+        before: PyReadonlyArray3<'_, f64>,
+        after: PyReadonlyArray3<'_, f64>,
     ) -> PyResult<Self> {
         let vectors = |array: &PyReadonlyArray2<'_, f64>| -> Vec<Vec3> {
             in_rows(array)
@@ -68,38 +124,76 @@ impl Net {
         };
         let (advances, origins, axes) = (in_rows(&advances), vectors(&origins), vectors(&axes));
         let count = letters.len();
-        if [advances.len(), parents.len(), origins.len(), axes.len()] != [count; 4] {
+        let reads = in_rows(&reads);
+        if [
+            advances.len(),
+            parents.len(),
+            origins.len(),
+            axes.len(),
+            reads.len(),
+        ] != [count; 5]
+        {
             return Err(CoreError::new_err(
-                "give an advance, a parent, an origin and an axis for each letter",
+                "give an advance, a parent, an origin, an axis and a reading for each letter",
             ));
         }
         let mut steps = Vec::with_capacity(count);
         for (k, letter) in letters.chars().enumerate() {
             let moves = match letter {
-                'R' => Move::Turn,
+                'R' | 'S' => Move::Turn,
                 'P' => Move::Slide,
                 'H' => Move::Screw(advances[k]),
                 other => {
                     return Err(CoreError::new_err(format!(
-                        "'{other}' is no step; give R, P or H"
+                        "'{other}' is no step; give R, P, H or S"
                     )));
                 }
             };
             if parents[k].is_some_and(|p| p >= k) {
                 return Err(CoreError::new_err("the parent of a step is one before it"));
             }
-            steps.push(Step { parent: parents[k], moves, origin: origins[k], axis: axes[k] });
+            steps.push(Step {
+                parent: parents[k],
+                moves,
+                origin: origins[k],
+                axis: axes[k],
+                reads: reads[k],
+            });
         }
         let rows: Vec<Row> = rows.into_iter().map(row).collect::<PyResult<_>>()?;
         if rows.iter().flat_map(Row::on).flatten().any(|step| step >= count) {
             return Err(CoreError::new_err("a row is on a step that is not there"));
         }
-        Ok(Self(nets::Net { steps, rows, size }))
+        let facing: Vec<Facing> = facing
+            .into_iter()
+            .map(|(on, direction)| Facing { on, direction })
+            .collect();
+        let on_joints = joints.iter().flat_map(|j| j.2.into_iter().flatten());
+        let on_joints = on_joints.chain(joints.iter().flat_map(|j| j.3.iter().copied()));
+        let on_facing = facing.iter().flat_map(|f| f.on).flatten();
+        if on_joints.chain(on_facing).any(|step| step >= count) {
+            return Err(CoreError::new_err("a joint is on a step that is not there"));
+        }
+        let (before, after) = (frames(before.as_array()), frames(after.as_array()));
+        let read: Vec<NetJoint> = joints
+            .iter()
+            .zip(before.into_iter().zip(after))
+            .map(|(raw, (before, after))| joint(raw, [before, after]))
+            .collect::<PyResult<_>>()?;
+        let balls = letters.chars().enumerate().filter(|(_, letter)| *letter == 'S');
+        let balls: Vec<usize> = balls.map(|(k, _)| k).collect();
+        if balls.iter().any(|first| first + 2 >= count) {
+            return Err(CoreError::new_err("a ball has three steps"));
+        }
+        let net = nets::Net { steps, rows, facing, balls, size };
+        let columns = joints.into_iter().map(|j| j.3);
+        let described = DescribedNet::new(net.clone(), read.into_iter().zip(columns).collect());
+        Ok(Self { net, described })
     }
 
     /// The freedoms about the pose that is drawn.
     fn freedoms(&self, py: Python<'_>) -> RawFreedoms {
-        let found = py.detach(|| nets::freedoms(&self.0));
+        let found = py.detach(|| nets::freedoms(&self.net));
         (found.rank, found.repeated, found.free)
     }
 
@@ -115,10 +209,10 @@ impl Net {
         let steps = stages
             .iter()
             .flat_map(|s| s.links.into_iter().chain(s.known.into_iter().flatten()));
-        if steps.chain([driven]).any(|step| step >= self.0.steps.len()) {
+        if steps.chain([driven]).any(|step| step >= self.net.steps.len()) {
             return Err(CoreError::new_err("a dyad is on a step that is not there"));
         }
-        let found = py.detach(|| nets::modes(&self.0, &stages, driven, value));
+        let found = py.detach(|| nets::modes(&self.net, &stages, driven, value));
         let pose = |p: Pose| (p.rotation, p.translation);
         Ok(found
             .into_iter()
@@ -131,6 +225,138 @@ impl Net {
                 )
             })
             .collect())
+    }
+
+    /// Joint values (m, columns) and closure errors (m,) of the modes that are found from many places with a column at a value.
+    fn searched_modes<'py>(
+        &self,
+        py: Python<'py>,
+        column: usize,
+        value: f64,
+    ) -> PyResult<SearchedModes<'py>> {
+        let found =
+            working(py, || nets::searched_modes(&self.described, column, value))?.map_err(not_followed)?;
+        let (values, residuals): (Vec<Vec<f64>>, Vec<f64>) = found.into_iter().unzip();
+        let shape = [values.len(), self.described.column_count()];
+        Ok((
+            PyArray1::from_vec(py, values.concat()).reshape(shape)?,
+            residuals.into_pyarray(py),
+        ))
+    }
+
+    /// The whole motion over the inputs of a column; modes are those of dyads, each after those at which it hangs, or are searched for.
+    #[pyo3(signature = (dyads, input, output, samples, speed, law=None))]
+    #[expect(clippy::too_many_arguments)]
+    fn motion<'py>(
+        &self,
+        py: Python<'py>,
+        dyads: Option<Vec<RawDyad>>,
+        input: usize,
+        output: usize,
+        samples: usize,
+        speed: f64,
+        law: Option<PyReadonlyArray2<'py, f64>>,
+    ) -> PyResult<(RawMotion, Vec<Py<NetRows>>)> {
+        let stages: Option<Vec<Stage>> = dyads.map(|dyads| dyads.into_iter().map(stage).collect());
+        let law = law_rows(law);
+        let over = Over { input, output, samples, speed, law: law.as_deref() };
+        let motion = working(py, || nets::net_motion(&self.described, stages.as_deref(), &over))?
+            .map_err(not_followed)?;
+        let (mut circuits, mut rows) = (Vec::new(), Vec::new());
+        for circuit in motion.circuits {
+            let (circuit, own) = self.circuit(py, circuit)?;
+            circuits.push(Py::new(py, circuit)?);
+            rows.push(Py::new(py, own)?);
+        }
+        let raw = RawMotion {
+            motion_type: motion.motion_type,
+            limits: None,
+            circuits,
+            change_points: motion.change_points,
+            search: Some(Py::new(py, RawSearch::new(py, motion.search)?)?),
+            moving: motion.moving,
+        };
+        Ok((raw, rows))
+    }
+
+    /// The one circuit through a pose (columns,), and its rows; else how far the net is from closing, the columns that move with the input at
+    /// rest, or nothing where no motion could be followed.
+    #[pyo3(signature = (pose, input, output, samples, speed, law=None))]
+    #[expect(clippy::too_many_arguments)]
+    fn circuit_through<'py>(
+        &self,
+        py: Python<'py>,
+        pose: PyReadonlyArray1<'py, f64>,
+        input: usize,
+        output: usize,
+        samples: usize,
+        speed: f64,
+        law: Option<PyReadonlyArray2<'py, f64>>,
+    ) -> PyResult<RawThrough> {
+        let (law, pose) = (law_rows(law), in_rows(&pose));
+        if pose.len() != self.described.column_count() {
+            return Err(CoreError::new_err("pose needs one value for each column"));
+        }
+        let over = Over { input, output, samples, speed, law: law.as_deref() };
+        let through = working(py, || nets::net_circuit_through(&self.described, &pose, &over))?
+            .map_err(not_followed)?;
+        Ok(match through {
+            NetThrough::Circuit(circuit) => {
+                let (circuit, rows) = self.circuit(py, *circuit)?;
+                RawThrough::Circuit((Py::new(py, circuit)?, Py::new(py, rows)?))
+            }
+            NetThrough::Apart(gap) => RawThrough::Apart(gap),
+            NetThrough::InputRests(moving) => RawThrough::InputRests(moving),
+            NetThrough::Still => RawThrough::Still(()),
+        })
+    }
+
+    /// A point along rows of a circuit with three derivatives by time, (4, n, 3), in the report frame: of the link that a step carries (none
+    /// for the ground), where it is drawn.
+    fn point<'py>(
+        &self,
+        py: Python<'py>,
+        rows: &NetRows,
+        link: Option<usize>,
+        at: [f64; 3],
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        if link.is_some_and(|step| step >= self.net.steps.len()) {
+            return Err(CoreError::new_err("a point is on a step that is not there"));
+        }
+        let out = working(py, || self.described.point(&rows.0, link, at))?;
+        PyArray1::from_vec(py, out).reshape([4, rows.0.rows.len(), 3])
+    }
+}
+
+/// Joint values and closure errors of modes.
+type SearchedModes<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+
+/// What goes through a pose.
+#[derive(IntoPyObject)]
+enum RawThrough {
+    Circuit((Py<RawCircuit>, Py<NetRows>)),
+    Apart(f64),
+    InputRests(Vec<usize>),
+    Still(()),
+}
+
+impl Net {
+    fn circuit(&self, py: Python<'_>, circuit: NetCircuit) -> PyResult<(RawCircuit, NetRows)> {
+        let NetCircuit { rows, measures } = circuit;
+        let table = working(py, || self.described.joint_table(&rows))?;
+        let each = |number: fn(&nets::NetRow) -> f64| rows.rows.iter().map(number).collect::<Vec<f64>>();
+        let whole = |number: fn(&nets::NetRow) -> i64| rows.rows.iter().map(number).collect::<Vec<i64>>();
+        let arrays = RowArrays {
+            joints: PyArray1::from_vec(py, table)
+                .reshape([4, rows.rows.len(), self.described.column_count()])?
+                .unbind(),
+            status: whole(|r| r.status as i64).into_pyarray(py).unbind(),
+            branch: whole(|r| r.pass as i64).into_pyarray(py).unbind(),
+            mode: None,
+            residual: each(|r| r.residual).into_pyarray(py).unbind(),
+            condition: each(|r| r.condition).into_pyarray(py).unbind(),
+        };
+        Ok((RawCircuit::new(arrays, &measures, None, None), NetRows(rows)))
     }
 }
 

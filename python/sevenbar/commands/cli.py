@@ -186,15 +186,10 @@ def analyze(
     if loaded.net is not None:
         from sevenbar.reporting.net import NET, driven_by
 
-        of_motion = {
-            "--law": law, "--animate": animate, "--circuit": circuit, "--output": output,
-            "--figures": figures or None, "--ranges": ranges or None,
-        }  # fmt: skip
-        for option, value in of_motion.items():
-            if value is not None:
-                raise RequestError(f"{option}: is of a motion, which is not found of nets; leave it out")
+    if loaded.net is not None and (moved_net := driven_by(loaded, input_joint, speed)).mobility().finite != 1:
+        # there is no motion to report
         check_out(NET, out, force=force)
-        deliver(driven_by(loaded, input_joint, speed), NET, out, json=json, force=force)
+        deliver(moved_net, NET, out, json=json, force=force)
         return
     report = motion_report(formats)
     check_out(report, out, force=force)

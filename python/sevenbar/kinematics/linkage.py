@@ -266,7 +266,7 @@ class Linkage(Solvable):
         """
         from sevenbar.kinematics.solvers.plane_and_sphere import plane_of
 
-        return None if self.net else plane_of(self)
+        return plane_of(self)
 
     @property
     def is_planar(self) -> bool:
@@ -405,7 +405,9 @@ class Linkage(Solvable):
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
         agreeing = self.agreeing(agree)
-        if self._has_closed_form(method):
+        if self.net:
+            result = self._net.motion(column, output_column, samples, rate, law)
+        elif self._has_closed_form(method):
             result = self._closed_form.motion(column, samples, rate, law)
         else:
             self._refuse_unheld()
@@ -440,6 +442,8 @@ class Linkage(Solvable):
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
         values = self._pose(pose)
+        if self.net:
+            return self._net.circuit(values, column, output_column, samples, rate, law)
         self._refuse_unheld()
         return self.agreeing(agree)._general.circuit(values, column, output_column, samples, rate, law)
 

@@ -14,6 +14,8 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.reporting.extents import usable_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
+from sevenbar.reporting.net_facts import net_facts
+from sevenbar.reporting.repeated import repeated_lines
 from sevenbar.reporting.shown import Shown, drive_text
 from sevenbar.text.words import retold, say
 
@@ -66,7 +68,7 @@ def closure_text(circuits: Iterable[Circuit], unit: str = "") -> str:
 def facts_of(motion: Motion) -> list[tuple[str, str]]:
     """What the report says of the motion as a whole: names, in English, and words."""
     linkage = motion.linkage
-    facts = [("loop", joints_text(linkage))]
+    facts = [("loop", joints_text(linkage))] if linkage.net is None else net_facts(linkage)
     if linkage.form == "rows":
         closing, _ = linkage.graph.joints_of(linkage.graph.ground)
         number, _ = linkage.graph.between[closing]
@@ -115,7 +117,12 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.idle:
         facts.append(("idle freedom", idle_text(motion.idle)))
     if motion.motion_type != "cannot-assemble":
-        facts.append(("redundant", say("; ").join(map(retold, motion.redundant)) or say("no constraints")))
+        lines = (
+            map(retold, motion.redundant)
+            if linkage.net is None
+            else repeated_lines(linkage, len(motion.redundant))
+        )
+        facts.append(("redundant", say("; ").join(lines) or say("no constraints")))
     if not linkage.loading.is_empty:
         from sevenbar.reporting.force_words import acting_text
 
@@ -271,7 +278,11 @@ def meaning(motion: Motion) -> str:
 
 
 def _mobility(mobility: Mobility) -> str:
-    parts = [say("Gruebler {all} - 6 = {left}", all=mobility.freedoms, left=mobility.gruebler)]
+    taken = mobility.freedoms - mobility.gruebler
+    count = say(
+        "Gruebler {all} - {taken} = {left}", all=mobility.freedoms, taken=taken, left=mobility.gruebler
+    )
+    parts = [count]
     if mobility.rank is not None:
         parts.append(say("rank {rank}", rank=mobility.rank))
     if number := len(mobility.idle):

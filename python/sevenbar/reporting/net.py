@@ -1,4 +1,4 @@
-"""A net of several loops before it moves: its freedoms, repeated constraints, the order of solving."""
+"""A net of several loops that one input does not move: its freedoms, repeated constraints, blocks."""
 
 from __future__ import annotations
 
@@ -7,19 +7,12 @@ from dataclasses import replace
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Drive
 from sevenbar.kinematics.loop.joint_text import joint_speed
-from sevenbar.kinematics.nets.order import LinkBlock, Order
 from sevenbar.reporting.drawn import drawn_lines, drawn_of
+from sevenbar.reporting.net_facts import block_facts, net_text, order_text
 from sevenbar.reporting.page import Facts, Page, facts_table, page, page_report
 from sevenbar.reporting.repeated import repeated_lines
 from sevenbar.reporting.shown import drive_text
 from sevenbar.text.words import retold, say
-
-#: How links of a block are found, in words.
-SOLVERS = {
-    "dyad": "a dyad, in closed form",
-    "loop": "one loop",
-    "links": "together",
-}
 
 
 def driven_by(linkage: Linkage, joint: str | None, speed: str | None) -> Linkage:
@@ -32,17 +25,10 @@ def driven_by(linkage: Linkage, joint: str | None, speed: str | None) -> Linkage
 
 def net_page(linkage: Linkage) -> Page:
     """A net as it is drawn."""
-    mobility, order = linkage.mobility(), linkage.order
+    mobility = linkage.mobility()
     facts = Facts()
     facts.also(format=1, name=linkage.heading, links=list(linkage.link_names))
-    count = {
-        "links": linkage.graph.ground,
-        "joints": linkage.graph.joints.stop,
-        "rods": len(linkage.rods),
-        "s": "" if len(linkage.rods) == 1 else "s",
-        "ground": linkage.link_names[-1],
-    }
-    facts.add("net", say("{links} links, {joints} joints, {rods} rod{s}; {ground} stands still", **count))
+    facts.add("net", net_text(linkage))
     drive = linkage.column_of(linkage.input_column())
     speed = linkage.speed_of(drive.number)
     facts.add("drive", drive_text(drive.name, speed, drive.unit), drive={"input": drive.name, "speed": speed})
@@ -64,8 +50,9 @@ def net_page(linkage: Linkage) -> Page:
         facts.add("idle", retold(line))
     for line in repeated_lines(linkage, len(mobility.redundant)):
         facts.add("repeated", line)
-    facts.add("solving", _order_text(order), order=[_block(block, linkage).as_dict for block in order.blocks])
-    parts = [facts_table([_block(block, linkage) for block in order.blocks])] if order.blocks else []
+    rows = [block_facts(linkage, block) for block in linkage.order.blocks]
+    facts.add("solving", order_text(linkage), order=[row.as_dict for row in rows])
+    parts = [facts_table(rows)] if rows else []
     return page(linkage.heading, facts, *parts)
 
 
@@ -74,27 +61,6 @@ def _freedoms_text(finite: int | None, gruebler: int) -> str:
     return (
         moves if finite == gruebler else say("{moves}; Gruebler counts {count}", moves=moves, count=gruebler)
     )
-
-
-def _order_text(order: Order) -> str:
-    if order.free:
-        return say("by the count these links keep a freedom: {links}", links=", ".join(order.free))
-    if order.held:
-        return say("by the count these hold links twice over: {joints}", joints=", ".join(order.held))
-    return say("with the input held, block by block")
-
-
-def _block(block: LinkBlock, linkage: Linkage) -> Facts:
-    names = [linkage.link_name(link) for link in block.links]
-    by = [linkage.joints[joint].name for joint in block.joints] + [
-        linkage.rods[rod].name for rod in block.rods
-    ]
-    row = Facts()
-    row.add("block", ", ".join(names), links=names)
-    row.add("joints and rods", ", ".join(by), by=by)
-    row.add("moving", say(block.group), group=block.group)
-    row.add("solved", say(SOLVERS[block.solver]), solver=block.solver)
-    return row
 
 
 NET = page_report(net_page, "net", {})

@@ -24,6 +24,7 @@ from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures
 from sevenbar.reporting.files import Files, LongTable, Report, head_of, json_file, json_text, without_nan
 from sevenbar.reporting.force_peaks import peaks_dict
 from sevenbar.reporting.how_found import how_found
+from sevenbar.reporting.net_facts import net_dict
 from sevenbar.reporting.summary import summary
 from sevenbar.text.markdown import escaped, table
 
@@ -105,6 +106,8 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         "idle": list(motion.idle),
         "redundant": list(motion.redundant),
     }
+    if linkage.net is not None:
+        report["net"] = net_dict(linkage)
     return without_nan(report)  # type: ignore[no-any-return]
 
 

@@ -6,15 +6,15 @@
 #![allow(clippy::needless_range_loop)]
 
 mod branch_points;
-mod circuits;
-mod description;
-mod equation;
+pub(crate) mod circuits;
+pub(crate) mod description;
+pub(crate) mod equation;
 mod forces;
-mod mobility;
-mod modes;
-mod motions;
+pub(crate) mod mobility;
+pub(crate) mod modes;
+pub(crate) mod motions;
 mod numbers;
-mod rates;
+pub(crate) mod rates;
 #[cfg(test)]
 mod tests;
 

@@ -7,12 +7,19 @@
 use super::net::{NO_RANK, Net};
 use crate::loops::singular_values;
 use crate::random::Random;
+use std::f64::consts::PI;
 
 /// Moves from the drawn pose, each as long [rad, or relative to the size] as all columns together, and how often a move is halved that does not
 /// close again.
 const MOVES: usize = 6;
 const MOVE: f64 = 0.15;
 const HALVED: usize = 4;
+
+/// Places anywhere from which other poses are sought where the net seems not to move with one freedom.
+const ANYWHERE: usize = 40;
+
+/// A row repeats others where less than this part of it is square to them.
+const REPEATS: f64 = 1e-6;
 
 /// Numbers of the random moves, the same in each run.
 const SEED: u64 = 0x5EED;
@@ -26,15 +33,16 @@ pub struct Freedoms {
     pub repeated: Vec<Vec<f64>>,
     /// How each column moves in each of the motions that are free there to first order, of unit length.
     pub free: Vec<Vec<f64>>,
+    /// Rows, each of which repeats none of those before it, as many as the rank.
+    pub independent: Vec<usize>,
 }
 
 /// The freedoms of a net about the pose that is drawn.
 pub fn freedoms(net: &Net) -> Freedoms {
-    let columns = net.steps.len();
-    let start = vec![0.0; columns];
-    let mut best = at_pose(net, &start);
+    let drawn = net.drawn();
+    let mut best = at_pose(net, &drawn);
     let mut random = Random(SEED);
-    let (mut here, mut free) = (start, best.free.clone());
+    let (mut here, mut free) = (drawn.clone(), best.free.clone());
     for _ in 0..MOVES {
         if free.is_empty() {
             break;
@@ -47,6 +55,22 @@ pub fn freedoms(net: &Net) -> Freedoms {
         here = next;
         if there.rank > best.rank {
             best = there;
+        }
+    }
+    // a net that is drawn at a change point may stay at such poses: others from anywhere
+    for _ in 0..ANYWHERE {
+        if best.free.len() == 1 {
+            break;
+        }
+        let rough: Vec<f64> = drawn
+            .iter()
+            .map(|x| x + PI * (2.0 * random.uniform() - 1.0))
+            .collect();
+        if let Some(pose) = net.closed(&rough) {
+            let there = at_pose(net, &pose);
+            if there.rank > best.rank {
+                best = there;
+            }
         }
     }
     best
@@ -70,7 +94,37 @@ fn at_pose(net: &Net, pose: &[f64]) -> Freedoms {
         })
         .collect();
     let repeated = singular_values(&rows).1.split_off(rank.min(rows.len()));
-    Freedoms { rank, repeated, free: vectors[rank..].to_vec() }
+    Freedoms {
+        rank,
+        repeated,
+        free: vectors[rank..].to_vec(),
+        independent: independent(&columns, errors.len(), rank),
+    }
+}
+
+/// Of so many rows those that repeat none before them, up to a rank (Gram and Schmidt).
+fn independent(columns: &[Vec<f64>], rows: usize, rank: usize) -> Vec<usize> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let (mut selected, mut square): (Vec<usize>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+    for r in 0..rows {
+        let row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
+        let mut rest = row.clone();
+        // twice, for what rounding leaves of the first time
+        for _ in 0..2 {
+            for unit in &square {
+                let along = dot(&rest, unit);
+                for (x, u) in rest.iter_mut().zip(unit) {
+                    *x -= along * u;
+                }
+            }
+        }
+        let (length, whole) = (dot(&rest, &rest).sqrt(), dot(&row, &row).sqrt());
+        if selected.len() < rank && length > REPEATS * whole && whole > NO_RANK {
+            square.push(rest.iter().map(|x| x / length).collect());
+            selected.push(r);
+        }
+    }
+    selected
 }
 
 /// Another closed pose, a random move along free directions away; `None` where none of its lengths closes.
@@ -99,7 +153,7 @@ mod tests {
     const Z: Vec3 = [0.0, 0.0, 1.0];
 
     fn pin(parent: Option<usize>, x: f64, y: f64) -> Step {
-        Step { parent, moves: Move::Turn, origin: [x, y, 0.0], axis: Z }
+        Step { parent, moves: Move::Turn, origin: [x, y, 0.0], axis: Z, reads: 0.0 }
     }
 
     /// The two rows of a pin of a planar cycle.
@@ -115,11 +169,14 @@ mod tests {
     fn a_planar_four_bar_has_one_freedom_as_pins_and_as_a_rod() {
         let steps = vec![pin(None, 0.0, 0.0), pin(Some(0), 0.3, 1.0), pin(None, 4.0, 0.0)];
         let rows = closing(1, Some(2), 4.5, 2.0).to_vec();
-        let pins = freedoms(&Net { steps, rows, size: 8.0 });
+        let pins = freedoms(&Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 8.0 });
         assert_eq!((pins.rank, pins.free.len(), pins.repeated.len()), (2, 1, 0));
         let steps = vec![pin(None, 0.0, 0.0), pin(None, 4.0, 0.0)];
         let rows = vec![rod(0, Some(1), [0.3, 1.0, 0.0], [4.5, 2.0, 0.0])];
-        assert_eq!(freedoms(&Net { steps, rows, size: 8.0 }).rank, 1);
+        assert_eq!(
+            freedoms(&Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 8.0 }).rank,
+            1
+        );
     }
 
     #[test]
@@ -133,7 +190,7 @@ mod tests {
         ];
         let mut rows = closing(1, Some(2), 2.6, 1.0).to_vec();
         rows.extend(closing(1, Some(3), 5.6, 1.0));
-        let found = freedoms(&Net { steps, rows, size: 8.0 });
+        let found = freedoms(&Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 8.0 });
         assert_eq!((found.rank, found.free.len(), found.repeated.len()), (3, 1, 1));
     }
 
@@ -150,13 +207,21 @@ mod tests {
                 moves: Move::Screw(0.4),
                 origin: [1.0, 0.3, 0.2],
                 axis: tilted,
+                reads: 0.0,
             },
-            Step { parent: None, moves: Move::Slide, origin: [0.0; 3], axis: tilted },
+            Step {
+                parent: None,
+                moves: Move::Slide,
+                origin: [0.0; 3],
+                axis: tilted,
+                reads: 0.0,
+            },
             Step {
                 parent: Some(2),
                 moves: Move::Turn,
                 origin: [0.5, 2.0, 1.0],
                 axis: [1.0, 0.0, 0.0],
+                reads: 0.0,
             },
         ];
         let on = [Some(1), Some(3)];
@@ -165,7 +230,7 @@ mod tests {
             Row::Along { on, at: [0.7, 0.2, -1.0], v: tilted },
             Row::Angle { on, u: Z, v: tilted, cosine: 0.3 },
         ];
-        let net = Net { steps, rows, size: 3.0 };
+        let net = Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 3.0 };
         let pose = [0.3, -0.7, 0.2, 1.1];
         let (_, columns) = net.closure(&pose);
         let h = 1e-5;

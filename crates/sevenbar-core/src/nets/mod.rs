@@ -1,19 +1,32 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `steps`, `rows`, `net`, `freedoms`, `dyads`, `modes`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `dyads`, `modes`, `described`, `sized`, `search`, `motion`.
 
+mod described;
 mod dyads;
 mod freedoms;
+mod joints;
 mod modes;
+mod motion;
 mod net;
 mod order;
 mod rows;
+mod search;
+mod series;
+mod sized;
+mod square;
 mod steps;
 
+pub use described::{DescribedNet, NetRow, NetRows};
 pub use dyads::{Dyad, Pair};
 pub use freedoms::{Freedoms, freedoms};
+pub use joints::{NetJoint, Reading};
 pub use modes::{Mode, Stage, modes};
-pub use net::Net;
+pub use motion::{
+    NetChangePoint, NetCircuit, NetMotion, NetThrough, NotFollowed, Over, net_circuit_through, net_motion,
+    searched_modes,
+};
+pub use net::{Facing, Net};
 pub use order::{Block, Edge, Unbalanced, biconnected_parts, blocks};
 pub use rows::Row;
 pub use steps::{Move, Step};

@@ -44,11 +44,8 @@ const CLOSES: f64 = 1e-9;
 /// each curve of poses.
 pub fn modes(net: &Net, stages: &[Stage], driven: usize, value: f64) -> Vec<Mode> {
     let mut start = vec![Pose::STILL; net.steps.len()];
-    start[driven] = net.steps[driven].moved(if net.slides(driven) {
-        value * net.size
-    } else {
-        value
-    });
+    let unit = if net.slides(driven) { net.size } else { 1.0 };
+    start[driven] = net.steps[driven].moved(value * unit).into();
     let mut partial = vec![(start, false)];
     for stage in stages {
         let mut longer = Vec::new();
@@ -87,7 +84,7 @@ fn settled(net: &Net, mut values: Vec<f64>, (driven, value): (usize, f64), on_cu
     }
     let (errors, _) = net.closure(&values);
     let residual = errors.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
-    Mode { poses: net.place(&values).poses, values, residual, on_curve }
+    Mode { poses: net.poses(&values), values, residual, on_curve }
 }
 
 impl Net {
@@ -100,11 +97,14 @@ impl Net {
                 let before = step.parent.map_or(Pose::STILL, |p| poses[p]);
                 let moved = before.inverse().then(pose);
                 match step.moves {
-                    Move::Slide => dot(sub(moved.carry(step.origin), step.origin), step.axis) / self.size,
+                    Move::Slide => {
+                        let slid = dot(sub(moved.carry(step.origin), step.origin), step.axis);
+                        (slid + step.reads) / self.size
+                    }
                     Move::Turn | Move::Screw(_) => {
                         let across = unit(cross(step.axis, most_perpendicular_axis(step.axis)));
                         let turned = moved.turn(across);
-                        dot(step.axis, cross(across, turned)).atan2(dot(across, turned))
+                        dot(step.axis, cross(across, turned)).atan2(dot(across, turned)) + step.reads
                     }
                 }
             })
@@ -131,7 +131,7 @@ mod tests {
             [17.5, 20.0, 0.0],
             [20.0, 0.0, 0.0],
         ];
-        let pin = |parent, origin| Step { parent, moves: Move::Turn, origin, axis: z };
+        let pin = |parent, origin| Step { parent, moves: Move::Turn, origin, axis: z, reads: 0.0 };
         // crank, coupler, rocker, link, lever
         let steps = vec![
             pin(None, at[0]),
@@ -145,7 +145,7 @@ mod tests {
         };
         let mut rows = closing(1, 2, at[2]).to_vec();
         rows.extend(closing(3, 4, at[5]));
-        let net = Net { steps, rows, size: 40.0 };
+        let net = Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 40.0 };
         let dyad = |a, b, c| Dyad { normal: z, pairs: [Pair::Hinge(a), Pair::Hinge(b), Pair::Hinge(c)] };
         let stages = [
             Stage { dyad: dyad(at[1], at[2], at[3]), links: [1, 2], known: [Some(0), None] },

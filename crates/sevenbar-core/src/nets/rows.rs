@@ -6,8 +6,10 @@
 //!
 //! Source: docs/theory_nets.md, (4).
 
-use super::steps::Screw;
-use crate::rigid::{Pose, Vec3, add, cross, dot, scale, sub};
+use super::steps::{Placement, Screw};
+use crate::loops::equation::rotations::{cross, dot3};
+use crate::number::Number;
+use crate::rigid::{Vec3, scale};
 
 /// A step whose link a row is on; `None` is the ground.
 pub type On = Option<usize>;
@@ -47,22 +49,30 @@ pub enum Row {
 }
 
 /// A force and its moment about the origin.
-pub(super) struct Wrench {
-    moment: Vec3,
-    force: Vec3,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wrench<N> {
+    moment: [N; 3],
+    force: [N; 3],
 }
 
-impl Wrench {
-    fn at(force: Vec3, place: Vec3) -> Self {
-        Self { moment: cross(place, force), force }
+impl<N: Number> Wrench<N> {
+    #[inline]
+    fn at(force: [N; 3], place: &[N; 3]) -> Self {
+        Self { moment: cross(place, &force), force }
     }
 
-    fn turned_round(self) -> Self {
-        Self { moment: scale(self.moment, -1.0), force: scale(self.force, -1.0) }
+    #[inline]
+    fn turned_round(mut self) -> Self {
+        for k in 0..3 {
+            self.moment[k] = -self.moment[k];
+            self.force[k] = -self.force[k];
+        }
+        self
     }
 
-    pub fn power(&self, screw: &Screw) -> f64 {
-        dot(self.moment, screw.turn) + dot(self.force, screw.shift)
+    #[inline]
+    pub fn power(&self, screw: &Screw<N>) -> N {
+        dot3(&self.moment, &screw.turn) + dot3(&self.force, &screw.shift)
     }
 }
 
@@ -75,28 +85,37 @@ impl Row {
     }
 
     /// Its value [length, or none], and its gradient as a wrench on each of the two links.
-    pub(super) fn evaluated(&self, a: &Pose, b: &Pose) -> (f64, [Wrench; 2]) {
-        match *self {
+    #[inline]
+    pub(super) fn evaluated<N: Number>(&self, a: &Placement<N>, b: &Placement<N>) -> (N, [Wrench<N>; 2]) {
+        match self {
             Self::Length { at, length, .. } => {
-                let (p, q) = (a.carry(at[0]), b.carry(at[1]));
-                let d = sub(p, q);
-                let force = scale(d, 1.0 / length);
-                let value = (dot(d, d) - length * length) / (2.0 * length);
-                (value, [Wrench::at(force, p), Wrench::at(force, q).turned_round()])
+                let (p, q) = (a.carry(&at[0]), b.carry(&at[1]));
+                let d = difference(&p, &q);
+                let mut force = d;
+                for x in &mut force {
+                    *x = *x * N::splat(1.0 / length);
+                }
+                let value = (dot3(&d, &d) - N::splat(length * length)) * N::splat(0.5 / length);
+                (
+                    value,
+                    [Wrench::at(force, &p), Wrench::at(force, &q).turned_round()],
+                )
             }
             Self::Along { at, v, .. } => {
                 let (p, q, v) = (a.carry(at), b.carry(at), b.turn(v));
-                let d = sub(p, q);
+                let d = difference(&p, &q);
                 // the direction turns with the second link, about which d then swings
-                let back = Wrench::at(scale(v, -1.0), q);
-                let swung = Wrench { moment: add(back.moment, cross(v, d)), force: back.force };
-                (dot(d, v), [Wrench::at(v, p), swung])
+                let mut back = Wrench::at(v, &q).turned_round();
+                let swung = cross(&v, &d);
+                for k in 0..3 {
+                    back.moment[k] = back.moment[k] + swung[k];
+                }
+                (dot3(&d, &v), [Wrench::at(v, &p), back])
             }
             Self::Angle { u, v, cosine, .. } => {
                 let (u, v) = (a.turn(u), b.turn(v));
-                let couple = Wrench { moment: cross(u, v), force: [0.0; 3] };
-                let back = Wrench { moment: cross(v, u), force: [0.0; 3] };
-                (dot(u, v) - cosine, [couple, back])
+                let couple = Wrench { moment: cross(&u, &v), force: [N::splat(0.0); 3] };
+                (dot3(&u, &v) - N::splat(*cosine), [couple, couple.turned_round()])
             }
         }
     }
@@ -105,4 +124,19 @@ impl Row {
     pub(super) fn is_length(&self) -> bool {
         !matches!(self, Self::Angle { .. })
     }
+
+    /// The same with lengths relative to a size.
+    pub(super) fn relative(&self, size: f64) -> Self {
+        let small = |x: Vec3| scale(x, 1.0 / size);
+        match *self {
+            Self::Length { on, at, length } => Self::Length { on, at: at.map(small), length: length / size },
+            Self::Along { on, at, v } => Self::Along { on, at: small(at), v },
+            Self::Angle { .. } => *self,
+        }
+    }
+}
+
+#[inline]
+fn difference<N: Number>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

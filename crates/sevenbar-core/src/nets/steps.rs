@@ -1,10 +1,12 @@
 //! Where the links of a net stand: a tree of one-freedom steps from the ground outwards, each about its axis as drawn.
 //!
-//! At the drawn pose all values are zero, and every link's frame is that of the ground: `(R_k, p_k) = (R_parent, p_parent) Z_k(q_k)`.
+//! In the drawn pose every link's frame is that of the ground: `(R_k, p_k) = (R_parent, p_parent) Z_k(q_k)`.
 //!
 //! Source: docs/theory_nets.md, (1) to (3).
 
-use crate::rigid::{Pose, Vec3, dot, sub};
+use crate::loops::equation::rotations::{cross, dot3};
+use crate::number::Number;
+use crate::rigid::{Pose, Vec3, scale};
 
 /// How a step moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,34 +30,159 @@ pub struct Step {
     pub origin: Vec3,
     /// The direction of its axis as drawn, of length 1.
     pub axis: Vec3,
+    /// What it reads as drawn [rad, or length].
+    pub reads: f64,
+}
+
+/// A rigid motion `x -> rotation x + translation` of numbers of any kind.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placement<N> {
+    pub rotation: [[N; 3]; 3],
+    pub translation: [N; 3],
+}
+
+impl<N: Number> Placement<N> {
+    /// That which leaves all where it is.
+    #[inline]
+    pub fn still() -> Self {
+        let (zero, one) = (N::splat(0.0), N::splat(1.0));
+        Self {
+            rotation: [[one, zero, zero], [zero, one, zero], [zero, zero, one]],
+            translation: [zero; 3],
+        }
+    }
+
+    /// The image of a direction.
+    #[inline]
+    pub fn turn(&self, v: &Vec3) -> [N; 3] {
+        let mut out = self.translation;
+        for k in 0..3 {
+            out[k] = (self.rotation[k][0] * N::splat(v[0]))
+                .plus_product(self.rotation[k][1], N::splat(v[1]))
+                .plus_product(self.rotation[k][2], N::splat(v[2]));
+        }
+        out
+    }
+
+    /// The image of a place.
+    #[inline]
+    pub fn carry(&self, x: &Vec3) -> [N; 3] {
+        let mut out = self.turn(x);
+        for k in 0..3 {
+            out[k] = out[k] + self.translation[k];
+        }
+        out
+    }
+
+    /// `self` after `other`.
+    #[inline]
+    pub fn then(&self, other: &Self) -> Self {
+        let mut out = *self;
+        for i in 0..3 {
+            for j in 0..3 {
+                out.rotation[i][j] = (self.rotation[i][0] * other.rotation[0][j])
+                    .plus_product(self.rotation[i][1], other.rotation[1][j])
+                    .plus_product(self.rotation[i][2], other.rotation[2][j]);
+            }
+            out.translation[i] = self.translation[i] + dot3(&self.rotation[i], &other.translation);
+        }
+        out
+    }
+}
+
+impl From<Placement<f64>> for Pose {
+    fn from(placement: Placement<f64>) -> Self {
+        Self { rotation: placement.rotation, translation: placement.translation }
+    }
 }
 
 /// The screw of a column at a pose: what turns about its axis, and where the origin goes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Screw {
-    pub turn: Vec3,
-    pub shift: Vec3,
+pub(super) struct Screw<N = f64> {
+    pub turn: [N; 3],
+    pub shift: [N; 3],
+}
+
+impl<N: Number> Screw<N> {
+    /// One that moves nothing.
+    #[inline]
+    pub fn still() -> Self {
+        Self { turn: [N::splat(0.0); 3], shift: [N::splat(0.0); 3] }
+    }
 }
 
 impl Step {
-    /// Where it leads from the step before it, by a value [rad, or length].
-    pub(super) fn moved(&self, value: f64) -> Pose {
-        let (angle, along) = match self.moves {
-            Move::Turn => (value, 0.0),
-            Move::Slide => (0.0, value),
-            Move::Screw(advance) => (value, advance * value),
+    /// Where it leads from the step before it, at a value that it reads [rad, or length].
+    #[inline]
+    pub(super) fn moved<N: Number>(&self, value: N) -> Placement<N> {
+        let by = value - N::splat(self.reads);
+        let mut placement = Placement::still();
+        let along = match self.moves {
+            Move::Turn => None,
+            Move::Slide => Some(by),
+            Move::Screw(advance) => Some(by * N::splat(advance)),
         };
-        let (s, c) = angle.sin_cos();
-        let [x, y, z] = self.axis;
-        let t = 1.0 - c;
-        let rotation = [
-            [t * x * x + c, t * x * y - s * z, t * x * z + s * y],
-            [t * x * y + s * z, t * y * y + c, t * y * z - s * x],
-            [t * x * z - s * y, t * y * z + s * x, t * z * z + c],
-        ];
-        let turned = rotation.map(|row| dot(row, self.origin));
-        let back = sub(self.origin, turned);
-        let translation = std::array::from_fn(|k| back[k] + along * self.axis[k]);
-        Pose { rotation, translation }
+        if self.moves != Move::Slide {
+            let (s, c) = by.sin_cos();
+            let versed = N::splat(1.0) - c;
+            let axis = self.axis;
+            for i in 0..3 {
+                for j in 0..3 {
+                    let square = versed * N::splat(axis[i] * axis[j]);
+                    placement.rotation[i][j] = if i == j {
+                        square + c
+                    } else {
+                        // the cross product with the axis, as a matrix
+                        let third = 3 - i - j;
+                        let sign = if (i + 1) % 3 == j { -1.0 } else { 1.0 };
+                        square.plus_product(s, N::splat(sign * axis[third]))
+                    };
+                }
+            }
+            let turned = placement.turn(&self.origin);
+            for k in 0..3 {
+                placement.translation[k] = N::splat(self.origin[k]) - turned[k];
+            }
+        }
+        if let Some(along) = along {
+            for k in 0..3 {
+                placement.translation[k] =
+                    placement.translation[k].plus_product(along, N::splat(self.axis[k]));
+            }
+        }
+        placement
+    }
+
+    /// Its screw, of the step before it as placed.
+    #[inline]
+    pub(super) fn screw<N: Number>(&self, before: &Placement<N>) -> Screw<N> {
+        let axis = before.turn(&self.axis);
+        if self.moves == Move::Slide {
+            return Screw { turn: [N::splat(0.0); 3], shift: axis };
+        }
+        let mut shift = cross(&before.carry(&self.origin), &axis);
+        if let Move::Screw(advance) = self.moves {
+            for k in 0..3 {
+                shift[k] = shift[k].plus_product(axis[k], N::splat(advance));
+            }
+        }
+        Screw { turn: axis, shift }
+    }
+
+    /// The same with lengths relative to a size.
+    pub(super) fn relative(&self, size: f64) -> Self {
+        let inverse = 1.0 / size;
+        let (moves, unit) = match self.moves {
+            Move::Screw(advance) => (Move::Screw(advance * inverse), 1.0),
+            Move::Slide => (Move::Slide, inverse),
+            Move::Turn => (Move::Turn, 1.0),
+        };
+        Self {
+            parent: self.parent,
+            moves,
+            origin: scale(self.origin, inverse),
+            axis: self.axis,
+            reads: self.reads * unit,
+        }
     }
 }

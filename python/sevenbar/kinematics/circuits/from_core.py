@@ -8,18 +8,22 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 import sevenbar._core as _core
 from sevenbar.arrays import Booleans, Floats, Integers, Words, within_turn
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import STATUSES, DeadCentre, Extremes, Tally, Trace
-from sevenbar.kinematics.circuits.motion import ChangePoint, Solvable
+from sevenbar.kinematics.circuits.motion import ChangePoint, Motion, Solvable
 from sevenbar.kinematics.circuits.search import Count, OpenRange, Search
 
 if TYPE_CHECKING:
     from sevenbar.kinematics.loop.law import Law
 
 _STATUS_WORDS = np.array(STATUSES)
+
+#: Limits [rad, or relative to the size] nearer than this are one.
+SAME_LIMIT = 1e-6
 
 #: Joint values with three derivatives (4, n, columns), and status, pass, residual, condition (n,).
 CoreRows = tuple[Floats, Integers, Integers, Floats, Floats]
@@ -175,3 +179,73 @@ def sampled_extremes(values: Floats, inputs: Floats) -> Extremes | None:
         return None
     low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
     return Extremes(float(values[low]), float(inputs[low]), float(values[high]), float(inputs[high]))
+
+
+def trace_from(values: Floats | None, order: Integers, status: Words, at: Floats) -> Trace:
+    """A point along rows in an order and of a status: place and three derivatives `values` (4, n, 3).
+
+    `None` for a point of the ground, which stays `at` its place.
+    """
+    if values is None:
+        position = np.broadcast_to(at, (len(status), 3)).copy()
+        position[status == "no-solution"] = np.nan
+        rest = np.where(np.isnan(position), np.nan, 0.0)
+        rest[status == "dead-centre"] = np.nan
+        velocity, acceleration, jerk = rest, rest.copy(), rest.copy()
+    else:
+        position, velocity, acceleration, jerk = (np.asarray(part)[order] for part in values)
+    own = np.array(status)
+    own[own == "turns-undefined"] = "ok"
+    return Trace(position, velocity, acceleration, jerk, own)
+
+
+def motion_from(
+    raw: _core.RawMotion,
+    *,
+    linkage: Solvable,
+    columns: tuple[int, int],
+    speed: float,
+    samples: int,
+    law: Law | None,
+    circuits: tuple[Circuit, ...],
+    size: float,
+    redundant: tuple[str, ...],
+    agree: float,
+) -> Motion:
+    """A motion of a search as the core has it, with its circuits; `columns` are input and output."""
+    column, output = columns
+    limits = [d.input for c in circuits for d in c.dead_centres if d.kind == "input"]
+    assert raw.search is not None
+    return Motion(
+        linkage=linkage,
+        input=linkage.columns[column],
+        output=linkage.columns[output],
+        speed=math.nan if law is not None else speed,
+        samples=samples,
+        motion_type=raw.motion_type,
+        limits=merged(limits, turns=linkage.turns(column), size=size),
+        change_points=change_points_from(raw, column),
+        circuits=circuits,
+        search=search_from(raw.search, linkage.columns),
+        redundant=redundant,
+        law=law,
+        agree=agree,
+    )
+
+
+def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
+    """Limits of all circuits [rad in [0, 2 pi), or length], rising, equal ones once.
+
+    `size` [length] is that of the loop, by which slides are compared.
+    """
+    values: Floats = np.asarray(limits, dtype=np.float64)
+    same = SAME_LIMIT if turns else SAME_LIMIT * size
+    if turns:
+        values = within_turn(values)
+    values = np.sort(values)
+    if values.size == 0:
+        return np.array([])
+    selected: Floats = values[np.concatenate([[True], np.diff(values) > same])]
+    if turns and selected.size > 1 and selected[0] + math.tau - selected[-1] < same:
+        selected = selected[:-1]
+    return selected

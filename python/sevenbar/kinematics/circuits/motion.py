@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
     from sevenbar.kinematics.loop.reason import Reason
+    from sevenbar.kinematics.nets.order import Order
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +87,11 @@ class Solvable(Loop, ABC):
     @abstractmethod
     def lengths(self) -> tuple[float, float, float]:
         """Crank, coupler and rocker of an RSSR [length]."""
+
+    @property
+    @abstractmethod
+    def order(self) -> Order:
+        """The order in which it is solved with its input held."""
 
     @property
     @abstractmethod

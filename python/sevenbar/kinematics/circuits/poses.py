@@ -116,9 +116,10 @@ def poses(linkage: Loop, q: Floats) -> Floats:
 
 
 def _poses_of_net(linkage: Loop, q: Floats) -> Floats:
-    """The same of a net, along a tree of its joints from the ground outwards."""
+    """The same of a net, along a tree of its joints from the ground outwards; NaN of links that only rods hold."""
     graph = linkage.graph
-    result = np.broadcast_to(np.eye(4), (len(q), graph.ground, 4, 4)).copy()
+    result = np.full((len(q), graph.ground, 4, 4), np.nan)
+    result[:, -1] = np.eye(4)
     reached = {graph.ground}
     for joint in graph.tree:
         before, after = graph.between[joint]
@@ -196,7 +197,8 @@ def poses_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:
     # where a ball's turns have no value, the links still have a place: those beyond it by the ground
     has_pose = ~np.isnan(q).all(axis=1)
     part = np.flatnonzero(has_pose & np.isnan(frames).any(axis=(1, 2, 3)))
-    frames[part] = np.where(np.isnan(frames[part]), _poses_back(linkage, q[part]), frames[part])
+    if linkage.net is None:
+        frames[part] = np.where(np.isnan(frames[part]), _poses_back(linkage, q[part]), frames[part])
     lost = np.flatnonzero(has_pose & np.isnan(frames).any(axis=(1, 2, 3)))
     for link in linkage.graph.moving if lost.size else ():
         x, y, z = (float(value) for value in inverse(linkage.point_frames[link - 1])[:3, 3])

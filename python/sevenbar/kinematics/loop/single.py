@@ -10,6 +10,6 @@ def check_single(linkage: Loop) -> None:
     """Raises `NotCoveredError` for a net of several loops."""
     if linkage.net is not None:
         raise NotCoveredError(
-            "net: its freedoms, redundant constraints, order of solving and the modes of dyads are found; "
-            "motion and all that follows from it are of single loops"
+            "net: its freedoms, modes and motion with rates, points and links are found; forces, ranges of "
+            "joints, sensitivities, exports and design are of single loops"
         )

@@ -9,13 +9,13 @@ from typing import Literal, cast
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import inverse, pose
 from sevenbar.kinematics.nets.chords import Triple, three
-from sevenbar.kinematics.nets.order import LinkBlock, Order, order_of
+from sevenbar.kinematics.nets.order import LinkBlock, order_of
 from sevenbar.kinematics.nets.tree import Tree
 
 #: A dyad as the core takes it.
@@ -23,43 +23,51 @@ RawDyad = tuple[Triple, list[tuple[str, Triple]], tuple[int, int], tuple[int | N
 
 
 def net_modes(linkage: Loop, column: int, value: float) -> Modes:
-    """Every assembly mode at one value of a column [rad, or length] of a net of dyads."""
-    driven = linkage.column_of(column).joint
+    """Every assembly mode at one value of a column [rad, or length] of a net of dyads.
+
+    Of any other net those that are found from many places.
+    """
     order = order_of(linkage, column)
-    _refuse_others(linkage, driven, order)
-    tree = Tree(linkage, driven, order)
-    dyads = [_dyad(linkage, tree, block) for block in order.blocks]
+    tree = Tree(linkage, (linkage.column_of(column).joint,), order)
+    dyads = dyads_of(linkage, tree)
+    if dyads is None:
+        return _searched(linkage, tree, column, value)
     scale = 1.0 if linkage.turns(column) else linkage.size
-    # the driven joint is the first step, which counts from where it is drawn
-    offset = (value - linkage.drawn_pose[column]) / scale
-    raw = tree.core().modes(dyads, 0, offset)
+    # the driven joint is the first step
+    raw = tree.core.modes(dyads, 0, value / scale)
     frames = [_frames(linkage, tree, poses) for _, poses, _, _ in raw]
     q = np.array([_values(linkage, one) for one in frames]).reshape(-1, len(linkage.columns))
     residual = np.array([error for _, _, error, _ in raw]) * linkage.size
     on_curve = np.array([curved for *_, curved in raw], dtype=bool)
     isolated = np.flatnonzero(~on_curve)
-    rank = isolated[np.lexsort(q[isolated].round(9).T[::-1])]
+    rank = isolated[_ranked(q[isolated])]
     curve = q[on_curve][0] if on_curve.any() else None
     completeness: Literal["closed-form", "algebraic"] = "closed-form" if curve is None else "algebraic"
     return Modes(q[rank], residual[rank], completeness, linkage.columns, value, on_curve=curve)
 
 
-def _refuse_others(linkage: Loop, driven: int, order: Order) -> None:
-    """Refuses what dyads do not make up."""
-    where = ""
-    if linkage.graph.ground not in linkage.graph.between[driven]:
-        where = f"'{linkage.joints[driven].name}' drives two moving links"
-    elif order.free or order.held:
-        where = f"the count gives no order of solving ({', '.join((*order.free, *order.held))})"
-    else:
-        for block in order.blocks:
-            if block.solver != "dyad":
-                where = f"{_listed(linkage, block)} are no dyad: they are solved together"
-                break
-    if where:
-        raise NotCoveredError(
-            f"net: modes are found where dyads make it up, driven at the ground; here {where}"
-        )
+def _searched(linkage: Loop, tree: Tree, column: int, value: float) -> Modes:
+    q, residual = tree.followed(lambda core: core.searched_modes(column, value))
+    rank = _ranked(q)
+    return Modes(q[rank], residual[rank] * linkage.size, "searched", linkage.columns, value)
+
+
+def _ranked(q: Floats) -> Integers:
+    """The order of modes (m, columns) by their joint values."""
+    order: Integers = np.lexsort(q.round(9).T[::-1])
+    return order
+
+
+def dyads_of(linkage: Loop, tree: Tree) -> list[RawDyad] | None:
+    """The dyads that a net is made up of, in the order in which they are solved.
+
+    `None` where there are other blocks, or two moving links turn against each other by the input.
+    """
+    driven, order = tree.first[0], tree.order
+    at_ground = linkage.graph.ground in linkage.graph.between[driven]
+    if not (at_ground and order.blocks and all(block.solver == "dyad" for block in order.blocks)):
+        return None
+    return [_dyad(linkage, tree, block) for block in order.blocks]
 
 
 def _dyad(linkage: Loop, tree: Tree, block: LinkBlock) -> RawDyad:

@@ -18,6 +18,7 @@ from sevenbar.kinematics.circuits.poses import drawn_frames
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
 from sevenbar.kinematics.solvers.general import AGREE
+from sevenbar.kinematics.solvers.plane_and_sphere import across, net_frames
 
 #: How links of a part move: in parallel planes, about one point, or any way.
 Group = Literal["planar", "spherical", "spatial"]
@@ -120,30 +121,12 @@ class Parts:
     def _frames(self) -> Floats:
         """The frames (joints, 4, 4) of all joints, in a pose in which those of a net are drawn."""
         linkage = self.linkage
-        if linkage.net is None:
-            return drawn_frames(linkage)[0]
-        between = enumerate(linkage.graph.between)
-        return np.stack([linkage.drawn_joint_on(joint, before) for joint, (before, _) in between])
+        return drawn_frames(linkage)[0] if linkage.net is None else net_frames(linkage)
 
     def _is_planar(self, joints: Sequence[int]) -> bool:
         """Whether all turn about parallel axes, and slide square to them."""
-        turning, sliding = [], []
-        for joint in joints:
-            row, frame = self.linkage.joints[joint].row, self._frames[joint]
-            if row.bends or row.is_screw:
-                return False
-            for step in row.steps:
-                axis = frame[:3, step.axis]
-                if step.freedom == "turn":
-                    turning.append(axis)
-                elif step.axis != Z or len(row.steps) == 1:
-                    # a cylinder turns in the plane and stays at its height
-                    sliding.append(axis)
-        if not turning:
-            return False
-        normal = turning[0]
-        parallel = all(np.linalg.norm(np.cross(normal, axis)) < SAME for axis in turning)
-        return parallel and all(abs(normal @ axis) < SAME for axis in sliding)
+        own = [self.linkage.joints[joint] for joint in joints]
+        return across(own, self._frames[list(joints)]) is not None
 
     def _is_spherical(self, joints: Sequence[int]) -> bool:
         """Whether all are hinges whose axes meet in one point."""

@@ -1,17 +1,23 @@
-"""What a net of several loops answers so far: its freedoms, its redundant constraints, modes of dyads."""
+"""A net of several loops: its freedoms, its redundant constraints, its modes and its motion."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sevenbar.arrays import Floats, Integers, Words
+from sevenbar.kinematics.circuits.circuit_values import Trace
+from sevenbar.kinematics.circuits.from_core import circuit_from, motion_from, trace_from
 from sevenbar.kinematics.loop.mobility import Mobility
-from sevenbar.kinematics.nets.modes import net_modes
-from sevenbar.kinematics.nets.order import Parts
-from sevenbar.kinematics.nets.tree import Tree
+from sevenbar.kinematics.nets.modes import dyads_of, net_modes
+from sevenbar.kinematics.nets.order import Parts, order_of
+from sevenbar.kinematics.nets.tree import CoreCircuit, Tree
+from sevenbar.kinematics.solvers.general import AGREE, at_rest, no_circuit
 
 if TYPE_CHECKING:
+    from sevenbar.kinematics.circuits.circuit import Circuit
     from sevenbar.kinematics.circuits.modes import Modes
-    from sevenbar.kinematics.circuits.motion import Solvable
+    from sevenbar.kinematics.circuits.motion import Motion, Solvable
+    from sevenbar.kinematics.loop.law import Law
 
 #: Three constraints of a planar or spherical cycle repeat others.
 BY_GROUP = {
@@ -33,8 +39,8 @@ class NetSolver:
         how many there are besides.
         """
         linkage = self._linkage
-        tree = Tree(linkage, linkage.column_of(column).joint)
-        rank, repeated, free = tree.core().freedoms()
+        tree = Tree(linkage, (linkage.column_of(column).joint,))
+        _, repeated, free = tree.core.freedoms()
         freedoms = sum(len(joint.row.freedoms) for joint in linkage.joints)
         lines, graph = [], linkage.graph
         parts = Parts(linkage)
@@ -51,7 +57,8 @@ class NetSolver:
             gruebler=6 * (graph.ground - 1)
             - sum(6 - len(j.row.freedoms) for j in linkage.joints)
             - len(linkage.rods),
-            rank=rank,
+            # of all joints: those off the tree are determined by it
+            rank=freedoms - len(free),
             # spins move nothing else
             finite=len(free) - len(parts.spins),
             idle=self.idle(),
@@ -61,6 +68,74 @@ class NetSolver:
     def modes(self, column: int, value: float) -> Modes:
         """Every assembly mode at one value of a column; of nets of dyads."""
         return net_modes(self._linkage, column, value)
+
+    def motion(self, column: int, output: int, samples: int, speed: float, law: Law | None) -> Motion:
+        """Every circuit through the modes at many values of a column."""
+        linkage, tree = self._linkage, self._tree(column, output)
+        table = None if law is None else law.table
+        dyads = dyads_of(linkage, tree)
+        raw, rows = tree.followed(lambda core: core.motion(dyads, column, output, samples, speed, table))
+        if raw.moving is not None and not raw.circuits:
+            raise at_rest(linkage, column, raw.moving)
+        circuits = tuple(
+            self._circuit(i, tree, own, (column, output), speed, law)
+            for i, own in enumerate(zip(raw.circuits, rows, strict=True))
+        )
+        return motion_from(
+            raw,
+            linkage=linkage,
+            columns=(column, output),
+            speed=speed,
+            samples=samples,
+            law=law,
+            circuits=circuits,
+            size=linkage.size,
+            redundant=self.mobility(column).redundant,
+            agree=AGREE,
+        )
+
+    def circuit(
+        self, pose: Floats, column: int, output: int, samples: int, speed: float, law: Law | None
+    ) -> Circuit:
+        """The one circuit through a pose (columns,)."""
+        linkage, tree = self._linkage, self._tree(column, output)
+        table = None if law is None else law.table
+        raw = tree.followed(lambda core: core.circuit_through(pose, column, output, samples, speed, table))
+        match raw:
+            case tuple() as own:
+                return self._circuit(0, tree, own, (column, output), speed, law)
+            case other:
+                raise no_circuit(linkage, column, other, linkage.size)
+
+    def _tree(self, column: int, output: int) -> Tree:
+        joints = [self._linkage.column_of(end).joint for end in (column, output)]
+        return Tree(self._linkage, tuple(dict.fromkeys(joints)), order_of(self._linkage, column))
+
+    def _circuit(
+        self,
+        index: int,
+        tree: Tree,
+        own: CoreCircuit,
+        columns: tuple[int, int],
+        speed: float,
+        law: Law | None,
+    ) -> Circuit:
+        raw, rows = own
+
+        def trace(order: Integers, status: Words, link: int, at: Floats) -> Trace:
+            step = tree.carrier[link]
+            return trace_from(None if step is None else tree.core.point(rows, step, at), order, status, at)
+
+        return circuit_from(
+            raw,
+            linkage=self._linkage,
+            index=index,
+            columns=columns,
+            speed=speed,
+            law=law,
+            size=self._linkage.size,
+            point=trace,
+        )
 
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""

@@ -1,14 +1,17 @@
 """A net as the core takes it: a spanning tree of steps of one freedom, and the rows of all that is off it.
 
-Joints with few freedoms are in the tree, the driven one first; rods never are. A link that only rods hold has
-six steps of its own.
+Joints with few freedoms are in the tree, the driven one and the output first; rods never are. A link that
+only rods hold has six steps of its own.
 
 Source: docs/theory_nets.md, (1) to (4).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 
@@ -16,27 +19,36 @@ import sevenbar._core as _core
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.nets.chords import ChordRow, joint_rows, rod_row
+from sevenbar.kinematics.loop.joints import X, Z
+from sevenbar.kinematics.nets.chords import ChordRow, Triple, joint_rows, rod_row, three
 from sevenbar.kinematics.nets.order import Order
+
+T = TypeVar("T")
+
+#: A circuit and its rows as the core has them.
+CoreCircuit = tuple[_core.RawCircuit, _core.NetRows]
 
 
 @dataclass
 class Tree:
     """The steps of a net's tree, each a column; `carrier` is the step of each link, `None` of the ground.
 
-    `driven` is a joint; joints of the blocks of `order` follow it in this order.
+    The joints `first` begin it, the driven one and the output; joints of the blocks of `order` follow in this
+    order. `columns` are the steps of each joint in the tree, in the order of its columns.
     """
 
     linkage: Loop
-    driven: int
+    first: tuple[int, ...]
     order: Order = field(default_factory=Order)
     letters: str = ""
     advances: list[float] = field(default_factory=list)
     parents: list[int | None] = field(default_factory=list)
     origins: list[Floats] = field(default_factory=list)
     axes: list[Floats] = field(default_factory=list)
+    reads: list[float] = field(default_factory=list)
     carrier: dict[int, int | None] = field(default_factory=dict)
     chords: list[int] = field(default_factory=list)
+    columns: dict[int, list[int]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         graph = self.linkage.graph
@@ -44,8 +56,8 @@ class Tree:
         block_of = {joint: i for i, block in enumerate(self.order.blocks) for joint in block.joints}
 
         def rank(joint: int) -> tuple[int, int, int]:
-            first = -1 if joint == self.driven else block_of.get(joint, 0)
-            return first, self._freedoms(joint), joint
+            before = self.first.index(joint) - len(self.first) if joint in self.first else None
+            return block_of.get(joint, 0) if before is None else before, self._freedoms(joint), joint
 
         remaining = sorted(graph.joints, key=rank)
         while remaining:
@@ -77,14 +89,18 @@ class Tree:
         first, second = (self.linkage.drawn_joint_on(joint, link) for link in (before, after))
         at = self.carrier[before if outwards else after]
         steps = row.steps if outwards else row.steps[::-1]
+        # only a joint of one value reads another than 0 as drawn
+        reads = self.linkage.joints[joint].value
+        own = self.columns[joint] = []
         for step in steps:
             if step.driven:
                 continue
             frame = second if step.tilted else first
             # the link before against the link after moves the other way round
             axis = frame[:3, step.axis] if outwards else -frame[:3, step.axis]
-            letter = "H" if row.is_screw else step.letter
-            at = self._step(letter, advance if row.is_screw else 0.0, at, frame[:3, 3], axis)
+            letter = "H" if row.is_screw else "S" if row.is_ball and not own else step.letter
+            at = self._step(letter, advance if row.is_screw else 0.0, at, frame[:3, 3], axis, reads)
+            own.insert(len(own) if outwards else 0, at)
         self.carrier[after if outwards else before] = at
 
     def _free(self, link: int) -> None:
@@ -96,17 +112,25 @@ class Tree:
             if carrier == link
         ]
         place, at = np.mean(ends, axis=0), None
-        for letter in "PR":
-            for axis in np.eye(3):
-                at = self._step(letter, 0.0, at, place, axis)
+        for letter, axis in zip("PPPSRR", np.tile(np.eye(3), (2, 1)), strict=True):
+            at = self._step(letter, 0.0, at, place, axis)
         self.carrier[link] = at
 
-    def _step(self, letter: str, advance: float, parent: int | None, origin: Floats, axis: Floats) -> int:
+    def _step(
+        self,
+        letter: str,
+        advance: float,
+        parent: int | None,
+        origin: Floats,
+        axis: Floats,
+        reads: float = 0.0,
+    ) -> int:
         self.letters += letter
         self.advances.append(advance)
         self.parents.append(parent)
         self.origins.append(origin)
         self.axes.append(axis)
+        self.reads.append(reads)
         return len(self.letters) - 1
 
     @property
@@ -120,9 +144,34 @@ class Tree:
             result += [(between, row) for row in joint_rows(linkage.joints[joint], *frames)]
         return result + [(rod.between, rod_row(rod)) for rod in linkage.rods]
 
+    @property
+    def facing(self) -> list[tuple[tuple[int | None, int | None], Triple]]:
+        """Directions of two links, joined by a chord, that rows alone would let be opposite."""
+        linkage, result = self.linkage, []
+        for joint in self.chords:
+            between, row = linkage.graph.between[joint], linkage.joints[joint].row
+            if not row.bends:
+                frame = linkage.drawn_joint_on(joint, between[1])
+                axes = (Z,) if "turn" in row.freedoms else (X, Z)
+                on = self.carrier[between[0]], self.carrier[between[1]]
+                result += [(on, three(frame[:3, axis])) for axis in axes]
+        return result
+
+    @cached_property
     def core(self) -> _core.Net:
         """The net of the core."""
         linkage, rows = self.linkage, []
+        joints = [
+            (
+                joint.kind,
+                joint.angle,
+                (self.carrier[before], self.carrier[after]),
+                self.columns.get(number, []),
+            )
+            for number, (joint, (before, after)) in enumerate(
+                zip(linkage.joints, linkage.graph.between, strict=True)
+            )
+        ]
         for between, row in self.rows:
             first, second = (self.carrier[between[side]] for side in row.sides)
             rows.append((row.kind, (first, second), row.vectors, row.number))
@@ -132,6 +181,20 @@ class Tree:
             self.parents,
             np.array(self.origins).reshape(-1, 3),
             np.array(self.axes).reshape(-1, 3),
+            np.array(self.reads),
             rows,
+            self.facing,
             linkage.size,
+            joints,
+            linkage.frames[:, 0],
+            linkage.frames[:, 1],
         )
+
+    def followed(self, work: Callable[[_core.Net], T]) -> T:
+        """The result of work of the core, or why it follows no motion of this net."""
+        try:
+            return work(self.core)
+        except _core.CoreError as error:
+            raise NotCoveredError(
+                f"net: motion is found of nets that one input moves; here {error}"
+            ) from None

@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 import sevenbar._core as _core
 from sevenbar.arrays import Booleans, Floats, Integers
+from sevenbar.kinematics.circuits.from_core import merged
 from sevenbar.kinematics.loop.geometry import Loop, following_coupler
-from sevenbar.kinematics.solvers.general import expanded, merged
+from sevenbar.kinematics.solvers.general import expanded
 from sevenbar.text.printing import Printed
 
 #: The core's codes of motion types, and of dimensions that make no linkage.

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import partial
 from itertools import accumulate
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats, Integers, Words, within_turn
+from sevenbar.arrays import Floats, Integers, Words
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.circuit_values import Trace
-from sevenbar.kinematics.circuits.from_core import change_points_from, circuit_from, search_from, tally_from
+from sevenbar.kinematics.circuits.from_core import circuit_from, motion_from, tally_from, trace_from
 from sevenbar.kinematics.circuits.long_circuit import LONG, LongCircuit
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import HeldFreedoms, Motion, Solvable
@@ -40,10 +38,6 @@ MOST_FREEDOMS = 7
 
 #: The motion that leaves all where it is.
 STILL = np.eye(4)
-
-
-#: Limits [rad, or relative to the size] nearer than this are one.
-SAME_LIMIT = 1e-6
 
 
 class GeneralLoop:
@@ -184,24 +178,20 @@ class GeneralLoop:
         if law is None:
             self._found[first] = mobility
         if raw.moving is not None and not raw.circuits:
-            raise self._rests(column, raw.moving)
+            raise at_rest(linkage, column, raw.moving)
         circuits = tuple(
             self._circuit(i, c, (column, output), speed, law) for i, c in enumerate(raw.circuits)
         )
-        limits = [d.input for c in circuits for d in c.dead_centres if d.kind == "input"]
-        return Motion(
+        return motion_from(
+            raw,
             linkage=linkage,
-            input=linkage.columns[column],
-            output=linkage.columns[output],
-            speed=math.nan if law is not None else speed,
+            columns=(column, output),
+            speed=speed,
             samples=samples,
-            motion_type=raw.motion_type,
-            limits=merged(limits, turns=linkage.turns(column), size=self.size),
-            change_points=change_points_from(raw, column),
-            circuits=circuits,
-            search=search_from(raw.search, linkage.columns),
-            redundant=mobility.redundant,
             law=law,
+            circuits=circuits,
+            size=self.size,
+            redundant=mobility.redundant,
             agree=self._agree,
         )
 
@@ -223,25 +213,8 @@ class GeneralLoop:
                 circuit, followed = found
                 self._last = (asked, followed)
                 return self._circuit(0, circuit, (column, output), speed, law)
-            case float():
-                raise RequestError(
-                    f"pose: the loop does not close near it (closure error {raw * self.size:.3g} "
-                    f"{self._linkage.length_unit}); give a row of assembly_modes() or of a circuit"
-                )
-            case None:
-                raise RequestError("pose: no motion through it could be followed; see mobility()")
-            case moving:
-                raise self._rests(column, moving)
-
-    def _rests(self, column: int, moving: list[int]) -> RequestError:
-        linkage = self._linkage
-        moving_names = {linkage.columns[c] for c in moving}
-        others = [name for name in linkage.drivable(column) if name in moving_names]
-        advice = f"; give another: {', '.join(others)}" if others else ""
-        return RequestError(
-            f"input: joint '{linkage.columns[column]}' stands still while others move, so it cannot "
-            f"drive{advice}"
-        )
+            case other:
+                raise no_circuit(self._linkage, column, other, self.size)
 
     def _free(self, ends: tuple[int, ...]) -> tuple[int, ...]:
         """Columns that move in the place of those that an idle freedom holds: a rigid loop is so for each."""
@@ -321,23 +294,34 @@ class GeneralLoop:
 
     def _trace(self, rows: _core.Rows | None, order: Integers, status: Words, link: int, at: Floats) -> Trace:
         """A point, `at` in its link's own frame, along rows in an order and of a status."""
-        count = len(self._linkage.joints)
-        if link == count:
-            position = np.broadcast_to(at, (len(status), 3)).copy()
-            position[status == "no-solution"] = np.nan
-            rest = np.where(np.isnan(position), np.nan, 0.0)
-            rest[status == "dead-centre"] = np.nan
-            velocity, acceleration, jerk = rest, rest.copy(), rest.copy()
-        else:
-            assert rows is not None
-            if self._behind[link - 1] is not STILL:
-                at = placed(self._behind[link - 1], at)
-            position, velocity, acceleration, jerk = (
-                np.asarray(part)[order] for part in self._core.point(rows, self._link[link - 1], at)
-            )
-        own = np.array(status)
-        own[own == "turns-undefined"] = "ok"
-        return Trace(position, velocity, acceleration, jerk, own)
+        if link == len(self._linkage.joints):
+            return trace_from(None, order, status, at)
+        assert rows is not None
+        if self._behind[link - 1] is not STILL:
+            at = placed(self._behind[link - 1], at)
+        return trace_from(self._core.point(rows, self._link[link - 1], at), order, status, at)
+
+
+def at_rest(linkage: Loop, column: int, moving: list[int]) -> RequestError:
+    """That a column stands still while others move."""
+    moving_names = {linkage.columns[c] for c in moving}
+    others = [name for name in linkage.drivable(column) if name in moving_names]
+    advice = f"; give another: {', '.join(others)}" if others else ""
+    return RequestError(
+        f"input: joint '{linkage.columns[column]}' stands still while others move, so it cannot drive{advice}"
+    )
+
+
+def no_circuit(linkage: Loop, column: int, why: float | list[int] | None, size: float) -> RequestError:
+    """Why no circuit goes through a pose: how far it is from closing, or the columns that move instead."""
+    if why is None:
+        return RequestError("pose: no motion through it could be followed; see mobility()")
+    if isinstance(why, list):
+        return at_rest(linkage, column, why)
+    return RequestError(
+        f"pose: the loop does not close near it (closure error {why * size:.3g} "
+        f"{linkage.length_unit}); give a row of assembly_modes() or of a circuit"
+    )
 
 
 def _named(links: range) -> str:
@@ -398,21 +382,3 @@ def expanded(linkage: Loop) -> Expanded:
             ahead = linkage.links[i] if ahead is STILL else ahead @ linkage.links[i]
     ground = linkage.ground if ahead is STILL else linkage.ground @ inverse(ahead)
     return Expanded(letters, advances, fixed[0], fixed[1:], ground, last, behind, columns)
-
-
-def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
-    """Limits of all circuits [rad in [0, 2 pi), or length], rising, equal ones once.
-
-    `size` [length] is that of the loop, by which slides are compared.
-    """
-    values: Floats = np.asarray(limits, dtype=np.float64)
-    same = SAME_LIMIT if turns else SAME_LIMIT * size
-    if turns:
-        values = within_turn(values)
-    values = np.sort(values)
-    if values.size == 0:
-        return np.array([])
-    selected: Floats = values[np.concatenate([[True], np.diff(values) > same])]
-    if turns and selected.size > 1 and selected[0] + math.tau - selected[-1] < same:
-        selected = selected[:-1]
-    return selected

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, ReadOnly, places_array, positive_length, triple
-from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.geometry import Joint, Loop
+from sevenbar.kinematics.loop.joints import Z
 from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rigid import cross, inverse, unit
 from sevenbar.kinematics.solvers.general import AGREE, expanded
@@ -95,8 +96,42 @@ def plane_of(loop: Loop) -> MotionPlane | None:
         >>> sb.load("planar_4r").plane.normal.tolist(), sb.load("bennett").plane
         ([1.0, 0.0, 0.0], None)
     """
+    if loop.net is not None:
+        frames = net_frames(loop)
+        normal = across(loop.joints, frames)
+        rods = [np.subtract(*rod.at) for rod in loop.rods]
+        if normal is None or any(abs(rod @ normal) > SAME * loop.size for rod in rods):
+            return None
+        return _drawn(normal, frames[0][:3, 3])
     result = in_plane(loop)
     return None if result is None else result.plane
+
+
+def net_frames(net: Loop) -> Floats:
+    """The frames (joints, 4, 4) of the joints of a net on the links before them, as drawn."""
+    between = enumerate(net.graph.between)
+    return np.stack([net.drawn_joint_on(joint, before) for joint, (before, _) in between])
+
+
+def across(joints: Sequence[Joint], frames: Sequence[Floats]) -> Floats | None:
+    """The direction (3,) about which all drawn joints turn, with slides square to it; else `None`."""
+    turning, sliding = [], []
+    for joint, frame in zip(joints, frames, strict=True):
+        row = joint.row
+        if row.bends or row.is_screw:
+            return None
+        for step in row.steps:
+            axis = frame[:3, step.axis]
+            if step.freedom == "turn":
+                turning.append(axis)
+            elif step.axis != Z or len(row.steps) == 1:
+                # a cylinder turns in the plane and stays at its height
+                sliding.append(axis)
+    if not turning:
+        return None
+    normal = turning[0]
+    parallel = all(np.linalg.norm(np.cross(normal, axis)) < SAME for axis in turning)
+    return normal if parallel and all(abs(normal @ axis) < SAME for axis in sliding) else None
 
 
 class InPlane(NamedTuple):

@@ -63,6 +63,8 @@ class Coupling:
 
 def coupling_of(loop: Loop, input: int, output: int) -> Coupling | None:
     """How a loop driven by one column moves another; `None` where no transmission angle is defined."""
+    if loop.net is not None:
+        return None
     parts = expanded(loop)
     first, second = parts.columns.index(input), parts.columns.index(output)
     if "S" in (parts.letters[first], parts.letters[second]):

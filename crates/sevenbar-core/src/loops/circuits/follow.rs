@@ -127,21 +127,19 @@ pub(super) fn walk_until<S: Closed>(
     let mut curves = vec![Curve { nodes: Vec::new(), why: [End::Far; 2] }; starts.len()];
     let mut reached = vec![None; starts.len()];
     let mut narrowing = vec![0; starts.len()];
-    let walk = Walk {
-        chain,
-        starts,
-        stops,
-        until,
-        curves: &mut curves,
-        reached: &mut reached,
-        narrowing: &mut narrowing,
-        nodes: 0,
-    };
-    match starts.len() {
-        0 => {}
-        // one curve has nothing beside it, and vector code would be slower
-        1 => simd::dispatch(walk),
-        _ => vectors::dispatch(walk),
+    // one curve has nothing beside it, and vector code would be slower
+    let together = if S::SIDE_BY_SIDE { starts.len().max(1) } else { 1 };
+    let each = starts.chunks(together).zip(curves.chunks_mut(together));
+    let each = each.zip(reached.chunks_mut(together));
+    for (((starts, curves), reached), narrowing) in each.zip(narrowing.chunks_mut(together)) {
+        let walk = Walk { chain, starts, stops, until, curves, reached, narrowing, nodes: 0 };
+        if !S::SIDE_BY_SIDE {
+            Kernel::run::<false>(walk);
+        } else if walk.starts.len() == 1 {
+            simd::dispatch(walk);
+        } else {
+            vectors::dispatch(walk);
+        }
     }
     (curves, reached)
 }

@@ -29,6 +29,40 @@ pub struct Loop {
     pub(crate) columns: usize,
 }
 
+/// What is known of the columns of a description by those that are followed for them.
+pub(crate) trait Described {
+    /// The size [length] of which lengths are parts where it is followed.
+    fn size(&self) -> f64;
+
+    /// How many columns it has.
+    fn columns(&self) -> usize;
+
+    /// The column that is followed for one of the description; `None` where its value is another thing.
+    fn followed_column(&self, column: usize) -> Option<usize>;
+
+    /// Whether a column is a length.
+    fn is_slide(&self, column: usize) -> bool;
+
+    /// The factor from a value of a column to the value that is followed: lengths are relative to the size there.
+    fn inward(&self, column: usize) -> f64 {
+        if self.is_slide(column) {
+            1.0 / self.size()
+        } else {
+            1.0
+        }
+    }
+
+    /// What a column does on a circuit. `endless`: the circuit has no ends, and was followed until a joint was far out.
+    fn role(&self, column: Column, range: Option<[f64; 2]>, endless: bool) -> Role {
+        match range {
+            _ if self.is_slide(column.outer) => Role::Slider,
+            Some([low, high]) if endless && high - low > TAU => Role::Spindle,
+            Some(_) => Role::Rocker,
+            None => Role::Crank,
+        }
+    }
+}
+
 impl Loop {
     /// From the kinds of the joints, the frames of the first joint and of the ground's side of the last, and the transforms of the
     /// moving links, one fewer than joints.
@@ -136,28 +170,22 @@ impl Loop {
     pub(crate) fn inner(&self, outer: usize) -> Option<Column> {
         Some(Column { outer, inner: self.chain_column(outer)? })
     }
+}
 
-    /// What a column does on a circuit. `endless`: the circuit has no ends, and was followed until a joint was far out.
-    pub(crate) fn role(&self, column: Column, range: Option<[f64; 2]>, endless: bool) -> Role {
-        match range {
-            _ if self.is_slide(column.outer) => Role::Slider,
-            Some([low, high]) if endless && high - low > TAU => Role::Spindle,
-            Some(_) => Role::Rocker,
-            None => Role::Crank,
-        }
+impl Described for Loop {
+    fn size(&self) -> f64 {
+        self.size
     }
 
-    /// Whether a column is a length.
-    pub(crate) fn is_slide(&self, column: usize) -> bool {
+    fn columns(&self) -> usize {
+        self.columns
+    }
+
+    fn followed_column(&self, column: usize) -> Option<usize> {
+        self.chain_column(column)
+    }
+
+    fn is_slide(&self, column: usize) -> bool {
         self.reduced.parts[self.joint_of(column)].kind == Kind::Slide
-    }
-
-    /// The factor from a value of a column to the chain's value: lengths are relative to the size there.
-    pub(crate) fn inward(&self, column: usize) -> f64 {
-        if self.is_slide(column) {
-            1.0 / self.size
-        } else {
-            1.0
-        }
     }
 }

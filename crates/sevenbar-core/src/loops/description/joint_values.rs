@@ -1,6 +1,6 @@
 //! Values and rates of the description's joints, from those of the chain that is followed, and back.
 
-use super::described_loop::Loop;
+use super::described_loop::{Described, Loop};
 use super::reduce::{Source, SpunLinks};
 use super::spun::first_terms;
 use crate::loops::equation::chain::{BALLS, Chain, Configuration};

@@ -47,6 +47,9 @@ pub(crate) trait Closed: Sized {
     /// One for each cycle.
     type Cycles<T: Copy + Debug>: Array<T>;
 
+    /// Whether curves and rows are followed eight side by side in vector lanes; else one after the other, by code of a fourth of the size.
+    const SIDE_BY_SIDE: bool = true;
+
     /// How many columns.
     const COLUMNS: usize = <Self::Columns<f64> as Array<f64>>::COUNT;
 

@@ -2,7 +2,7 @@
 
 use super::curves_at_input::pose_on_curve;
 use super::finder::{Completeness, ModeFinder};
-use crate::loops::description::described_loop::Loop;
+use crate::loops::description::described_loop::{Described, Loop};
 use crate::loops::description::joint_values::joint_values;
 use crate::loops::equation::closed::Closed;
 use crate::one_pose::each_once;

@@ -39,9 +39,9 @@ pub(crate) fn same<S: Closed>(chain: &S, a: &At<S>, b: &At<S>) -> bool {
 }
 
 /// Any configuration with the input at a value; screws within [`SCREW_TURNS`].
-fn anywhere(chain: &Chain, input: usize, value: f64, random: &mut Random) -> Configuration {
-    let mut rough = Configuration::zero();
-    for (joint, &column) in chain.joints.iter().zip(&chain.first) {
+pub(crate) fn anywhere<S: Closed>(chain: &S, input: usize, value: f64, random: &mut Random) -> At<S> {
+    let mut rough = At::<S>::zero();
+    for (joint, &column) in chain.joints().iter().zip(chain.first()) {
         let centred = 2.0 * random.uniform() - 1.0;
         match joint {
             Joint::Slide => rough.values[column] = centred,

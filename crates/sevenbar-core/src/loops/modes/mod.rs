@@ -1,16 +1,16 @@
 //! `e(q) = 0` with the input held, solved over C: every assembly mode, and how complete they are.
 
-pub(super) mod assembly;
+pub(crate) mod assembly;
 mod chain_closure;
-pub(super) mod circle;
+pub(crate) mod circle;
 mod completeness;
-pub(super) mod continuation;
+pub(crate) mod continuation;
 mod curves_at_input;
-pub(super) mod finder;
+pub(crate) mod finder;
 mod geometry;
-pub(super) mod many_starts;
-pub(super) mod phases;
+pub(crate) mod many_starts;
+pub(crate) mod phases;
 mod poles;
-pub(super) mod polish;
-pub(super) mod starts;
+pub(crate) mod polish;
+pub(crate) mod starts;
 mod straight;

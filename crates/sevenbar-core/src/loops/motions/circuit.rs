@@ -6,11 +6,11 @@ use super::row::Row;
 use super::rows::{Rows, Tally};
 use crate::loops::circuits::curve::{Curve, Node};
 use crate::loops::circuits::turnings::{self, Turning};
-use crate::loops::description::described_loop::{Column, Loop};
+use crate::loops::description::described_loop::{Column, Described, Loop};
 use crate::loops::description::holding::followed;
-use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::closed::{Closed, Joint};
-use crate::loops::equation::dense::{Array, Columns, length};
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::closed::{At, Closed, Joint};
+use crate::loops::equation::dense::{Array, length};
 use crate::loops::equation::rotations::short_way;
 use crate::loops::mobility::at_rest::Still;
 use crate::loops::rates::velocities::ORDERS;
@@ -26,13 +26,60 @@ pub struct Circuit {
     pub course: Option<Course>,
     /// What it is measured by, at the speed of the rows; by a law there are no extremes of rates.
     pub measures: CircuitMeasures,
-    /// Where input and output turn back, as the chain counts them.
-    pub(super) limits: [Limits; 2],
+    pub(super) reach: Reach,
+}
+
+/// How far a circuit goes.
+#[derive(Clone, Debug)]
+pub(crate) struct Reach {
+    /// Where input and output turn back, as they are followed.
+    pub limits: [Limits; 2],
     /// The distance of its farthest pose from its first [rad, or relative to the size].
-    pub(super) extent: f64,
+    pub extent: f64,
+}
+
+/// A circuit over an input as it is followed.
+pub(crate) struct OverInput<S: Closed> {
+    /// Its rows at unit speed of the input, or by a law.
+    pub rows: Vec<Row<S>>,
+    /// Whole turns to be added to each column of the description.
+    pub offsets: Vec<f64>,
+    /// d(input)/dt of the rows that are wanted, as it is followed.
+    pub speed: f64,
+    /// What it is measured by, at that speed.
+    pub measures: CircuitMeasures,
+    pub reach: Reach,
+}
+
+impl From<OverInput<Chain>> for Circuit {
+    fn from(circuit: OverInput<Chain>) -> Self {
+        let OverInput { rows, offsets, speed, measures, reach } = circuit;
+        Self {
+            rows: Rows { rows, offsets, speed, still: None },
+            course: None,
+            measures,
+            reach,
+        }
+    }
 }
 
 impl Circuit {
+    /// The same with a course in place of its rows on a grid, as it was followed.
+    pub(super) fn on_course(mut self, linkage: &Loop, passes: &Passes, grid: (f64, f64)) -> Self {
+        // one without rows is no circuit, so a course is never of none
+        if !self.rows.is_empty() {
+            self.course = Some(Course {
+                followed: Followed::of(passes),
+                grid,
+                offsets: self.rows.offsets.clone(),
+                speed: self.rows.speed,
+                tally: self.rows.tally(linkage),
+            });
+            self.rows.rows = Vec::new();
+        }
+        self
+    }
+
     /// The circuit of a loop with a joint held, as one of that loop with the joint free.
     pub(super) fn holding(mut self, still: Still, held: &Loop, output: usize) -> Self {
         if held.inner(output).is_none() {
@@ -53,21 +100,21 @@ impl Circuit {
 
 /// A value at which a column turns back, and the column's second derivative there by the length of the curve.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Limit {
+pub(crate) struct Limit {
     pub value: f64,
     pub bend: f64,
 }
 
 /// The limits of a column: its greatest values near by, and its least.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Limits {
+pub(crate) struct Limits {
     pub upper: Vec<Limit>,
     pub lower: Vec<Limit>,
 }
 
 impl Limits {
     /// Of the places at which a column turns back.
-    fn of<'a>(turnings: impl Iterator<Item = &'a Node>, column: usize) -> Self {
+    fn of<'a, S: Closed + 'a>(turnings: impl Iterator<Item = &'a Node<S>>, column: usize) -> Self {
         let mut limits = Self::default();
         for node in turnings {
             let limit = Limit { value: node.at.values[column], bend: node.rates[1][column] };
@@ -144,7 +191,7 @@ impl Course {
 
 /// What is wanted of circuits.
 #[derive(Clone, Copy)]
-pub(super) struct Wanted<'a> {
+pub(crate) struct Wanted<'a> {
     /// The input.
     pub driver: Column,
     /// The output.
@@ -155,14 +202,16 @@ pub(super) struct Wanted<'a> {
     pub speed: f64,
     /// The input and its derivatives by time, instead of the grid.
     pub law: Option<&'a [[f64; 4]]>,
-    /// Whether rows on the grid are kept; else circuits have a course.
-    pub keep: bool,
 }
 
 /// The circuit of some passes.
-pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circuit {
+pub(crate) fn circuit<S: Closed, D: Described>(
+    linkage: &D,
+    passes: &Passes<S>,
+    wanted: &Wanted,
+) -> OverInput<S> {
     let chain = passes.chain;
-    let Wanted { driver, follower, grid, speed, law, keep } = *wanted;
+    let Wanted { driver, follower, grid, speed, law, .. } = *wanted;
     let curve = &passes.curve;
     let gained = curve.gained();
     let closed = curve.is_closed();
@@ -204,7 +253,7 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
             })
         }),
         output_unit: if linkage.is_slide(follower.outer) {
-            linkage.size
+            linkage.size()
         } else {
             1.0
         },
@@ -216,29 +265,7 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
             .collect();
         rows = passes.law_rows(&inner_law, chain.is_turn(driver.inner), shift[driver.inner]);
     }
-    let offset = |column| linkage.chain_column(column).map_or(0.0, |c| shift[c]);
-    let mut rows = Rows {
-        rows,
-        offsets: (0..linkage.columns).map(offset).collect(),
-        speed: if law.is_some() {
-            1.0
-        } else {
-            speed * linkage.inward(driver.outer)
-        },
-        still: None,
-    };
-    // one without rows is no circuit, so a course is never of none
-    let course = (!keep && law.is_none() && !rows.is_empty()).then(|| {
-        let tally = rows.tally(linkage);
-        rows.rows = Vec::new();
-        Course {
-            followed: Followed::of(passes),
-            grid,
-            offsets: rows.offsets.clone(),
-            speed: rows.speed,
-            tally,
-        }
-    });
+    let offset = |column| linkage.followed_column(column).map_or(0.0, |c| shift[c]);
     let limits = [
         Limits::of(passes.limits.iter(), driver.inner),
         Limits::of(turnings.iter().map(|t| &t.node), follower.inner),
@@ -249,7 +276,17 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
         .iter()
         .map(|n| length(&chain.difference(first, &n.at)));
     let extent = apart.fold(0.0, f64::max);
-    Circuit { rows, course, measures: measures.at_speed(speed), limits, extent }
+    OverInput {
+        rows,
+        offsets: (0..linkage.columns()).map(offset).collect(),
+        speed: if law.is_some() {
+            1.0
+        } else {
+            speed * linkage.inward(driver.outer)
+        },
+        measures: measures.at_speed(speed),
+        reach: Reach { limits, extent },
+    }
 }
 
 /// The rows of a circuit on a grid of inputs, from its first to its last, and from the input zero where it goes round.
@@ -269,24 +306,24 @@ fn grid_rows<S: Closed>(passes: &Passes<S>, grid: (f64, f64)) -> Vec<Row<S>> {
 }
 
 /// A curve as the description has it.
-struct Seen<'a> {
-    linkage: &'a Loop,
-    passes: &'a Passes<'a>,
+struct Seen<'a, S: Closed, D> {
+    linkage: &'a D,
+    passes: &'a Passes<'a, S>,
     driver: Column,
     follower: Column,
     /// Whole turns that are added to each column.
-    shift: Columns,
+    shift: S::Columns<f64>,
 }
 
-impl Seen<'_> {
-    fn value(&self, column: Column, at: &Configuration) -> f64 {
+impl<S: Closed, D: Described> Seen<'_, S, D> {
+    fn value(&self, column: Column, at: &At<S>) -> f64 {
         (at.values[column.inner] + self.shift[column.inner]) / self.linkage.inward(column.outer)
     }
 
     /// The dead centres of the input, then those of the output.
-    fn dead_centres(&self, turnings: &[Turning]) -> Vec<DeadCentre> {
+    fn dead_centres(&self, turnings: &[Turning<S>]) -> Vec<DeadCentre> {
         let passes = self.passes;
-        let dead_centre = |kind, node: &Node, branch| DeadCentre {
+        let dead_centre = |kind, node: &Node<S>, branch| DeadCentre {
             kind,
             input: self.value(self.driver, &node.at),
             output: self.value(self.follower, &node.at),
@@ -311,7 +348,7 @@ impl Seen<'_> {
         self.range(self.driver, &mut self.passes.limits.iter().chain(self.ends()))
     }
 
-    fn output_range(&self, turnings: &[Turning]) -> Option<[f64; 2]> {
+    fn output_range(&self, turnings: &[Turning<S>]) -> Option<[f64; 2]> {
         // a closed circuit has its extremes where it turns back, an open one perhaps at its ends
         let open = !self.passes.curve.is_closed() || turnings.is_empty();
         let ends = self.ends().into_iter().filter(|_| open);
@@ -319,7 +356,7 @@ impl Seen<'_> {
     }
 
     /// The range of a column over some nodes; `None` for one that turns fully.
-    fn range(&self, column: Column, nodes: &mut dyn Iterator<Item = &Node>) -> Option<[f64; 2]> {
+    fn range(&self, column: Column, nodes: &mut dyn Iterator<Item = &Node<S>>) -> Option<[f64; 2]> {
         let wide = |[low, high]: [f64; 2], v: f64| [low.min(v), high.max(v)];
         (!self.passes.curve.goes_round(self.passes.chain, column.inner)).then(|| {
             nodes
@@ -328,7 +365,7 @@ impl Seen<'_> {
         })
     }
 
-    fn ends(&self) -> [&Node; 2] {
+    fn ends(&self) -> [&Node<S>; 2] {
         let nodes = &self.passes.curve.nodes;
         [&nodes[0], &nodes[nodes.len() - 1]]
     }
@@ -348,7 +385,7 @@ fn shift<S: Closed>(chain: &S, rows: &[Row<S>]) -> S::Columns<f64> {
 }
 
 /// Origin and step of the inputs of rows.
-pub(super) fn grid<S: Closed>(chain: &S, passes: &[Passes<S>], samples: usize) -> (f64, f64) {
+pub(crate) fn grid<S: Closed>(chain: &S, passes: &[Passes<S>], samples: usize) -> (f64, f64) {
     let slides = |p: &Passes<S>| chain.joints()[chain.joint_of(p.input)] == Joint::Slide;
     if !passes.first().is_some_and(slides) {
         return (0.0, TAU / samples as f64);

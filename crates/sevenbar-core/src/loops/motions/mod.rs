@@ -1,11 +1,11 @@
 //! `e(q) = 0` at each input along a circuit, with its rates: rows, dead centres, extremes, and the whole motion of a loop.
 
-pub(super) mod circuit;
+pub(crate) mod circuit;
 mod extremes;
-pub(super) mod measures;
+pub(crate) mod measures;
 mod met_twice;
-pub(super) mod motion;
-pub(super) mod passes;
+pub(crate) mod motion;
+pub(crate) mod passes;
 mod row;
 mod row_lanes;
-pub(super) mod rows;
+pub(crate) mod rows;

@@ -1,19 +1,19 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
-use super::circuit::{Circuit, Followed, Limit, Limits, Wanted, circuit, grid};
+use super::circuit::{Circuit, Followed, Limit, Limits, OverInput, Reach, Wanted, circuit, grid};
 use super::met_twice::{Held, HeldMotions, held_at};
 use super::passes::Passes;
 use crate::loops::branch_points::counting::Uncounted;
+use crate::loops::circuits::change_points as curve_points;
 use crate::loops::circuits::curve::Curve;
 use crate::loops::circuits::found::{Found, Search};
 use crate::loops::circuits::known_curves::Curves;
 use crate::loops::circuits::on_curve::lies_on;
 use crate::loops::circuits::search::curves;
-use crate::loops::description::described_loop::{Column, Loop};
+use crate::loops::description::described_loop::{Column, Described, Loop};
 use crate::loops::description::holding::{self, column_at_rest};
 use crate::loops::description::joint_values::{configuration, joint_values};
-use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::closed::Closed;
+use crate::loops::equation::closed::{At, Closed};
 use crate::loops::equation::rotations::short_way;
 use crate::loops::mobility::singular_place::SAME_LIMIT;
 use crate::loops::modes::finder::Completeness;
@@ -115,7 +115,7 @@ pub fn motion(
         motion.add(one, &asked);
     }
     let turns = [driver, follower].map(|column| chain.is_turn(column.inner));
-    let meeting = limits_meet(&motion.circuits, turns);
+    let meeting = limits_meet(motion.circuits.iter().map(|c| &c.reach), turns);
     motion.motion_type = motion_type(
         linkage,
         &motion.search,
@@ -137,45 +137,95 @@ fn held_motions(linkage: &Loop, curves: &Curves, wished: &[usize], first_only: b
 }
 
 /// The motion along curves, its type aside.
-fn followed(linkage: &Loop, mut curves: Curves, asked: &Asked) -> Option<Motion> {
+fn followed(linkage: &Loop, curves: Curves, asked: &Asked) -> Option<Motion> {
     let Asked { samples, speed, law, keep, .. } = *asked;
     let chain = linkage.reduced.chain.as_ref()?;
-    let (driver, follower) = ends(linkage, asked.input, asked.output)?;
+    let ends = ends(linkage, asked.input, asked.output)?;
+    let over = over_input(linkage, chain, curves, ends, (samples, speed, law));
+    let circuits = over
+        .circuits
+        .into_iter()
+        .zip(&over.passes)
+        .map(|(circuit, passes)| {
+            let circuit = Circuit::from(circuit);
+            if keep || law.is_some() {
+                circuit
+            } else {
+                circuit.on_course(linkage, passes, over.grid)
+            }
+        });
+    let circuits = circuits.collect();
+    let change_points = over.change_points.into_iter().map(|(at, circuits)| ChangePoint {
+        values: joint_values(linkage, &at.at),
+        circuits,
+        ways: at.rays.len() + at.lost,
+        freedoms: at.finite,
+    });
+    Some(Motion {
+        motion_type: "",
+        search: over.search,
+        circuits,
+        change_points: change_points.collect(),
+        moving: over.moving,
+    })
+}
+
+/// Curves over an input.
+pub(crate) struct Over<'a, S: Closed> {
+    /// The passes of each circuit.
+    pub passes: Vec<Passes<'a, S>>,
+    pub circuits: Vec<OverInput<S>>,
+    /// Each with the circuits that pass it or end there.
+    pub change_points: Vec<(curve_points::ChangePoint<S>, Vec<usize>)>,
+    /// As the curves have it, with columns of the description.
+    pub search: Search,
+    /// Columns of the description that move where the input rests, if it does somewhere.
+    pub moving: Option<Vec<usize>>,
+    /// Origin and step of the inputs of rows.
+    pub grid: (f64, f64),
+}
+
+/// Curves over an input, with so many samples a turn, at a speed or by a law.
+pub(crate) fn over_input<'a, S: Closed, D: Described>(
+    linkage: &D,
+    chain: &'a S,
+    mut curves: Curves<S>,
+    (driver, follower): (Column, Column),
+    (samples, speed, law): (usize, f64, Option<&[[f64; 4]]>),
+) -> Over<'a, S> {
     let own = std::mem::take(&mut curves.curves);
-    let rests = |c: &Curve| c.rests(driver.inner);
+    let rests = |c: &Curve<S>| c.rests(driver.inner);
     let moving = own.iter().any(rests).then(|| moving(linkage, &own));
-    let passes: Vec<Passes> = own
+    let passes: Vec<Passes<S>> = own
         .into_iter()
         .filter(|c| !rests(c))
         .filter_map(|c| Passes::new(chain, c, driver.inner))
         .collect();
-    let wanted = Wanted {
-        driver,
-        follower,
-        grid: grid(chain, &passes, samples),
-        speed,
-        law,
-        keep,
-    };
+    let grid = grid(chain, &passes, samples);
+    let wanted = Wanted { driver, follower, grid, speed, law };
     // a pose so far out that the loop hardly closes leaves nothing to tell
-    let (passes, circuits): (Vec<&Passes>, Vec<Circuit>) = passes
-        .iter()
-        .map(|p| (p, circuit(linkage, p, &wanted)))
-        .filter(|(_, c)| c.course.is_some() || !c.rows.is_empty())
+    let (passes, circuits): (Vec<Passes<S>>, Vec<OverInput<S>>) = passes
+        .into_iter()
+        .map(|p| {
+            let circuit = circuit(linkage, &p, &wanted);
+            (p, circuit)
+        })
+        .filter(|(_, c)| !c.rows.is_empty())
         .unzip();
-    let change_points: Vec<ChangePoint> = curves
-        .change_points
-        .iter()
-        .map(|point| ChangePoint {
-            values: joint_values(linkage, &point.at),
-            circuits: (0..passes.len())
-                .filter(|&k| point.is_on(chain, &passes[k].curve))
-                .collect(),
-            ways: point.rays.len() + point.lost,
-            freedoms: point.finite,
+    let on_circuits = |point: &curve_points::ChangePoint<S>| {
+        let numbers = 0..passes.len();
+        numbers
+            .filter(|&k| point.is_on(chain, &passes[k].curve))
+            .collect()
+    };
+    let change_points = curves.change_points.into_iter();
+    let change_points = change_points
+        .map(|point| {
+            let on = on_circuits(&point);
+            (point, on)
         })
         .collect();
-    let outer = |inner: usize| (0..linkage.columns).find(|&c| linkage.chain_column(c) == Some(inner));
+    let outer = |inner: usize| (0..linkage.columns()).find(|&c| linkage.followed_column(c) == Some(inner));
     let mut search = curves.search;
     search.columns = search.columns.iter().filter_map(|&c| outer(c)).collect();
     search.columns.sort_unstable();
@@ -183,7 +233,7 @@ fn followed(linkage: &Loop, mut curves: Curves, asked: &Asked) -> Option<Motion>
         count.column = outer(count.column).ok_or(Uncounted::Searched)?;
         Ok(count)
     });
-    Some(Motion { motion_type: "", search, circuits, change_points, moving })
+    Over { passes, circuits, change_points, search, moving, grid }
 }
 
 impl Motion {
@@ -224,9 +274,9 @@ impl Motion {
 ///
 /// Next to a kite folded flat the other joints nearly move with the input at rest, from one limit to the other, and it takes next to nothing
 /// to join these. Limits that are equal otherwise, as by symmetry, or overlap where an output dwells, join nothing.
-fn limits_meet(circuits: &[Circuit], turns: [bool; 2]) -> bool {
+pub(crate) fn limits_meet<'a>(circuits: impl Iterator<Item = &'a Reach> + Clone, turns: [bool; 2]) -> bool {
     (0..2).any(|k| {
-        let all = || circuits.iter().map(|c| &c.limits[k]);
+        let all = || circuits.clone().map(|c| &c.limits[k]);
         let resting = |limit: &&Limit| limit.bend.abs() < RESTING;
         let gap = |upper: f64, lower: f64| {
             let apart = lower - upper;
@@ -238,7 +288,7 @@ fn limits_meet(circuits: &[Circuit], turns: [bool; 2]) -> bool {
                 .filter(resting)
                 .any(|lower| (0.0..SAME_LIMIT).contains(&gap(upper.value, lower.value)))
         });
-        let nearly_nothing = circuits.iter().filter(|c| c.extent < NEARLY_A_POSE).any(|c| {
+        let nearly_nothing = circuits.clone().filter(|c| c.extent < NEARLY_A_POSE).any(|c| {
             let Limits { upper, lower } = &c.limits[k];
             matches!((upper.as_slice(), lower.as_slice()), (&[up, ..], &[low, ..]) if up.value - low.value < SAME_LIMIT)
         });
@@ -371,25 +421,27 @@ fn on_passes(
     law: Option<&[[f64; 4]]>,
 ) -> Circuit {
     let grid = grid(passes.chain, std::slice::from_ref(passes), samples);
-    circuit(
-        linkage,
-        passes,
-        &Wanted { driver, follower, grid, speed, law, keep: true },
-    )
+    let wanted = Wanted { driver, follower, grid, speed, law };
+    circuit(linkage, passes, &wanted).into()
 }
 
 /// Of the curves that were found from a pose the one it lies on, not one beyond a change point; where several meet there one on which
 /// the input moves.
-fn through(chain: &Chain, curves: Vec<Curve>, pose: &Configuration, input: usize) -> Option<Curve> {
-    let fits = |curve: &Curve| (lies_on(chain, curve, pose), !curve.rests(input));
+pub(crate) fn through<S: Closed>(
+    chain: &S,
+    curves: Vec<Curve<S>>,
+    pose: &At<S>,
+    input: usize,
+) -> Option<Curve<S>> {
+    let fits = |curve: &Curve<S>| (lies_on(chain, curve, pose), !curve.rests(input));
     curves.into_iter().max_by_key(fits)
 }
 
 /// The columns that move along some of the curves.
-fn moving(linkage: &Loop, curves: &[Curve]) -> Vec<usize> {
+fn moving<S: Closed, D: Described>(linkage: &D, curves: &[Curve<S>]) -> Vec<usize> {
     let moves = |c: usize| curves.iter().any(|curve| !curve.rests(c));
-    (0..linkage.columns)
-        .filter(|&column| linkage.chain_column(column).is_some_and(moves))
+    (0..linkage.columns())
+        .filter(|&column| linkage.followed_column(column).is_some_and(moves))
         .collect()
 }
 

@@ -23,6 +23,19 @@ pub(crate) struct Row<S: Closed = Chain> {
 }
 
 impl<S: Closed> Row<S> {
+    /// Its rates, which are those at unit speed of the input, at another speed.
+    pub fn rates_at(&self, speed: f64) -> Rates<S> {
+        let mut rates = self.rates;
+        let mut factor = 1.0;
+        for order in &mut rates {
+            factor *= speed;
+            for x in order.as_mut() {
+                *x *= factor;
+            }
+        }
+        rates
+    }
+
     /// The row at an input beyond a limit.
     pub fn missing(pass: usize) -> Self {
         let mut at = At::zero();

@@ -159,15 +159,7 @@ impl Rows {
 
     /// The row's rates at the speed asked for.
     fn rates(&self, row: &Row) -> Rates {
-        let mut rates = row.rates;
-        let mut factor = 1.0;
-        for order in &mut rates {
-            factor *= self.speed;
-            for x in order.iter_mut() {
-                *x *= factor;
-            }
-        }
-        rates
+        row.rates_at(self.speed)
     }
 }
 

@@ -1,5 +1,5 @@
 //! `A u = 0` with the input at its speed, as a power series in time: velocities, accelerations and jerks of joints, links and points.
 
-pub(super) mod points;
-pub(super) mod turns;
-pub(super) mod velocities;
+pub(crate) mod points;
+pub(crate) mod turns;
+pub(crate) mod velocities;

@@ -1,0 +1,361 @@
+//! Modes and the whole motion of a net of one freedom over any of its tree's columns.
+//!
+//! Modes at many values of the input, in closed form or searched for, are followed to curves as those of a single loop are.
+//!
+//! Source: docs/theory_nets.md, (8).
+
+use super::described::{DescribedNet, NetRow, NetRows};
+use super::freedoms::{Freedoms, freedoms};
+use super::modes::{Stage, modes as dyad_modes};
+use super::search::{STARTS, STARTS_OF_MANY, searched, settled};
+use super::sized::SizedNet;
+use crate::loops::circuits::change_points as curve_points;
+use crate::loops::circuits::found::Search;
+use crate::loops::circuits::known_curves::Curves;
+use crate::loops::description::described_loop::{Column, Described};
+use crate::loops::equation::closed::{At, Closed};
+use crate::loops::modes::finder::Completeness;
+use crate::loops::motions::circuit::{OverInput, Reach};
+use crate::loops::motions::motion::{limits_meet, over_input, through};
+use crate::outcome::CircuitMeasures;
+use std::f64::consts::TAU;
+
+/// Values of the input in a turn at which modes are sought.
+const SEEDS: usize = 24;
+
+/// Values of a slide at which they are, and how far apart [share of the size].
+const SLIDE_SEEDS: i32 = 24;
+const SLIDE_SEED: f64 = 0.02;
+
+/// How far a column of a given pose [rad, or relative to the size] may be moved to close the net.
+const PUT_RIGHT: f64 = 0.05;
+
+/// Why a net has no motion that is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotFollowed {
+    /// It has so many freedoms, not one.
+    Freedoms(usize),
+    /// It has so many columns, too many.
+    Columns(usize),
+    /// The input or the output is no column of the tree.
+    NoColumn,
+}
+
+/// What a motion is computed over.
+#[derive(Clone, Copy, Debug)]
+pub struct Over<'a> {
+    /// The input, a column of the description.
+    pub input: usize,
+    /// The output.
+    pub output: usize,
+    /// Rows in a turn.
+    pub samples: usize,
+    /// d(input)/dt
+    pub speed: f64,
+    /// The input and its derivatives by time, instead of a grid.
+    pub law: Option<&'a [[f64; 4]]>,
+}
+
+/// A circuit of a net.
+#[derive(Clone, Debug)]
+pub struct NetCircuit {
+    /// Its rows.
+    pub rows: NetRows,
+    /// What it is measured by.
+    pub measures: CircuitMeasures,
+}
+
+/// A pose at which curves meet, or that is isolated: the columns, the circuits by number, ways out, freedoms.
+pub type NetChangePoint = (Vec<f64>, Vec<usize>, usize, usize);
+
+/// The motion of a net.
+#[derive(Clone, Debug)]
+pub struct NetMotion {
+    /// The circuits' common type or "mixed", or why there are none.
+    pub motion_type: &'static str,
+    /// Where modes were sought, and what was found out.
+    pub search: Search,
+    /// The circuits.
+    pub circuits: Vec<NetCircuit>,
+    /// Poses at which the motion is not smooth.
+    pub change_points: Vec<NetChangePoint>,
+    /// Columns that move where the input rests, if it does somewhere.
+    pub moving: Option<Vec<usize>>,
+}
+
+/// What goes through a pose of a net.
+#[derive(Clone, Debug)]
+pub enum NetThrough {
+    /// A circuit.
+    Circuit(Box<NetCircuit>),
+    /// It does not close near it; how far it is from closing [rad, or relative to the size].
+    Apart(f64),
+    /// It closes, and no motion could be followed.
+    Still,
+    /// It moves with the input at rest: the columns that do.
+    InputRests(Vec<usize>),
+}
+
+/// Work on a net whose size the compiler knows.
+trait Sized {
+    type Out;
+    fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> Self::Out;
+}
+
+/// Does work on a net of one freedom, of the rows that repeat no others.
+fn sized<W: Sized>(described: &DescribedNet, work: W) -> Result<W::Out, NotFollowed> {
+    let Freedoms { rank, independent, .. } = freedoms(&described.net);
+    let count = described.net.steps.len();
+    if rank + 1 != count || independent.len() != rank {
+        return Err(NotFollowed::Freedoms(count - rank));
+    }
+    let net = &described.net;
+    match count {
+        0..=9 => Ok(work.run(&SizedNet::<9, 8, 3>::new(net, &independent))),
+        10..=17 => Ok(work.run(&SizedNet::<17, 16, 5>::new(net, &independent))),
+        _ => Err(NotFollowed::Columns(count)),
+    }
+}
+
+/// The columns of the description at each mode that is found from many places with a column at a value [rad, or length], and its closure
+/// error.
+pub fn searched_modes(
+    described: &DescribedNet,
+    column: usize,
+    value: f64,
+) -> Result<Vec<(Vec<f64>, f64)>, NotFollowed> {
+    struct Modes<'a>(&'a DescribedNet, usize, f64);
+    impl Sized for Modes<'_> {
+        type Out = Vec<(Vec<f64>, f64)>;
+        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> Self::Out {
+            let mut found = searched(net, self.1, self.2, STARTS);
+            found.retain(|at| self.0.closes(net.values(at), net.balls(at)));
+            let values_of = |at: &At<SizedNet<C, R, B>>| {
+                let values = self.0.outer_values(net.values(at), net.balls(at));
+                (values, net.residual(&net.place(at)))
+            };
+            found.iter().map(values_of).collect()
+        }
+    }
+    let held = described.followed(column).ok_or(NotFollowed::NoColumn)?;
+    sized(
+        described,
+        Modes(described, held.inner, value * described.inward(column)),
+    )
+}
+
+/// The whole motion of a net; its modes are those of dyads if it is made up of `stages`.
+pub fn net_motion(
+    described: &DescribedNet,
+    stages: Option<&[Stage]>,
+    over: &Over,
+) -> Result<NetMotion, NotFollowed> {
+    struct Motion<'a>(Asked<'a>, Option<&'a [Stage]>);
+    impl Sized for Motion<'_> {
+        type Out = NetMotion;
+        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> NetMotion {
+            self.0.motion(net, self.1)
+        }
+    }
+    sized(described, Motion(Asked::new(described, over)?, stages))
+}
+
+/// The one circuit through a pose of a net, given by the columns of the description.
+pub fn net_circuit_through(
+    described: &DescribedNet,
+    pose: &[f64],
+    over: &Over,
+) -> Result<NetThrough, NotFollowed> {
+    struct Circuit<'a>(Asked<'a>, Vec<f64>);
+    impl Sized for Circuit<'_> {
+        type Out = NetThrough;
+        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> NetThrough {
+            self.0.through(net, &self.1)
+        }
+    }
+    let pose = described.inner_values(pose);
+    sized(described, Circuit(Asked::new(described, over)?, pose))
+}
+
+/// A motion of a net that is wanted.
+struct Asked<'a> {
+    described: &'a DescribedNet,
+    ends: (Column, Column),
+    over: Over<'a>,
+}
+
+impl<'a> Asked<'a> {
+    fn new(described: &'a DescribedNet, over: &Over<'a>) -> Result<Self, NotFollowed> {
+        let column = |outer| described.followed(outer).ok_or(NotFollowed::NoColumn);
+        let ends = (column(over.input)?, column(over.output)?);
+        Ok(Self { described, ends, over: *over })
+    }
+
+    fn motion<const C: usize, const R: usize, const B: usize>(
+        &self,
+        net: &SizedNet<C, R, B>,
+        stages: Option<&[Stage]>,
+    ) -> NetMotion {
+        let curves = self.curves(net, stages);
+        let turns = [self.ends.0, self.ends.1].map(|column| net.is_turn(column.inner));
+        let (mut motion, reaches) = self.over(net, curves);
+        let meeting = limits_meet(reaches.iter(), turns);
+        motion.motion_type = motion_type(&motion, meeting);
+        motion
+    }
+
+    /// The circuits of curves, their common type aside, and how far each goes.
+    fn over<const C: usize, const R: usize, const B: usize>(
+        &self,
+        net: &SizedNet<C, R, B>,
+        curves: Curves<SizedNet<C, R, B>>,
+    ) -> (NetMotion, Vec<Reach>) {
+        let Over { samples, speed, law, .. } = self.over;
+        let over = over_input(self.described, net, curves, self.ends, (samples, speed, law));
+        let values_of = |(point, circuits): (curve_points::ChangePoint<SizedNet<C, R, B>>, Vec<usize>)| {
+            let values = self
+                .described
+                .outer_values(net.values(&point.at), net.balls(&point.at));
+            (values, circuits, point.rays.len() + point.lost, point.finite)
+        };
+        let change_points = over.change_points.into_iter().map(values_of).collect();
+        let (circuits, reaches) = over.circuits.into_iter().map(|c| circuit_of(net, c)).unzip();
+        let motion = NetMotion {
+            motion_type: "",
+            search: over.search,
+            circuits,
+            change_points,
+            moving: over.moving,
+        };
+        (motion, reaches)
+    }
+
+    /// The curves through the modes at many values of the input.
+    fn curves<const C: usize, const R: usize, const B: usize>(
+        &self,
+        net: &SizedNet<C, R, B>,
+        stages: Option<&[Stage]>,
+    ) -> Curves<SizedNet<C, R, B>> {
+        let input = self.ends.0.inner;
+        let turns = net.is_turn(input);
+        let drawn = self.described.net.drawn();
+        let values: Vec<f64> = if turns {
+            (0..SEEDS).map(|k| TAU * k as f64 / SEEDS as f64).collect()
+        } else {
+            (-SLIDE_SEEDS..=SLIDE_SEEDS)
+                .map(|k| drawn[input] + f64::from(k) * SLIDE_SEED)
+                .collect()
+        };
+        let mut curves = Curves::new(&[input, self.ends.1.inner]);
+        // modes at some values of a slide say nothing of those beyond
+        if stages.is_none() || !turns {
+            curves.search.completeness = Completeness::Searched;
+        }
+        curves.search.columns = vec![input];
+        curves.search.values = values.len();
+        curves.take(net, &[net.at(&drawn)], input);
+        for value in values {
+            let modes: Vec<At<SizedNet<C, R, B>>> = match stages {
+                Some(stages) => dyad_modes(&self.described.net, stages, input, value)
+                    .iter()
+                    .filter(|mode| !mode.on_curve)
+                    .map(|mode| net.at(&mode.values))
+                    .collect(),
+                None => searched(net, input, value, STARTS_OF_MANY),
+            };
+            let unknown = curves.unknown(net, &modes);
+            curves.take(net, &unknown, input);
+        }
+        curves.finish(net);
+        self.forget_open(net, &mut curves);
+        curves
+    }
+
+    /// Forgets curves along which rows that were left out, as they repeat others, do not agree: those of a net without these rows.
+    fn forget_open<const C: usize, const R: usize, const B: usize>(
+        &self,
+        net: &SizedNet<C, R, B>,
+        curves: &mut Curves<SizedNet<C, R, B>>,
+    ) {
+        let closes = |at: &At<SizedNet<C, R, B>>| self.described.closes(net.values(at), net.balls(at));
+        let before = curves.curves.len();
+        curves.curves.retain(|c| c.nodes.iter().all(|n| closes(&n.at)));
+        if curves.curves.len() < before {
+            curves.search.completeness = Completeness::Searched;
+            let own = &curves.curves;
+            curves
+                .change_points
+                .retain(|p| own.iter().any(|c| p.is_on(net, c)));
+        }
+    }
+
+    fn through<const C: usize, const R: usize, const B: usize>(
+        &self,
+        net: &SizedNet<C, R, B>,
+        pose: &[f64],
+    ) -> NetThrough {
+        let input = self.ends.0.inner;
+        let rough = net.at(pose);
+        let near = |at: &At<SizedNet<C, R, B>>| {
+            let moved = net.difference(&rough, at);
+            moved.iter().all(|d| d.abs() < PUT_RIGHT) && self.described.closes(net.values(at), net.balls(at))
+        };
+        let Some(at) = settled(net, input, &rough).filter(near) else {
+            return NetThrough::Apart(net.residual(&net.place(&rough)));
+        };
+        let mut curves = Curves::new(&[input, self.ends.1.inner]);
+        curves.take(net, &[at], input);
+        curves.finish(net);
+        let own = std::mem::take(&mut curves.curves);
+        let Some(curve) = through(net, own, &at, input) else {
+            return NetThrough::Still;
+        };
+        curves.curves = vec![curve];
+        let (motion, _) = self.over(net, curves);
+        match (motion.circuits.into_iter().next(), motion.moving) {
+            (Some(circuit), _) => NetThrough::Circuit(Box::new(circuit)),
+            (None, Some(moving)) => NetThrough::InputRests(moving),
+            (None, None) => NetThrough::Still,
+        }
+    }
+}
+
+/// A circuit whose size the compiler need not know, and how far it goes.
+fn circuit_of<const C: usize, const R: usize, const B: usize>(
+    net: &SizedNet<C, R, B>,
+    circuit: OverInput<SizedNet<C, R, B>>,
+) -> (NetCircuit, Reach) {
+    let used = net.used();
+    let rows = circuit.rows.iter().map(|row| NetRow {
+        values: net.values(&row.at).to_vec(),
+        balls: net.balls(&row.at).to_vec(),
+        rates: row.rates.map(|rates| rates[..used].to_vec()),
+        status: row.status,
+        pass: row.pass,
+        residual: row.residual,
+        condition: row.condition,
+    });
+    let rows = NetRows { rows: rows.collect(), offsets: circuit.offsets, speed: circuit.speed };
+    (NetCircuit { rows, measures: circuit.measures }, circuit.reach)
+}
+
+/// What the circuits have in common, or why there are none; `meeting` says that two limits of a column nearly do.
+fn motion_type(motion: &NetMotion, meeting: bool) -> &'static str {
+    let Some((first, others)) = motion.circuits.split_first() else {
+        return match &motion.search.found {
+            Some(found) if found.finite == 1 => "not-followed",
+            Some(_) => "rigid",
+            None if !motion.change_points.is_empty() => "rigid",
+            None => "cannot-assemble",
+        };
+    };
+    let changes = |(_, circuits, ways, _): &NetChangePoint| *ways == 0 || !circuits.is_empty();
+    let one = first.measures.motion_type;
+    if meeting || motion.change_points.iter().any(changes) {
+        "change-point"
+    } else if others.iter().all(|c| c.measures.motion_type == one) {
+        one
+    } else {
+        "mixed"
+    }
+}

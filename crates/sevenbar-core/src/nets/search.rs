@@ -1,0 +1,67 @@
+//! Poses of any net from many places, with a column held: Newton's method over the tree's columns.
+
+use super::sized::SizedNet;
+use crate::loops::equation::closed::{At, Closed, input_row};
+use crate::loops::modes::many_starts::{anywhere, same};
+use crate::loops::modes::polish::CLOSED;
+use crate::random::Random;
+use crate::stopping;
+
+/// Places from which modes at one value are searched, and at each of many values along which circuits are.
+pub(super) const STARTS: usize = 600;
+pub(super) const STARTS_OF_MANY: usize = 60;
+
+/// Most steps of Newton's method, and the longest [rad, or relative to the size].
+const MOST_STEPS: usize = 60;
+const LONGEST: f64 = 1.0;
+
+/// The closed pose that Newton's method leads to with a column held; `None` where it leads to none.
+pub(super) fn settled<const C: usize, const R: usize, const B: usize>(
+    net: &SizedNet<C, R, B>,
+    held: usize,
+    rough: &At<SizedNet<C, R, B>>,
+) -> Option<At<SizedNet<C, R, B>>> {
+    let mut at = *rough;
+    let row: [f64; C] = input_row(held);
+    let mut before = f64::INFINITY;
+    for _ in 0..MOST_STEPS {
+        stopping::piece();
+        let placed = net.place(&at);
+        let residual = net.residual(&placed);
+        // one step beyond where it closes
+        if residual < CLOSED && residual >= 0.5 * before {
+            return Some(at);
+        }
+        before = residual;
+        let mut by = net.inverse(&placed.screws, &row).times(&placed.error);
+        by[held] = 0.0;
+        let longest = by.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
+        if !longest.is_finite() {
+            return None;
+        }
+        let factor = (LONGEST / longest).min(1.0);
+        at = net.moved(&at, &by.map(|b| -b * factor));
+    }
+    (before < CLOSED).then_some(at)
+}
+
+/// The poses to which so many places lead, each once, with a column held at a value.
+pub(super) fn searched<const C: usize, const R: usize, const B: usize>(
+    net: &SizedNet<C, R, B>,
+    held: usize,
+    value: f64,
+    starts: usize,
+) -> Vec<At<SizedNet<C, R, B>>> {
+    let mut random = Random(0x5ea4c4);
+    let mut modes: Vec<At<SizedNet<C, R, B>>> = Vec::new();
+    for _ in 0..starts {
+        let mut rough = anywhere(net, held, value, &mut random);
+        rough.values[net.used()..].fill(0.0);
+        if let Some(mode) = settled(net, held, &rough)
+            && modes.iter().all(|m| !same(net, m, &mode))
+        {
+            modes.push(mode);
+        }
+    }
+    modes
+}
