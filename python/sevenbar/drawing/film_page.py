@@ -16,7 +16,7 @@ from sevenbar.drawing.names import named_together
 from sevenbar.drawing.output_curves import curves_of
 from sevenbar.drawing.scene import SAME, link_colours, paths, stays
 from sevenbar.drawing.skeleton import Skeleton
-from sevenbar.drawing.style import GROUND, PATH, circuit_colour
+from sevenbar.drawing.style import GROUND, PATH, ROD, circuit_colour
 from sevenbar.drawing.view import Projection
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
@@ -108,7 +108,12 @@ def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) ->
         "poses": _plain((poses - centre) / size),
         "links": [
             {"at": list(places), "colour": colour}
-            for places, colour in zip(frame.polylines, [*links, GROUND], strict=True)
+            for places, colour in zip(
+                # the ground is the last
+                (*frame.rods, *frame.polylines),
+                [*(ROD for _ in frame.rods), *links, GROUND],
+                strict=True,
+            )
         ],
         "marks": marks,
         "stays": [{"at": list(stay), "colour": colour} for stay, colour in stays(frame, ends)],

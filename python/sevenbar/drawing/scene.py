@@ -16,7 +16,18 @@ from sevenbar.drawing.names import amount_text, shown_name
 from sevenbar.drawing.skeleton import DrawnSphere, Skeleton
 from sevenbar.drawing.smooth import smooth_line
 from sevenbar.drawing.space import Box, ViewAxes, box_round, draw_axes, draw_frame
-from sevenbar.drawing.style import COUPLER, GROUND, INPUT, JOINT, OUTPUT, PATH, POINT_COLOURS, paler, stroke
+from sevenbar.drawing.style import (
+    COUPLER,
+    GROUND,
+    INPUT,
+    JOINT,
+    OUTPUT,
+    PATH,
+    POINT_COLOURS,
+    ROD,
+    paler,
+    stroke,
+)
 from sevenbar.drawing.view import Projection, wide_view
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import KINDS
@@ -249,6 +260,8 @@ def bars(
     if not ghost:
         for stay, colour in stays(frame, ends):
             add(stay, color=colour, lw=width / 3)
+    for rod in frame.rods:
+        add(rod, color=paler(ROD, FAINT) if ghost else ROD, lw=0.7 * width, zorder=order - 0.5)
     for places, colour in zip(map(frame.along, frame.graph.moving), colours, strict=True):
         ink = stroke() * (width + 1.4 * scale)
         outline = [] if ghost else [withStroke(linewidth=ink, foreground="#202020"), Normal()]
@@ -312,6 +325,8 @@ def keys(frame: Skeleton, ends: tuple[str, str], seen: Projection) -> list[Line2
         links.append((COUPLER, say("coupler") if alone else say("other moving links")))
     thick = stroke()
     result = [Line2D([], [], color=colour, lw=5 * thick, label=name) for colour, name in links]
+    if frame.rods:
+        result.append(Line2D([], [], color=ROD, lw=3 * thick, label=say("rods")))
     result.append(Line2D([], [], color=paler(GROUND, 0.35), lw=4 * thick, label=say("ground")))
     for letter, kind in KINDS.items():
         if letter in frame.linkage.kind:

@@ -26,6 +26,8 @@ AXIS, PLATE, RAIL = 0.075, 0.04, 0.1
 
 #: A point farther from the linkage than so many of its extents is left outside the picture.
 FARTHEST = 3.0
+#: A link of a net with more ends than these is drawn as a closed outline.
+MOST_ENDS = 2
 #: A spherical loop is drawn on the sphere of its farthest point if that is so many times larger than its own.
 LARGER = 2.0
 
@@ -51,7 +53,8 @@ class Skeleton:
     each joint on the link before it and on the link after it, `points` those of the named points, `stays` the
     places that tie each point to its link, `owners` that link's place among the `polylines`. `extent`
     [length] is what the sizes of the marks are shares of. `reach` is how far joints slide, least and most, by
-    the joint's number: across its axis (2,), or along it (1,). `sphere` is that of a spherical loop.
+    the joint's number: across its axis (2,), or along it (1,). `sphere` is that of a spherical loop, `rods`
+    the places of both ends of each rod.
     """
 
     linkage: Loop
@@ -66,6 +69,7 @@ class Skeleton:
     extent: float
     reach: Mapping[int, tuple[Floats, Floats]]
     sphere: DrawnSphere | None = None
+    rods: tuple[tuple[int, ...], ...] = ()
 
     def pose(self, row: float) -> Floats:
         """The places (k, 3) at a row, between two rows on the straight line between them."""
@@ -106,6 +110,7 @@ class Skeleton:
         """Pairs of places with a line between, that labels should keep off."""
         ends = [pair for line in self.polylines for pair in pairwise(line)]
         ends += [(places[0], places[-1]) for _, word, places in self.marks if word != "axis"]
+        ends += [(rod[0], rod[-1]) for rod in self.rods]
         return ends + [pair for stay in self.stays for pair in pairwise(stay)]
 
     @cached_property
@@ -224,8 +229,19 @@ def skeleton_of(
         for stretch in stretches:
             drawn: tuple[int, ...] = along(*stretch, shape.half) if shape.half else (feet[i][1],)
             marks += [(i, word, drawn) for word in shape.marks]
+    rods = [
+        tuple(
+            add((frames[:, link - 1] @ (*end, 1.0))[:, :3])
+            for link, end in zip(rod.between, rod.at, strict=True)
+        )
+        for rod in linkage.rods
+    ]
+    ends: dict[int, list[int]] = {link: [] for link in graph.links}
+    for rod, (first, second) in zip(linkage.rods, rods, strict=True):
+        ends[rod.between[0]].append(first)
+        ends[rod.between[1]].append(second)
     for link in graph.links:
-        steps = [feet[joint][graph.side(joint, link)] for joint in graph.joints_of(link)]
+        steps = [feet[joint][graph.side(joint, link)] for joint in graph.joints_of(link)] + ends[link]
         line = steps[:1]
         for start, end in pairwise(steps):
             if sphere:
@@ -235,6 +251,8 @@ def skeleton_of(
                 bends = len(like.along(link)) > 2 if like else _bends(corner, places[start], places[end])
                 line += [add(corner)] if bends else []
             line.append(end)
+        if linkage.net is not None and link != graph.ground and len(steps) > MOST_ENDS:
+            line.append(steps[0])
         links.append(tuple(line))
     solid = len(places)
     named = [""] * solid
@@ -250,6 +268,7 @@ def skeleton_of(
         np.stack(places, axis=1),
         tuple(named),
         polylines=tuple(links),
+        rods=tuple(rods),
         marks=tuple(marks),
         feet=tuple(feet),
         points=own,

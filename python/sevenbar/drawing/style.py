@@ -18,6 +18,9 @@ from sevenbar.text.words import language, spoken
 #: Links, from the colours of Okabe and Ito, which colour-blind readers can distinguish.
 INPUT, OUTPUT, COUPLER, GROUND = "#0072B2", "#D55E00", "#009E73", "#808080"
 
+#: Rods between two links of a net.
+ROD = "#5b6b7b"
+
 #: Joints that are neither input nor output, and the paths of joints between moving links.
 JOINT, PATH = "#9a9a9a", "#b5c7bd"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.loop.mobility import Mobility
 from sevenbar.kinematics.nets.drawn import DrawnPose, drawn_pose
 from sevenbar.kinematics.nets.order import Parts
@@ -12,15 +12,14 @@ from sevenbar.text.words import say
 MOST_OTHERS = 3
 
 
-def drawn_of(linkage: Linkage, mobility: Mobility) -> DrawnPose:
-    """What the drawn pose of a net is for its input."""
-    column = linkage.input_column()
+def drawn_of(linkage: Solvable, column: int, mobility: Mobility) -> DrawnPose:
+    """What the drawn pose of a net is for an input."""
     return drawn_pose(linkage, column, (mobility.finite or 0) + len(Parts(linkage).spins))
 
 
-def drawn_lines(linkage: Linkage, mobility: Mobility, drawn: DrawnPose) -> list[str]:
+def drawn_lines(linkage: Solvable, input: int, mobility: Mobility, drawn: DrawnPose) -> list[str]:
     """Sentences on a drawing that is not a pose like others of a net with one freedom."""
-    column = linkage.column_of(linkage.input_column())
+    column = linkage.column_of(input)
     lines = []
     if drawn.word == "rigid":
         lines.append(say("nothing moves; leave out a joint or a rod, or give a joint more freedoms"))

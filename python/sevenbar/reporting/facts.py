@@ -68,7 +68,7 @@ def closure_text(circuits: Iterable[Circuit], unit: str = "") -> str:
 def facts_of(motion: Motion) -> list[tuple[str, str]]:
     """What the report says of the motion as a whole: names, in English, and words."""
     linkage = motion.linkage
-    facts = [("loop", joints_text(linkage))] if linkage.net is None else net_facts(linkage)
+    facts = [("loop", joints_text(linkage))] if linkage.net is None else net_facts(motion)
     if linkage.form == "rows":
         closing, _ = linkage.graph.joints_of(linkage.graph.ground)
         number, _ = linkage.graph.between[closing]

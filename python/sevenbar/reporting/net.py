@@ -42,16 +42,16 @@ def net_page(linkage: Linkage) -> Page:
             "redundant": list(mobility.redundant),
         },
     )
-    drawn = drawn_of(linkage, mobility)
+    drawn = drawn_of(linkage, drive.number, mobility)
     facts.also(drawn=drawn.word)
-    for line in drawn_lines(linkage, mobility, drawn):
+    for line in drawn_lines(linkage, drive.number, mobility, drawn):
         facts.add("as drawn", line)
     for line in mobility.idle:
         facts.add("idle", retold(line))
     for line in repeated_lines(linkage, len(mobility.redundant)):
         facts.add("repeated", line)
     rows = [block_facts(linkage, block) for block in linkage.order.blocks]
-    facts.add("solving", order_text(linkage), order=[row.as_dict for row in rows])
+    facts.add("solving", order_text(linkage, drive.number), order=[row.as_dict for row in rows])
     parts = [facts_table(rows)] if rows else []
     return page(linkage.heading, facts, *parts)
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from sevenbar.kinematics.circuits.motion import Solvable
-from sevenbar.kinematics.nets.order import LinkBlock
+from sevenbar.kinematics.circuits.motion import Motion, Solvable
+from sevenbar.kinematics.nets.order import LinkBlock, order_of
+from sevenbar.reporting.drawn import drawn_lines, drawn_of
 from sevenbar.reporting.page import Facts
 from sevenbar.text.words import say
 
@@ -17,9 +18,13 @@ SOLVERS = {
 }
 
 
-def net_facts(linkage: Solvable) -> list[tuple[str, str]]:
-    """How many links and joints there are, and in which order they are solved."""
-    return [("net", net_text(linkage)), ("solving", order_text(linkage))]
+def net_facts(motion: Motion) -> list[tuple[str, str]]:
+    """How many links and joints there are, in which order they are solved, and what the drawing is."""
+    linkage, mobility = motion.linkage, motion.mobility
+    column = linkage.input_column(motion.input)
+    drawn = drawn_lines(linkage, column, mobility, drawn_of(linkage, column, mobility))
+    facts = [("net", net_text(linkage)), ("solving", order_text(linkage, column))]
+    return facts + [("as drawn", line) for line in drawn]
 
 
 def net_text(linkage: Solvable) -> str:
@@ -34,9 +39,9 @@ def net_text(linkage: Solvable) -> str:
     )
 
 
-def order_text(linkage: Solvable) -> str:
-    """In which order it is solved with its input held."""
-    order = linkage.order
+def order_text(linkage: Solvable, column: int) -> str:
+    """In which order it is solved with a column held."""
+    order = order_of(linkage, column)
     if order.free:
         return say("by the count these links keep a freedom: {links}", links=", ".join(order.free))
     if order.held:
@@ -68,7 +73,7 @@ def block_facts(linkage: Solvable, block: LinkBlock) -> Facts:
     return row
 
 
-def net_dict(linkage: Solvable) -> dict[str, Any]:
-    """The links of a net, and the order in which they are solved, as values."""
-    order = [block_facts(linkage, block).as_dict for block in linkage.order.blocks]
+def net_dict(linkage: Solvable, column: int) -> dict[str, Any]:
+    """The links of a net, and the order in which they are solved with a column held, as values."""
+    order = [block_facts(linkage, block).as_dict for block in order_of(linkage, column).blocks]
     return {"links": list(linkage.link_names), "order": order}

@@ -107,7 +107,7 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         "redundant": list(motion.redundant),
     }
     if linkage.net is not None:
-        report["net"] = net_dict(linkage)
+        report["net"] = net_dict(linkage, linkage.input_column(motion.input))
     return without_nan(report)  # type: ignore[no-any-return]
 
 

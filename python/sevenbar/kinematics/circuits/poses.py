@@ -116,7 +116,7 @@ def poses(linkage: Loop, q: Floats) -> Floats:
 
 
 def _poses_of_net(linkage: Loop, q: Floats) -> Floats:
-    """The same of a net, along a tree of its joints from the ground outwards; NaN of links that only rods hold."""
+    """The same of a net, along a tree of its joints from the ground on; NaN of links that only rods hold."""
     graph = linkage.graph
     result = np.full((len(q), graph.ground, 4, 4), np.nan)
     result[:, -1] = np.eye(4)
