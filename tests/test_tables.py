@@ -5,6 +5,7 @@ import io
 import math
 import re
 import sys
+from pathlib import Path
 
 import numpy as np
 import openpyxl
@@ -20,6 +21,8 @@ from sevenbar.description.table_writer import linkage_table, points_table
 from sevenbar.errors import DescriptionError, MissingExtraError, RequestError, TableError
 from sevenbar.export import export
 from tests.commands import mistake, sevenbar
+
+NETS = Path(__file__).parents[1] / "examples" / "nets"
 
 #: The 7R paper's rows, as they are in `seven_r`.
 ROWS = [(45, 80, 70), (15, -95, 10), (100, 0, 10), (-115, 0, 10), (10, -75, 10), (35, 80, 10), (35, 150, -60)]
@@ -553,3 +556,31 @@ def test_each_mistake_of_a_table_of_links_has_its_line_and_column(tmp_path, cont
     with pytest.raises(DescriptionError) as refused:
         sb.load(path)
     assert [line.removeprefix(f"{path}: ") for line in str(refused.value).splitlines()] == messages
+
+
+@pytest.mark.parametrize("name", ["watt", *(f"nets/{file.stem}" for file in sorted(NETS.glob("*.toml")))])
+def test_nets_go_to_tables_and_back(tmp_path, name):
+    linkage = sb.load(f"examples/{name}.toml")
+    head, rows = linkage_table(linkage)
+    path = tmp_path / "t.csv"
+    with path.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([[linkage.name], head, *rows])
+    book = saved(tmp_path / "t.xlsx", [[linkage.name], head, *rows], "linkage")
+    added = openpyxl.load_workbook(book)
+    sheet = added.create_sheet("points")
+    for row in [points_table(linkage)[0], *points_table(linkage)[1]]:
+        sheet.append(row)
+    added.save(book)
+    for back in (sb.load(path), sb.load(book), sb.loads(toml_text(path))):
+        assert np.array_equal(back.frames, linkage.frames)
+        assert (back.drive, back.name, back.columns) == (linkage.drive, linkage.name, linkage.columns)
+        assert (back.rods, back.link_names) == (linkage.rods, linkage.link_names)
+    assert sb.load(book).points == linkage.points
+
+
+def test_a_hinge_of_a_pin_with_several_may_drive_from_a_table(tmp_path):
+    pins = "name,x,y,links,input,output\nhub,0,0,frame; one; two,hub.2,\n,10,20,one; c,,\n,40,0,c; d,,\n,60,-9,d; two,,\nend,70,5,frame; d,,x\n"
+    path = tmp_path / "t.csv"
+    path.write_text(pins)
+    drive = sb.load(path).drive
+    assert (drive.joint, drive.output) == ("hub.2", "end")

@@ -15,7 +15,7 @@ from sevenbar.kinematics.loop.joints import KINDS, column_names
 ACROSS = [0, 0, 1]
 
 #: What separates the names of a text; where it has none of these, blanks do.
-SEPARATORS = r"[;,|+]"
+SEPARATORS = r"[;,|]"
 
 #: What the names of two links may look like.
 EXAMPLE = '["frame", "crank"]'
@@ -101,7 +101,7 @@ def label_of(table: Mapping[str, Any], default: str) -> tuple[str, bool]:
 
 
 def names_in(text: str) -> list[str]:
-    """The names in a text: between `;`, `,`, `|` or `+`, or between blanks where it has none of these.
+    """The names in a text: between `;`, `,` or `|`, or between blanks where it has none of these.
 
     >>> names_in("frame; lower arm"), names_in("frame crank")
     (['frame', 'lower arm'], ['frame', 'crank'])

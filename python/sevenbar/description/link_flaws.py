@@ -185,9 +185,9 @@ def drive_flaws(drive: Mapping[str, Any], joints: Sequence[Edge], rods: Sequence
         word = drive.get(key)
         if not isinstance(word, str) or word.strip() in names:
             continue
-        own = dict.fromkeys(joint.name for joint in joints if word.strip() in joint.between)
-        if own:
-            what = f"{shown(word)} is a link; give one of its joints: {', '.join(own)}"
+        of_link = dict.fromkeys(joint.name for joint in joints if word.strip() in joint.between)
+        if of_link:
+            what = f"{shown(word)} is a link; give one of its joints: {', '.join(of_link)}"
         elif word.strip() in [rod.name for rod in rods]:
             what = f"{shown(word)} is a rod, whose length stays; give a joint: {', '.join(sorted(names))}"
         else:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -25,6 +24,8 @@ class LinkCells(TableCells):
     def __init__(self, grid: CellTable, source: str, ground: str = "") -> None:
         super().__init__(grid, source)
         self.chosen_ground = ground
+        #: Whether points name their link, though this sheet has no joints.
+        self.by_name = False
 
     @property
     def names_links(self) -> bool:
@@ -35,8 +36,11 @@ class LinkCells(TableCells):
         """The links that a row names."""
         if "between" not in self.columns:
             return [name for key in BETWEEN if (name := self.text(row, key))]
-        # a data frame may have lists in its cells
-        return names_in(re.sub(r"[\[\]()'\"]", "", self.text(row, "between")))
+        text = self.text(row, "between")
+        if text[:1] in ("[", "("):
+            # a list in a cell of a data frame
+            return [name.strip("'\"") for name in names_in(text.strip("[]()"))]
+        return names_in(text)
 
     def joined(self, row: int, path: str, most: int | None = None) -> list[str]:
         """The links that a joint joins, two or up to `most`, at a path of the description."""

@@ -117,6 +117,7 @@ def add_points(found: TableDescription, grid: CellTable, source: str) -> None:
     """Adds the points of a sheet of their own."""
     reader = _Reader(grid, source)
     reader.length_unit = str(found.raw["length_unit"])
+    reader.by_name = "ground" in found.raw
     reader.places, reader.problems = found.places, [*reader.problems, *found.problems]
     points = [reader.point(row, len(found.raw.get("point", [])) + k) for k, row in enumerate(reader.filled)]
     found.problems = reader.problems
@@ -230,11 +231,12 @@ class _Reader(LinkCells):
             raw["rod"] = [self._rod(row, i, names[row]) for i, row in enumerate(rods)]
         if points:
             raw["point"] = [self.point(row, k) for k, row in enumerate(points)]
-        # a pin of several hinges drives by its first
-        several = {row: ".1" if form == "pin" and len(self.links_of(row)) > 2 else "" for row in joints}
         word = "pin" if form == "pin" else "theta"
-        ends = {row: f"{names[row] or f'{word}_{i}'}{several[row]}" for i, row in enumerate(joints, 1)}
+        ends = {row: names[row] or f"{word}_{i}" for i, row in enumerate(joints, 1)}
         drive = self._drive(ends)
+        # a pin of several hinges drives by its first
+        several = [ends[row] for row in joints if form == "pin" and len(self.links_of(row)) > 2]
+        drive |= {key: f"{end}.1" for key, end in drive.items() if key != "speed" and end in several}
         tables = [*raw[form], *raw.get("rod", [])]
         head: dict[str, Any] = {"ground": ground} if (ground := self.ground_of(tables)) else {}
         head |= {"drive": drive} if drive else {}
@@ -393,7 +395,7 @@ class _Reader(LinkCells):
             if key in self.columns:
                 self.note_place(f"{place}.{key}", row, key)
         name = self.text(row, "name") or self.text(row, "joint") or f"P{k + 1}"
-        if self.names_links:
+        if self.by_name or self.names_links:
             carrier = self.text(row, "link") or " ".join(self.links_of(row))
             if "link" not in self.columns:
                 self.note_place(

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from sevenbar.description.net_table import Cell, net_table
 from sevenbar.description.table_columns import DIMENSIONS
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.numbers.dimensions import description_of
 from sevenbar.kinematics.numbers.lengths import LONGER
-
-#: A cell: `None` is empty.
-Cell = str | float | int | None
 
 
 def linkage_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
@@ -22,6 +20,8 @@ def linkage_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
     (['M [mm]', 'N [mm]', 'L1 [mm]', 'L3 [mm]', 'D [mm]', 'input', 'speed'], \
 [[700, 700, 250, 550, 0, 'crank', '10.0 rad/s']])
     """
+    if linkage.net:
+        return net_table(linkage)
     raw = description_of(linkage)
     length, angle = linkage.length_unit, str(raw.get("angle_unit", "deg"))
     if linkage.form == "rssr":
@@ -70,7 +70,10 @@ def points_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
     """The head and the rows of the points that a person has added; no rows where there are none."""
     letters = "uvw" if linkage.in_rows else "xyz"
     head = ["name", "link", *(f"{letter} [{linkage.length_unit}]" for letter in letters)]
-    return head, [[point.name, point.link, *point.at] for point in linkage.added_points]
+    return head, [
+        [point.name, linkage.link_name(point.link) if linkage.net else point.link, *point.at]
+        for point in linkage.added_points
+    ]
 
 
 def _of_row(row: Mapping[str, Any], key: str) -> Cell:

@@ -69,8 +69,8 @@ def drawn_pose(linkage: Loop, column: int, freedoms: int) -> DrawnPose:
     if rates[driven][place] > STILL * max(rate.max() for rate in rates):
         return DrawnPose("regular")
     others = (
-        own.name
-        for own, rate in zip(linkage.joints, rates, strict=True)
+        one.name
+        for one, rate in zip(linkage.joints, rates, strict=True)
         if len(rate) == 1 and rate[0] > STILL * max(rate.max() for rate in rates)
     )
     return DrawnPose("dead-centre", tuple(others))
@@ -88,25 +88,25 @@ def _nearly(linkage: Loop, column: int, rows: Floats, names: list[str]) -> Nearl
     place = column - linkage.places[driven.joint].start
     openings = []
     for name in dict.fromkeys(names):
-        own = np.array([one == name for one in names])
+        opened = np.array([one == name for one in names])
         if name == linkage.joints[driven.joint].name:
             continue
-        _, values, vectors = np.linalg.svd(rows[~own])
+        _, values, vectors = np.linalg.svd(rows[~opened])
         free = vectors[int((values > NO_RANK * values[0]).sum()) :]
         rates = _rates(linkage, driven.joint, free.reshape(len(free), -1, 6))[:, place]
         if np.abs(rates).max(initial=0.0) > STILL:
             # the least opening, all free motions taken together, at one rad of the input
-            least = 1.0 / np.linalg.norm(np.linalg.pinv((rows[own] @ free.T).T) @ rates)
+            least = 1.0 / np.linalg.norm(np.linalg.pinv((rows[opened] @ free.T).T) @ rates)
             openings.append(Nearly(name, float(least * linkage.size)))
     return min(openings, key=lambda one: one.opens, default=None)
 
 
 def _steps(linkage: Loop, joint: int) -> Floats:
     """The screws (k, 6) of a joint's steps where it is drawn, lengths relative to the size."""
-    own = linkage.joints[joint]
+    moved = linkage.joints[joint]
     frames = [linkage.drawn_joint_on(joint, link) for link in linkage.graph.between[joint]]
     screws = []
-    for step in own.row.steps:
+    for step in moved.row.steps:
         if step.driven:
             continue
         frame = frames[1] if step.tilted else frames[0]
@@ -114,7 +114,7 @@ def _steps(linkage: Loop, joint: int) -> Floats:
         if step.freedom == "slide":
             screws.append([0.0, 0.0, 0.0, *axis])
         else:
-            advance = own.advance / linkage.size if own.row.is_screw else 0.0
+            advance = moved.advance / linkage.size if moved.row.is_screw else 0.0
             screws.append([*axis, *(np.cross(place, axis) + advance * axis)])
     return np.array(screws)
 
