@@ -236,12 +236,12 @@ def skeleton_of(
         )
         for rod in linkage.rods
     ]
-    ends: dict[int, list[int]] = {link: [] for link in graph.links}
-    for rod, (first, second) in zip(linkage.rods, rods, strict=True):
-        ends[rod.between[0]].append(first)
-        ends[rod.between[1]].append(second)
+    tips: dict[int, list[int]] = {link: [] for link in graph.links}
+    for rod, pair in zip(linkage.rods, rods, strict=True):
+        for link, tip in zip(rod.between, pair, strict=True):
+            tips[link].append(tip)
     for link in graph.links:
-        steps = [feet[joint][graph.side(joint, link)] for joint in graph.joints_of(link)] + ends[link]
+        steps = [feet[joint][graph.side(joint, link)] for joint in graph.joints_of(link)] + tips[link]
         line = steps[:1]
         for start, end in pairwise(steps):
             if sphere:

@@ -30,7 +30,7 @@ def net_facts(motion: Motion) -> list[tuple[str, str]]:
 def net_text(linkage: Solvable) -> str:
     """How many links, joints and rods there are."""
     return say(
-        "{links} links, {joints} joints, {rods} rod{s}; {ground} stands still",
+        "{links} links, {joints} joints, {rods} rod{s}; {ground} is the ground",
         links=linkage.graph.ground,
         joints=linkage.graph.joints.stop,
         rods=len(linkage.rods),

@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.loop.law import Law
     from sevenbar.kinematics.loop.mobility import Mobility
     from sevenbar.kinematics.loop.reason import Reason
-    from sevenbar.kinematics.nets.order import Order
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,11 +89,6 @@ class Solvable(Loop, ABC):
 
     @property
     @abstractmethod
-    def order(self) -> Order:
-        """The order in which it is solved with its input held."""
-
-    @property
-    @abstractmethod
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""
 
@@ -138,7 +132,7 @@ class Solvable(Loop, ABC):
 
     @abstractmethod
     def net_ratio_at_rest(self, pose: Floats, column: int, output: int) -> float | None:
-        """d(output)/d(input) of a net at a pose (columns,) where both rest; `None` where one of them moves."""
+        """d(output)/d(input) of a net at a pose (columns,) where both rest; `None` where one moves."""
 
     @abstractmethod
     def mobility(self, *, input: str | None = None, agree: float | None = None) -> Mobility:

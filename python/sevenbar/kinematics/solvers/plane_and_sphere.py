@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
@@ -113,7 +113,7 @@ def net_frames(net: Loop) -> Floats:
     return np.stack([net.drawn_joint_on(joint, before) for joint, (before, _) in between])
 
 
-def across(joints: Sequence[Joint], frames: Sequence[Floats]) -> Floats | None:
+def across(joints: Sequence[Joint], frames: Iterable[Floats]) -> Floats | None:
     """The direction (3,) about which all drawn joints turn, with slides square to it; else `None`."""
     turning, sliding = [], []
     for joint, frame in zip(joints, frames, strict=True):
