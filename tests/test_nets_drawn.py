@@ -36,12 +36,13 @@ def cranks(end):
 
 
 def drawn(linkage):
-    return drawn_of(linkage, linkage.mobility())
+    return drawn_of(linkage, linkage.input_column(), linkage.mobility())
 
 
 def lines(linkage):
     mobility = linkage.mobility()
-    return drawn_lines(linkage, mobility, drawn_of(linkage, mobility))
+    column = linkage.input_column()
+    return drawn_lines(linkage, column, mobility, drawn_of(linkage, column, mobility))
 
 
 def test_of_a_pose_like_others_there_is_no_sentence():

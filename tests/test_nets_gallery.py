@@ -72,7 +72,7 @@ def test_a_net_names_its_source_closes_as_drawn_and_has_one_freedom(name):
     remarks = re.match(r"(?:#.*\n)+", (FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
     assert re.search(r"\((?:17|18|19|20)\d\d\)", remarks[0]), "a source with its year"
     mobility = linkage.mobility()
-    assert (mobility.finite, drawn_of(linkage, mobility).word) == (1, "regular")
+    assert (mobility.finite, drawn_of(linkage, linkage.input_column(), mobility).word) == (1, "regular")
     assert len(mobility.idle) == len(linkage.rods)
     count, dyads = NETS[name]
     blocks = linkage.order.blocks

@@ -311,6 +311,20 @@ impl Net {
         })
     }
 
+    /// d(output)/d(input) at a pose (columns,) where both rest; none where one of them moves.
+    fn ratio_at_rest(
+        &self,
+        pose: PyReadonlyArray1<'_, f64>,
+        input: usize,
+        output: usize,
+    ) -> PyResult<Option<f64>> {
+        let pose = in_rows(&pose);
+        if pose.len() != self.described.column_count() {
+            return Err(CoreError::new_err("pose needs one value for each column"));
+        }
+        nets::ratio_at_rest(&self.described, &pose, input, output).map_err(not_followed)
+    }
+
     /// A point along rows of a circuit with three derivatives by time, (4, n, 3), in the report frame: of the link that a step carries (none
     /// for the ground), where it is drawn.
     fn point<'py>(

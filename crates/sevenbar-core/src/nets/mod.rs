@@ -24,7 +24,7 @@ pub use joints::{NetJoint, Reading};
 pub use modes::{Mode, Stage, modes};
 pub use motion::{
     NetChangePoint, NetCircuit, NetMotion, NetThrough, NotFollowed, Over, net_circuit_through, net_motion,
-    searched_modes,
+    ratio_at_rest, searched_modes,
 };
 pub use net::{Facing, Net};
 pub use order::{Block, Edge, Unbalanced, biconnected_parts, blocks};

@@ -10,6 +10,7 @@ use super::modes::{Stage, modes as dyad_modes};
 use super::search::{STARTS, STARTS_OF_MANY, searched, settled};
 use super::sized::SizedNet;
 use crate::loops::circuits::change_points as curve_points;
+use crate::loops::circuits::curve;
 use crate::loops::circuits::found::Search;
 use crate::loops::circuits::known_curves::Curves;
 use crate::loops::description::described_loop::{Column, Described};
@@ -29,6 +30,9 @@ const SLIDE_SEED: f64 = 0.02;
 
 /// How far a column of a given pose [rad, or relative to the size] may be moved to close the net.
 const PUT_RIGHT: f64 = 0.05;
+
+/// A rate by the length of the curve below which a column rests: a dead centre is known to the root of rounding.
+const RESTS: f64 = 1e-6;
 
 /// Why a net has no motion that is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,6 +179,30 @@ pub fn net_circuit_through(
     }
     let pose = described.inner_values(pose);
     sized(described, Circuit(Asked::new(described, over)?, pose))
+}
+
+/// d(output)/d(input) at a pose, given by the columns of the description, where both rest; `None` where one of them moves.
+pub fn ratio_at_rest(
+    described: &DescribedNet,
+    pose: &[f64],
+    input: usize,
+    output: usize,
+) -> Result<Option<f64>, NotFollowed> {
+    struct Ratio(Vec<f64>, [usize; 2]);
+    impl Sized for Ratio {
+        type Out = Option<f64>;
+        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> Option<f64> {
+            let node = curve::node_at(net, &net.at(&self.0))?;
+            let [input, output] = self.1;
+            let rests = |c: usize| node.rates[0][c].abs() < RESTS;
+            (rests(input) && rests(output)).then(|| node.rates[1][output] / node.rates[1][input])
+        }
+    }
+    let column = |outer| described.followed(outer).ok_or(NotFollowed::NoColumn);
+    let ends = [column(input)?.inner, column(output)?.inner];
+    let factor = described.inward(input) / described.inward(output);
+    let ratio = sized(described, Ratio(described.inner_values(pose), ends))?;
+    Ok(ratio.map(|ratio| ratio * factor))
 }
 
 /// A motion of a net that is wanted.

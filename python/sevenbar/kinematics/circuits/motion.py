@@ -137,6 +137,10 @@ class Solvable(Loop, ABC):
         """Why a motion of it has no circuit, or which link has no length."""
 
     @abstractmethod
+    def net_ratio_at_rest(self, pose: Floats, column: int, output: int) -> float | None:
+        """d(output)/d(input) of a net at a pose (columns,) where both rest; `None` where one of them moves."""
+
+    @abstractmethod
     def mobility(self, *, input: str | None = None, agree: float | None = None) -> Mobility:
         """How freely the loop moves where the input does."""
 

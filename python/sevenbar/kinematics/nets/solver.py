@@ -78,8 +78,8 @@ class NetSolver:
         if raw.moving is not None and not raw.circuits:
             raise at_rest(linkage, column, raw.moving)
         circuits = tuple(
-            self._circuit(i, tree, own, (column, output), speed, law)
-            for i, own in enumerate(zip(raw.circuits, rows, strict=True))
+            self._circuit(i, tree, raw_circuit, (column, output), speed, law)
+            for i, raw_circuit in enumerate(zip(raw.circuits, rows, strict=True))
         )
         return motion_from(
             raw,
@@ -102,10 +102,14 @@ class NetSolver:
         table = None if law is None else law.table
         raw = tree.followed(lambda core: core.circuit_through(pose, column, output, samples, speed, table))
         match raw:
-            case tuple() as own:
-                return self._circuit(0, tree, own, (column, output), speed, law)
+            case tuple() as circuit:
+                return self._circuit(0, tree, circuit, (column, output), speed, law)
             case other:
                 raise no_circuit(linkage, column, other, linkage.size)
+
+    def ratio_at_rest(self, pose: Floats, column: int, output: int) -> float | None:
+        """d(output)/d(input) at a pose (columns,) where both rest; `None` where one of them moves."""
+        return self._tree(column, output).followed(lambda core: core.ratio_at_rest(pose, column, output))
 
     def _tree(self, column: int, output: int) -> Tree:
         joints = [self._linkage.column_of(end).joint for end in (column, output)]
@@ -115,12 +119,12 @@ class NetSolver:
         self,
         index: int,
         tree: Tree,
-        own: CoreCircuit,
+        circuit: CoreCircuit,
         columns: tuple[int, int],
         speed: float,
         law: Law | None,
     ) -> Circuit:
-        raw, rows = own
+        raw, rows = circuit
 
         def trace(order: Integers, status: Words, link: int, at: Floats) -> Trace:
             step = tree.carrier[link]

@@ -91,16 +91,16 @@ class Tree:
         steps = row.steps if outwards else row.steps[::-1]
         # only a joint of one value reads another than 0 as drawn
         reads = self.linkage.joints[joint].value
-        own = self.columns[joint] = []
+        columns = self.columns[joint] = []
         for step in steps:
             if step.driven:
                 continue
             frame = second if step.tilted else first
             # the link before against the link after moves the other way round
             axis = frame[:3, step.axis] if outwards else -frame[:3, step.axis]
-            letter = "H" if row.is_screw else "S" if row.is_ball and not own else step.letter
+            letter = "H" if row.is_screw else "S" if row.is_ball and not columns else step.letter
             at = self._step(letter, advance if row.is_screw else 0.0, at, frame[:3, 3], axis, reads)
-            own.insert(len(own) if outwards else 0, at)
+            columns.insert(len(columns) if outwards else 0, at)
         self.carrier[after if outwards else before] = at
 
     def _free(self, link: int) -> None:

@@ -19,6 +19,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, Integers
 from sevenbar.kinematics.circuits.circuit import Circuit
+from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.circuits.poses import joint_frames, poses_along
 from sevenbar.kinematics.loop.geometry import Loop, moved_by
 from sevenbar.kinematics.solvers.general import Expanded, expanded
@@ -141,13 +142,17 @@ def axes_along(loop: Loop, circuit: Circuit, rows: Integers | None = None) -> Ax
     return Axes(expanded(loop), np.stack(directions), np.stack(places))
 
 
-def ratios_at_rest(loop: Loop, circuit: Circuit) -> dict[int, float]:
+def ratios_at_rest(loop: Solvable, circuit: Circuit) -> dict[int, float]:
     """d(output)/d(input) on the rows of dead centres of the input where the output rests, too."""
-    parts = expanded(loop)
-    ends = [parts.columns.index(column) for column in (circuit.input_column, circuit.output_column)]
     rows = np.flatnonzero((circuit.status == "dead-centre") & np.isfinite(circuit.q).all(axis=1))
-    axes = axes_along(loop, circuit, rows)
-    result = {int(row): axes.at(i).ratio(ends[0], ends[1], circuit.size) for i, row in enumerate(rows)}
+    first, second = circuit.input_column, circuit.output_column
+    if loop.net is not None:
+        result = {int(row): loop.net_ratio_at_rest(circuit.q[row], first, second) for row in rows}
+    else:
+        parts = expanded(loop)
+        ends = [parts.columns.index(column) for column in (first, second)]
+        axes = axes_along(loop, circuit, rows)
+        result = {int(row): axes.at(i).ratio(ends[0], ends[1], circuit.size) for i, row in enumerate(rows)}
     return {row: ratio for row, ratio in result.items() if ratio is not None}
 
 

@@ -20,7 +20,7 @@
 
 use crate::loops::equation::chain::Chain;
 use crate::loops::equation::closed::{At, Closed, Inverse, Joint, Screws, copied, twist_of};
-use crate::loops::equation::dense::{Array, combined, dot, length};
+use crate::loops::equation::dense::{Array, combined, dot, length, singular_values};
 use crate::loops::equation::rotations::{cross, short_way};
 use crate::loops::rates::velocities::{self, Rates};
 use crate::number::Number;
@@ -317,6 +317,14 @@ pub(super) fn stand<S: Closed, N: Number>(
         screws: placed.screws,
         inverse,
     }
+}
+
+/// The node at a closed configuration; `None` where its tangent is not known.
+pub(crate) fn node_at<S: Closed>(chain: &S, at: &At<S>) -> Option<Node<S>> {
+    let (_, vectors) = singular_values(&chain.screws(at));
+    let tangent: S::Columns<f64> = Array::padded(vectors.last()?, 0.0);
+    let node = stand(chain, at, &tangent).node;
+    node.inverse_norm.is_finite().then_some(node)
 }
 
 /// `k` of the argument on the curve itself, a step ahead, and `|A+| K5 s^5 / 120`.
