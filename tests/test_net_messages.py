@@ -262,6 +262,19 @@ def test_mistakes_of_links_and_of_numbers_are_reported_together():
     ]
 
 
+def test_names_of_a_kind_are_no_slips_of_each_other():
+    # two loose ends
+    raw = joint(3, between=["lower arm", "foot 1"])
+    raw["joint"][3]["between"] = ["upper arm", "foot 2"]
+    raw["rod"] = []
+    with pytest.raises(DescriptionError) as caught:
+        from_description(raw)
+    assert str(caught.value) == (
+        f"joint[3].between: 'foot 1' is named only here; {LOOSE}\n"
+        f"joint[4].between: 'foot 2' is named only here; {LOOSE}"
+    )
+
+
 def test_blanks_about_names_are_none_of_them():
     raw = pin(3, links=[" coupler", "rocker "]) | {"ground": " frame "}
     assert from_description(raw).link_names == from_description(WATT).link_names

@@ -14,6 +14,7 @@ from rich.console import Console
 
 import sevenbar as sb
 from commands import sevenbar
+from sevenbar.kinematics.loop.reason import no_length
 from sevenbar.reporting.report import as_dict, text
 from sevenbar.text.words import language
 from textbook_loops import four_bar_joints, linkage, rewritten, slider_crank_joints, spherical_joints
@@ -313,3 +314,17 @@ def test_reasons_are_in_chinese_and_in_json(tmp_path):
         ["a", "b", "d"],
         "crank-rocker",
     )
+
+
+def test_links_of_a_net_that_share_a_pin_have_their_length():
+    for name in ("jansen", "peaucellier"):
+        assert no_length(sb.load(f"examples/nets/{name}.toml")) is None
+    # a link whose two joints are one pin has none
+    pins = [
+        {"at": at, "links": links.split()}
+        for at, links in [
+            ((0, 0), "frame crank"), ((0, 0), "crank coupler"), ((9, 7), "coupler rocker"), ((10, 0), "rocker frame"),
+            ((12, 6), "rocker link"), ((20, 7), "link lever"), ((20, 0), "lever frame"),
+        ]
+    ]  # fmt: skip
+    assert no_length(sb.from_pins(pins, ground="frame")).joints == ("pin_1", "pin_2")

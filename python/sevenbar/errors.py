@@ -162,8 +162,8 @@ def bare(word: str) -> str:
     return word if word.isprintable() and len(word) <= 60 else shown(word)
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """The known word near to a word, empty where there is none.
+def nearest(word: str, known: Iterable[str], cutoff: float = 0.6) -> str:
+    """The known word near to a word, empty where none is; `cutoff` is the share of like letters.
 
     >>> nearest("crnak", ["crank", "rocker"])
     'crank'
@@ -172,7 +172,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
     from difflib import get_close_matches
 
     lowered = {k.lower(): k for k in known}
-    near = get_close_matches(word[:100].lower(), lowered, n=1, cutoff=0.6)
+    near = get_close_matches(word[:100].lower(), lowered, n=1, cutoff=cutoff)
     return lowered[near[0]] if near else ""
 
 

@@ -15,6 +15,9 @@ from sevenbar.errors import Problem, is_name, nearest, shown, suggestion
 #: Most joints and rods of a net.
 MOST_EDGES = 40
 
+#: Names with this share of like letters may be slips of each other; 'lower arm' and 'upper arm' are none.
+SLIP = 0.81
+
 #: What a link needs.
 LOOSE = "a link needs two joints, or a joint and a rod"
 
@@ -78,15 +81,22 @@ def _loose(edges: Sequence[Edge]) -> list[Problem]:
             continue
         # two names that are near each other are one link of two joints
         others = [other for other in alone if other != link and alone[other] is not edge]
-        if pair := nearest(link, others):
+        if pair := _slip(link, others):
             slips.add(pair)
             what = f"{shown(pair)} is named only here, and {shown(link)} only at {edge.place}"
             what += "; give them one name, or each another joint"
             problems.append(Problem(alone[pair].links_place, what))
         else:
-            near = suggestion(link, [other for other in counts if other not in alone])
+            near = _slip(link, [other for other in counts if other not in alone])
+            near = f"did you mean {shown(near)}? " if near else ""
             problems.append(Problem(edge.links_place, f"{shown(link)} is named only here; {near}{LOOSE}"))
     return problems
+
+
+def _slip(link: str, others: Sequence[str]) -> str:
+    """The other name of which a link's may be a slip; one that has another number is none."""
+    plain = re.sub(r"\d", "", link)
+    return nearest(link, [other for other in others if re.sub(r"\d", "", other) != plain], SLIP)
 
 
 def _joined_twice(joints: Sequence[Edge]) -> list[Problem]:

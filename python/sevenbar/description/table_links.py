@@ -74,7 +74,8 @@ class LinkCells(TableCells):
         if len(called) == 1 or self.problems:
             # links of a wrong cell are not known
             return next(iter([*called, *named]), "")
-        words = " or ".join(word for word in GROUND_WORDS if len(word) > 1)
+        *most, last = (word for word in GROUND_WORDS if len(word) > 1)
+        words = f"{', '.join(most)} or {last}"
         what = f"{' and '.join(called)} are links" if called else f"no link is called {words}"
         links = ", ".join(named)
         here = " or as ground=.." if self.grid.word == "data row" else ""

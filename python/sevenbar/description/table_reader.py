@@ -64,13 +64,17 @@ class TableDescription:
         try:
             linkage = make(self.raw, source)
         except DescriptionError as error:
-            result = [Problem(self._place(p.place), p.message) for p in error.problems]
+            result = [Problem(self._place(p.place), self._by_rows(p.message)) for p in error.problems]
             # of a row with a wrong cell the rest is not known
             rows = {p.place.partition(",")[0] for p in problems}
             problems += [p for p in result if re.split(r"[,:]", p.place)[0] not in rows]
         if problems:
             raise DescriptionError(problems, source)
         return linkage
+
+    def _by_rows(self, message: str) -> str:
+        """A message that names other tables of the description, by their rows."""
+        return re.sub(r"\b(?:pin|joint|rod)\[\d+\]", lambda m: self.places.get(m[0], m[0]), message)
 
     def toml(self, source: str) -> str:
         """The description as TOML text."""

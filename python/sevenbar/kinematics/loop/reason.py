@@ -47,8 +47,14 @@ class Reason:
 
 
 def no_length(loop: Loop) -> Reason | None:
-    """The first two joints of a link that turn about one axis, where there are any."""
+    """The first two joints of a link that turn about one axis and are all that it has, where there are any.
+
+    A link of a net with more joints may have two in one pin.
+    """
     for link in loop.graph.links:
+        rods = sum(link in rod.between for rod in loop.rods)
+        if len(loop.graph.joints_of(link)) + rods > 2:
+            continue
         for one, other in combinations(loop.graph.joints_of(link), 2):
             way = inverse(loop.joint_on(one, link)) @ loop.joint_on(other, link)
             same = math.hypot(*way[:2, 2]) <= AGREE and math.hypot(*way[:2, 3]) <= AGREE * loop.size
