@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.angle_doubts import warn_of_angles
-from sevenbar.description.links import has_links, named_links
 from sevenbar.description.proportions import disproportions
+from sevenbar.description.written import has_links
 from sevenbar.errors import (
     DescriptionError,
     Problem,
@@ -351,6 +351,8 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     from sevenbar.description.loop_schema import loop_alone
 
     if has_links(raw):
+        from sevenbar.description.links import named_links
+
         links = named_links(raw, source)
         if not links.is_loop:
             from sevenbar.description.net import net_of

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from sevenbar.description.written import entries
+from sevenbar.description.written import entries, has_links
 from sevenbar.errors import DescriptionError, Problem, is_name, shown, suggestion
 from sevenbar.kinematics.loop.graph import Graph
 
@@ -29,13 +29,6 @@ OTHER_SLOT = {"K": "L", "L": "K"}
 
 #: Tables that name a link, by the key that does.
 NAMING = {"point": "link", "body": "link", "load": "link", "rod": "link", "spring": "links"}
-
-
-def has_links(raw: Mapping[str, Any]) -> bool:
-    """Whether a file has links by name."""
-    if "pin" in raw:
-        return True
-    return any("between" in table for head in ("joint", "rod") for table in entries(raw, head))
 
 
 @dataclass(frozen=True)
