@@ -13,7 +13,7 @@ ENGLISH, CHINESE = QUICK
 SIMPLE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
-@pytest.mark.parametrize("name", ["quick-start", "planar", "papers", "zh/quick-start"])
+@pytest.mark.parametrize("name", ["quick-start", "planar", "nets", "papers", "zh/quick-start"])
 def test_the_examples_of_a_page_print_what_their_comments_say(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     page = (DOCS / f"{name}.md").read_text(encoding="utf-8")

@@ -32,22 +32,19 @@ Words = npt.NDArray[np.str_]
 ROUNDING = 1e-12
 
 
-#: What a result keeps arrays by name in.
-_MAPPINGS = (dict, MappingProxyType)
-
-
 class ReadOnly:
     """A result whose arrays cannot be written, nor those of its copies: they are what was computed."""
 
     def __post_init__(self) -> None:
-        for value in vars(self).values():
-            # an abstract Mapping is slow to recognise, and some results take no longer than that
-            if type(value) is np.ndarray:
-                value.setflags(write=False)
-            elif type(value) in _MAPPINGS:
+        for value in self.__dict__.values():
+            # some results take no longer than to recognise an abstract Mapping, or to read an argument's name
+            kind = type(value)
+            if kind is np.ndarray:
+                value.setflags(False)
+            elif kind is dict or kind is MappingProxyType:
                 for array in value.values():
                     if type(array) is np.ndarray:
-                        array.setflags(write=False)
+                        array.setflags(False)  # type: ignore[call-arg]
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         # arrays come out of a pickle, and out of a deep copy, as writable ones
@@ -76,6 +73,8 @@ def spread_array(name: str, values: npt.ArrayLike, count: int, whose: str) -> Fl
 
 def triple(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
     """Three finite numbers, or `RequestError`."""
+    if isinstance(values, tuple) and [*map(type, values)] == [float] * 3 and all(map(math.isfinite, values)):
+        return values
     array = finite_array(name, values)
     if array.size != 3:
         raise RequestError(f"{name}: {array.size} numbers; give three")

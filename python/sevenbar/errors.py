@@ -187,9 +187,10 @@ def check_word(key: str, word: object, known: Iterable[str], what: str = "offere
 
     >>> check_word("measure", "rms", ("greatest", "rms"))
     """
-    *most, last = known
+    words = tuple(known)
     # an array is equal to no word, and to each in every place
-    if not isinstance(word, str) or word not in (*most, last):
+    if not isinstance(word, str) or word not in words:
+        *most, last = words
         listed = f"{', '.join(most)} or {last}" if most else last
         near = suggestion(word, [*most, last])
         raise RequestError(f"{key}: {shown(word)} is not {what}; {near}give {listed}")

@@ -13,9 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.angle_doubts import warn_of_angles
-from sevenbar.description.links import has_links, named_links
 from sevenbar.description.proportions import disproportions
 from sevenbar.description.slots import angle_between, slots_aslant
+from sevenbar.description.written import has_links
 from sevenbar.errors import (
     DescriptionError,
     Problem,
@@ -380,6 +380,8 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     all that is wrong; `source` is the file it came from.
     """
     if has_links(raw):
+        from sevenbar.description.links import named_links
+
         links = named_links(raw, source)
         if not links.is_loop:
             from sevenbar.description.net import net_of

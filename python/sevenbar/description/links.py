@@ -21,7 +21,7 @@ from sevenbar.description.link_flaws import (
     naming_flaws,
     spelling_flaws,
 )
-from sevenbar.description.written import drive_of, entries
+from sevenbar.description.written import drive_of, entries, has_links
 from sevenbar.errors import DescriptionError, Problem, is_name, shown
 from sevenbar.kinematics.loop.graph import Graph
 
@@ -33,13 +33,6 @@ OTHER_SLOT = {"K": "L", "L": "K"}
 
 #: Tables that name a link, by the key that does.
 NAMING = {"point": "link", "body": "link", "load": "link", "rod": "link", "spring": "links"}
-
-
-def has_links(raw: Mapping[str, Any]) -> bool:
-    """Whether a file has links by name."""
-    if "pin" in raw:
-        return True
-    return any("between" in table for head in ("joint", "rod") for table in entries(raw, head))
 
 
 @dataclass

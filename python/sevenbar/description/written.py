@@ -141,6 +141,13 @@ def unknown_link(place: str, link: int, joints: Sequence[Written]) -> list[Probl
     return [Problem(place, f"{shown(link)} is not a link; give 1 to {ground}, the last is the ground")]
 
 
+def has_links(raw: Mapping[str, Any]) -> bool:
+    """Whether a file has links by name."""
+    if "pin" in raw:
+        return True
+    return any("between" in table for head in ("joint", "rod") for table in entries(raw, head))
+
+
 def entries(raw: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
     """The entries of a list of tables; one that is none counts as empty."""
     rows = raw.get(key)

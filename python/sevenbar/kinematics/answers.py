@@ -92,6 +92,11 @@ class LinkageAnswers:
 
     def transmission(self, circuit: Circuit) -> Extremes | None:
         """The extremes of it [rad]; `None` where it is not defined."""
+        from sevenbar.kinematics.transmission.angle import coupling_of
+
+        if coupling_of(self.linkage, circuit.input_column, circuit.output_column) is None:
+            return None
+        # most loops have no such angle
         from sevenbar.kinematics.transmission.search import transmission_extremes
 
         return transmission_extremes(self.linkage, circuit)

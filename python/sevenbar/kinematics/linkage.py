@@ -12,17 +12,15 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_number, is_number, spread_array, whole_number
 from sevenbar.errors import NotCoveredError, RequestError, check_kind, check_word, ends_here, shown
 from sevenbar.kinematics.answers import LinkageAnswers
-from sevenbar.kinematics.circuits.circuit import Circuit
-from sevenbar.kinematics.circuits.modes import Modes, Output
 from sevenbar.kinematics.circuits.motion import LEAST_AGREE, MOST_AGREE, HeldFreedoms, Motion, Solvable
 from sevenbar.kinematics.loop.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
 from sevenbar.kinematics.loop.single import check_single
-from sevenbar.kinematics.solvers.closed_form import ClosedForm
-from sevenbar.kinematics.solvers.general import AGREE, GeneralLoop
 
 if TYPE_CHECKING:
     from sevenbar.forces.acting import Load, Spring
     from sevenbar.forces.bodies import Body
+    from sevenbar.kinematics.circuits.circuit import Circuit
+    from sevenbar.kinematics.circuits.modes import Modes, Output
     from sevenbar.kinematics.circuits.one_pose import OnePose
     from sevenbar.kinematics.loop.grashof import FourBar
     from sevenbar.kinematics.loop.law import Law
@@ -31,6 +29,8 @@ if TYPE_CHECKING:
     from sevenbar.kinematics.nets.order import Order
     from sevenbar.kinematics.nets.solver import NetSolver
     from sevenbar.kinematics.ranges.stopped import Cones, Radii, Ranges
+    from sevenbar.kinematics.solvers.closed_form import ClosedForm
+    from sevenbar.kinematics.solvers.general import GeneralLoop
     from sevenbar.kinematics.solvers.plane_and_sphere import MotionPlane, MotionSphere
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
@@ -104,10 +104,15 @@ class Linkage(Solvable):
 
     @cached_property
     def _closed_form(self) -> ClosedForm:
+        # `import sevenbar` needs no solver, and most linkages need one of them
+        from sevenbar.kinematics.solvers.closed_form import ClosedForm
+
         return ClosedForm(self)
 
     @cached_property
     def _general(self) -> GeneralLoop:
+        from sevenbar.kinematics.solvers.general import AGREE, GeneralLoop
+
         return GeneralLoop(self, AGREE if self.agree is None else self.agree)
 
     @cached_property
@@ -134,6 +139,8 @@ class Linkage(Solvable):
         """
         if agree is None:
             return self
+        from sevenbar.kinematics.solvers.general import AGREE
+
         value = closure_tolerance("agree", agree)
         if value == AGREE and self.agree is None:
             return self
@@ -504,7 +511,8 @@ class Linkage(Solvable):
         return column, output_column, sample_count("samples", samples), self._speed(speed, column)
 
     def _has_closed_form(self, method: str) -> bool:
-        check_word("method", method, ("auto", "general"))
+        if method != "auto":
+            check_word("method", method, ("auto", "general"))
         if method != "auto" or self.kind != "RSSR":
             return False
         # the general way is not driven by a crank without length, which spins idly as the coupler does

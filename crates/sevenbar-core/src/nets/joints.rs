@@ -1,4 +1,4 @@
-//! What the joints of a net read where its links stand, as series in time.
+//! What the joints of a net read where its links are, as series in time.
 //!
 //! Source: docs/theory_nets.md, (9).
 

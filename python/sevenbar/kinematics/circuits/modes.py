@@ -11,6 +11,9 @@ import numpy as np
 from sevenbar.arrays import Floats, ReadOnly, Words
 from sevenbar.text.printing import Printed
 
+#: No poses.
+_NONE = np.empty(0)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Output(ReadOnly, Printed):
@@ -48,7 +51,7 @@ class Modes(ReadOnly, Printed):
     columns: tuple[str, ...]
     input: float
     #: Other poses that redundant constraints alone keep open: how much [rad, relative to the size], rising.
-    open_by: Floats = field(default_factory=lambda: np.empty(0))
+    open_by: Floats = field(default_factory=lambda: _NONE)
     #: The closure error [rad, relative to the size] up to which they agree; NaN where nothing is redundant.
     agree: float = math.nan
     #: A pose (columns,) on a curve of poses that all close at this input: the other joints can still move.

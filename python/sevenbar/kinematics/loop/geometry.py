@@ -37,6 +37,7 @@ from sevenbar.text.units import LENGTHS
 #: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, the same in the
 #: layout of planar textbooks, joints as drawn.
 Form = Literal["rssr", "rows", "planar", "drawn"]
+_FORMS = get_args(Form)
 
 #: A place in a description: keys of tables, and counts from 0 in lists.
 Place = tuple[str | int, ...]
@@ -67,12 +68,13 @@ class Joint:
     def __post_init__(self) -> None:
         check_word("kind", self.kind, JOINT_KINDS, "a joint kind")
         check_name("name", self.name)
-        angle = given_number("angle", self.angle, "rad")
-        object.__setattr__(self, "pitch", finite_number("pitch", self.pitch))
-        object.__setattr__(self, "angle", finite_number("angle", angle))  # type: ignore[arg-type]
         object.__setattr__(self, "backwards", truth("backwards", self.backwards))
-        value = given_number("value", self.value, "rad") if self.kind == "R" else self.value
-        object.__setattr__(self, "value", finite_number("value", value))  # type: ignore[arg-type]
+        for key, turns in (("pitch", False), ("angle", True), ("value", self.kind == "R")):
+            number = getattr(self, key)
+            # each load comes this way, with numbers that need nothing
+            if type(number) is not float or not math.isfinite(number):
+                number = given_number(key, number, "rad") if turns else number
+                object.__setattr__(self, key, finite_number(key, number))  # type: ignore[arg-type]
         if self.value and self.kind not in READ_KINDS:
             raise RequestError(f"value: {no_reading(self.kind)}")
 
@@ -246,7 +248,7 @@ class Loop(Drawable):
 
     def __post_init__(self) -> None:
         check_name("name", self.name)
-        check_word("form", self.form, get_args(Form))
+        check_word("form", self.form, _FORMS)
         check_word("length_unit", self.length_unit, LENGTHS, "a length unit")
         # a message is made only where it is needed: each load comes this way
         for name, (kind, what) in _PARTS.items():
@@ -488,8 +490,10 @@ class Loop(Drawable):
 
 def loop_frames(base: Floats, links: Floats, ground: Floats) -> Floats:
     """`frames` (n, 2, 4, 4) of a loop by its `base`, `links` and `ground`."""
-    after = np.broadcast_to(np.eye(4), links.shape)
-    return np.stack([np.concatenate([[base], links]), np.concatenate([after, [ground]])], axis=1)
+    result = np.empty((len(links) + 1, 2, 4, 4))
+    result[0, 0], result[1:, 0] = base, links
+    result[:-1, 1], result[-1, 1] = np.eye(4), ground
+    return result
 
 
 def following_coupler(

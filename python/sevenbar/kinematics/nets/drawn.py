@@ -28,7 +28,7 @@ NO_RANK = 1e-8
 #: then miss by some per cent of the motion, as those of rounded or mistyped numbers do.
 NEARLY = 0.1
 
-#: A joint that moves by less than this share of the others stands still.
+#: A joint that moves by less than this share of the others rests.
 STILL = 1e-6
 
 

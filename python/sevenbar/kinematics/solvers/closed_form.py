@@ -36,7 +36,7 @@ class ClosedForm:
     def __reduce__(self) -> tuple[type[ClosedForm], tuple[Solvable]]:
         return ClosedForm, (self._linkage,)
 
-    @property
+    @cached_property
     def size(self) -> float:
         """The size [length] of which residuals are parts."""
         return self._core.size
@@ -72,7 +72,8 @@ class ClosedForm:
     def modes(self, column: int, value: float) -> Modes:
         """Both ways to assemble it at one input."""
         q, residual = self._core.assembly_modes(value, _side(column))
-        return Modes(q, residual * self.size, "closed-form", self._linkage.columns, value)
+        residual *= self.size
+        return Modes(q, residual, "closed-form", self._linkage.columns, value)
 
     def motion(self, column: int, samples: int, speed: float, law: Law | None) -> Motion:
         """Every circuit over the whole range of one side."""

@@ -88,7 +88,8 @@ impl<'a> ModeFinder<'a> {
     /// ball may stand in a gimbal throughout.
     pub fn well_placed(chain: &'a Chain, input: usize) -> Self {
         let usual = Self::new(chain, input);
-        let is_lossy = usual.has_free_axes() && usual.is_degenerate();
+        // the added joints are about axes in general position: what is lost about these is about any others
+        let is_lossy = chain.ball_count() > 0 && usual.is_degenerate();
         let other = is_lossy.then(|| Self::about_other_axes(chain, input));
         other.filter(|o| !o.is_degenerate()).unwrap_or(usual)
     }
