@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -267,6 +268,14 @@ def test_a_net_at_its_change_point_goes_on_in_each_branch():
     # parallel cranks, and crossed ones, each with the dyad on either side
     parallel = [np.abs(np.exp(1j * (c["crank"] - c["pin_3"])) - 1).max() < 1e-9 for c in motion]
     assert sorted(parallel) == [False, False, True, True]
+
+
+def test_a_circuit_of_a_net_is_pickled_with_its_points():
+    linkage = suspension()
+    circuit = linkage.motion(24).circuits[0]
+    again = pickle.loads(pickle.dumps(circuit))
+    mine, theirs = (one.point(2, at=(1, 2, 3)) for one in (circuit, again))
+    assert np.array_equal(mine.acceleration, theirs.acceleration, equal_nan=True)
 
 
 def test_a_slide_drives_and_a_law_drives():

@@ -165,7 +165,10 @@ _RawDyad = tuple[
 
 @final
 class NetRows:
-    """The rows of a circuit of a net, which makes points of them."""
+    """The rows of a circuit of a net, which makes points of them; pickled as their numbers."""
+
+    def __new__(cls, numbers: _Floats, sizes: tuple[int, int], offsets: _Floats, speed: float) -> NetRows: ...
+    def __reduce__(self) -> tuple[type[NetRows], tuple[_Floats, list[int], _Floats, float]]: ...
 
 @final
 class Net:

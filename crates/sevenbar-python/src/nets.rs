@@ -10,6 +10,7 @@ use numpy::{
     PyReadonlyArray3,
 };
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 use sevenbar_core::nets::{
     self, DescribedNet, Dyad, Edge, Facing, Move, NetCircuit, NetJoint, NetThrough, NotFollowed, Over, Pair,
     Reading, Row, Stage, Step, Unbalanced,
@@ -23,9 +24,43 @@ pub(crate) struct Net {
     described: DescribedNet,
 }
 
-/// The rows of a circuit of a net, which makes points of them.
+/// The rows of a circuit of a net, which makes points of them; pickled as their numbers.
 #[pyclass(frozen, module = "sevenbar._core")]
 pub(crate) struct NetRows(nets::NetRows);
+
+/// Numbers of all rows, how many columns and balls are followed, turns to be added to each column, the speed.
+type NetRowNumbers<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    [usize; 2],
+    Bound<'py, PyArray1<f64>>,
+    f64,
+);
+
+#[pymethods]
+impl NetRows {
+    /// From what they are pickled as.
+    #[new]
+    fn new(
+        numbers: PyReadonlyArray1<'_, f64>,
+        sizes: [usize; 2],
+        offsets: PyReadonlyArray1<'_, f64>,
+        speed: f64,
+    ) -> PyResult<Self> {
+        nets::NetRows::from_numbers(&in_rows(&numbers), sizes, in_rows(&offsets).to_vec(), speed)
+            .map(Self)
+            .ok_or_else(|| CoreError::new_err("no rows of a circuit have these numbers"))
+    }
+
+    /// The class and what it makes these rows of again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, NetRowNumbers<'py>) {
+        let (numbers, sizes, offsets, speed) = self.0.numbers();
+        let array = |numbers: Vec<f64>| PyArray1::from_vec(py, numbers);
+        (
+            py.get_type::<Self>(),
+            (array(numbers), sizes, array(offsets), speed),
+        )
+    }
+}
 
 /// A joint: its letter, the angle of its cross (U), the steps that carry its links (none for the ground), and those of its columns, if it is
 /// in the tree.

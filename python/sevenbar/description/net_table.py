@@ -12,7 +12,7 @@ from sevenbar.kinematics.numbers.dimensions import description_of
 #: A cell: `None` is empty.
 Cell = str | float | int | None
 
-#: What stands between the names of a cell.
+#: What is between the names of a cell.
 BETWEEN_NAMES = "; "
 
 

@@ -219,6 +219,59 @@ impl DescribedNet {
     }
 }
 
+impl NetRows {
+    /// Every row as numbers, from which `from_numbers` makes it again to the last bit; how many columns and balls are followed, turns to be
+    /// added to each column of the description, and the speed.
+    pub fn numbers(&self) -> (Vec<f64>, [usize; 2], Vec<f64>, f64) {
+        let sizes = self
+            .rows
+            .first()
+            .map_or([0; 2], |row| [row.values.len(), row.balls.len()]);
+        let mut numbers = Vec::with_capacity(self.rows.len() * Self::count(sizes));
+        for row in &self.rows {
+            numbers.extend(&row.values);
+            numbers.extend(row.balls.as_flattened().as_flattened());
+            numbers.extend(row.rates.iter().flatten());
+            numbers.extend([
+                f64::from(row.status as u8),
+                row.pass as f64,
+                row.residual,
+                row.condition,
+            ]);
+        }
+        (numbers, sizes, self.offsets.clone(), self.speed)
+    }
+
+    /// How many numbers a row is.
+    fn count([columns, balls]: [usize; 2]) -> usize {
+        TERMS * columns + 9 * balls + 4
+    }
+
+    /// Rows of what `numbers` gave; `None` where these are no such numbers.
+    pub fn from_numbers(numbers: &[f64], sizes: [usize; 2], offsets: Vec<f64>, speed: f64) -> Option<Self> {
+        let [columns, balls] = sizes;
+        let rows = numbers.chunks(Self::count(sizes)).map(|row| {
+            let (values, rest) = row.split_at_checked(columns)?;
+            let (turned, rest) = rest.split_at_checked(9 * balls)?;
+            let (rates, rest) = rest.split_at_checked((TERMS - 1) * columns)?;
+            let &[status, pass, residual, condition] = rest else {
+                return None;
+            };
+            let ball = |b: usize| std::array::from_fn(|i| std::array::from_fn(|j| turned[9 * b + 3 * i + j]));
+            Some(NetRow {
+                values: values.to_vec(),
+                balls: (0..balls).map(ball).collect(),
+                rates: std::array::from_fn(|order| rates[order * columns..][..columns].to_vec()),
+                status: RowStatus::numbered(status)?,
+                pass: pass as usize,
+                residual,
+                condition,
+            })
+        });
+        Some(Self { rows: rows.collect::<Option<_>>()?, offsets, speed })
+    }
+}
+
 impl NetRow {
     /// Its columns as series by time, the input at a speed.
     fn series(&self, net: &Net, speed: f64) -> Columns {

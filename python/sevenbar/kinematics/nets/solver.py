@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from sevenbar.arrays import Floats, Integers, Words
@@ -10,7 +11,7 @@ from sevenbar.kinematics.circuits.from_core import circuit_from, motion_from, tr
 from sevenbar.kinematics.loop.mobility import Mobility
 from sevenbar.kinematics.nets.modes import dyads_of, net_modes
 from sevenbar.kinematics.nets.order import Parts, order_of
-from sevenbar.kinematics.nets.tree import CoreCircuit, Tree
+from sevenbar.kinematics.nets.tree import CoreCircuit, NetRows, Tree
 from sevenbar.kinematics.solvers.general import AGREE, at_rest, no_circuit
 
 if TYPE_CHECKING:
@@ -31,6 +32,10 @@ class NetSolver:
 
     def __init__(self, linkage: Solvable) -> None:
         self._linkage = linkage
+        self._trees: dict[tuple[int, int], Tree] = {}
+
+    def __reduce__(self) -> tuple[type[NetSolver], tuple[Solvable]]:
+        return NetSolver, (self._linkage,)
 
     def mobility(self, column: int) -> Mobility:
         """How freely the net moves about the drawn pose; the tree begins with a column's joint.
@@ -78,7 +83,7 @@ class NetSolver:
         if raw.moving is not None and not raw.circuits:
             raise at_rest(linkage, column, raw.moving)
         circuits = tuple(
-            self._circuit(i, tree, raw_circuit, (column, output), speed, law)
+            self._circuit(i, raw_circuit, (column, output), speed, law)
             for i, raw_circuit in enumerate(zip(raw.circuits, rows, strict=True))
         )
         return motion_from(
@@ -103,7 +108,7 @@ class NetSolver:
         raw = tree.followed(lambda core: core.circuit_through(pose, column, output, samples, speed, table))
         match raw:
             case tuple() as circuit:
-                return self._circuit(0, tree, circuit, (column, output), speed, law)
+                return self._circuit(0, circuit, (column, output), speed, law)
             case other:
                 raise no_circuit(linkage, column, other, linkage.size)
 
@@ -112,24 +117,22 @@ class NetSolver:
         return self._tree(column, output).followed(lambda core: core.ratio_at_rest(pose, column, output))
 
     def _tree(self, column: int, output: int) -> Tree:
-        joints = [self._linkage.column_of(end).joint for end in (column, output)]
-        return Tree(self._linkage, tuple(dict.fromkeys(joints)), order_of(self._linkage, column))
+        """The tree of an input and an output, made once."""
+        if (column, output) not in self._trees:
+            joints = [self._linkage.column_of(end).joint for end in (column, output)]
+            order = order_of(self._linkage, column)
+            self._trees[column, output] = Tree(self._linkage, tuple(dict.fromkeys(joints)), order)
+        return self._trees[column, output]
 
     def _circuit(
         self,
         index: int,
-        tree: Tree,
         circuit: CoreCircuit,
         columns: tuple[int, int],
         speed: float,
         law: Law | None,
     ) -> Circuit:
         raw, rows = circuit
-
-        def trace(order: Integers, status: Words, link: int, at: Floats) -> Trace:
-            step = tree.carrier[link]
-            return trace_from(None if step is None else tree.core.point(rows, step, at), order, status, at)
-
         return circuit_from(
             raw,
             linkage=self._linkage,
@@ -138,8 +141,22 @@ class NetSolver:
             speed=speed,
             law=law,
             size=self._linkage.size,
-            point=trace,
+            point=partial(self._trace, rows, columns),
         )
+
+    def _trace(
+        self,
+        rows: NetRows,
+        columns: tuple[int, int],
+        order: Integers,
+        status: Words,
+        link: int,
+        at: Floats,
+    ) -> Trace:
+        """A point along rows of a circuit over input and output `columns`, in an order and of a status."""
+        tree = self._tree(*columns)
+        step = tree.carrier[link]
+        return trace_from(None if step is None else tree.core.point(rows, step, at), order, status, at)
 
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""

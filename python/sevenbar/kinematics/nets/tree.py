@@ -25,8 +25,9 @@ from sevenbar.kinematics.nets.order import Order
 
 T = TypeVar("T")
 
-#: A circuit and its rows as the core has them.
-CoreCircuit = tuple[_core.RawCircuit, _core.NetRows]
+#: The rows of a circuit as the core has them, and a circuit with its rows.
+NetRows = _core.NetRows
+CoreCircuit = tuple[_core.RawCircuit, NetRows]
 
 
 @dataclass
