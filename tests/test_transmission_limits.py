@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from evidence.rewritten.families import lattice
+from evidence.rewritten.ways import scaled, ways
 from sevenbar.kinematics.circuits.poses import poses
 from textbook_loops import linkage, moved, rotation, slider_crank_joints, spherical_joints
 
@@ -245,3 +247,21 @@ def test_velocity_extremes_of_a_circuit_through_change_points_are_of_all_its_pas
         # both rest at a limit of the input, and the output's velocity has a limit there
         highest = max(abs(circuit.velocity.lowest), abs(circuit.velocity.highest))
         assert highest == pytest.approx(2.848415, abs=1e-5)
+
+
+@pytest.mark.parametrize("scale", [1.0, 1 / 3, 1e3])
+def test_an_angle_that_ends_in_zero_at_a_change_point_where_the_input_turns_back_is_zero_there(scale):
+    circuit = scaled(lattice(2567, seed=1), scale).linkage().motion(36).circuits[0]
+    # it grows with the root of the input: 0.0643 at 0.00459, 0.0912 at 0.00917
+    assert circuit.transmission.lowest == 0.0
+    assert circuit.transmission.lowest_at == pytest.approx(0.0, abs=1e-12)
+    assert circuit.transmission.highest == pytest.approx(0.596494997815, abs=1e-9)
+
+
+def test_extremes_are_known_where_a_row_has_no_solution():
+    # the drawn pose is an inflection: all joints move with the third root of the input
+    written = ways(lattice(1732, seed=1), np.random.default_rng(1))
+    moved_along = next(way for way in written if way.name == "places moved along axes")
+    angle = moved_along.linkage.motion(36).circuits[0].transmission
+    assert angle.lowest == 0.0
+    assert angle.highest == pytest.approx(1.38311054015888, abs=1e-9)

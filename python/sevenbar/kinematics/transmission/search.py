@@ -120,7 +120,9 @@ class _Search:
         """About each row of a walk where a size (n,) is lower or higher than its neighbours, and the ends."""
         result: list[tuple[int, _Stretch, float, float]] = []
         for number, part in enumerate(way.passes):
-            x, s = way.input[part], sizes[part]
+            known = np.isfinite(way.input[part])
+            # a row without a solution has no place
+            x, s = way.input[part][known], sizes[part][known]
             if len(x) < 3:
                 continue
             stretch = _Stretch.of(x, turns_back=len(way.passes) > 1)
@@ -194,7 +196,7 @@ class _AngleSearch(_Search):
         on_rows = limits | ~(made.share < NEAR_LIMIT)
         result = list(zip(angle[on_rows], rows.input[on_rows], strict=True))
         way = walk(rows)
-        result += self.between(way, np.sin(angle)[way.rows])
+        result += self.between(way, np.sin(angle)[way.rows], rows.input[rows.status == "change-point"])
         dead = [centre.input for centre in self.like.dead_centres if centre.kind == "input"]
         # of a circuit of which no row is there, all that is known is that it is a dead centre
         exact = [
@@ -217,11 +219,15 @@ class _AngleSearch(_Search):
             lowest_at, highest_at = (start + (x - start) % whole for x in (lowest_at, highest_at))
         return Extremes(lowest, lowest_at, highest, highest_at)
 
-    def between(self, way: Walk, sine: Floats) -> list[tuple[float, float]]:
-        """Angles and inputs where the sine (n,) along a walk is stationary, or passes zero."""
+    def between(self, way: Walk, sine: Floats, touched: Floats) -> list[tuple[float, float]]:
+        """Angles and inputs where the sine (n,) along a walk is stationary, passes zero, or ends `touched`.
+
+        Those are the inputs of change points.
+        """
         places: list[tuple[int, float]] = []
         zeros: list[tuple[float, float]] = []
         left = self.brackets(way, sine)
+        near = SAME_PLACE * float(np.ptp(way.input[np.isfinite(way.input)]))
         for _ in range(ROUNDS):
             if not left:
                 break
@@ -241,6 +247,13 @@ class _AngleSearch(_Search):
                     least = int(np.abs(sines).argmin())
                     ends = u[min(least + 1, len(u) - 1)], u[max(least - 1, 0)]
                     narrower.append((number, stretch, float(min(ends)), float(max(ends))))
+                elif not stretch.round:
+                    # a row at a change point has no angle; those of its pass lead up to a limit
+                    for end, place in ((-1.0, a), (1.0, b)):
+                        x = float(stretch.input(place))
+                        limit = math.atan2(abs(curves[0](end)), abs(curves[2](end)))
+                        if _nearest(touched, x) < near:
+                            zeros.append((limit if limit > AT_DEAD_CENTRE else 0.0, x))
                 passed = _passed(curves[0])
                 zeros += [(0.0, float(stretch.input((a + b) / 2 + (b - a) / 2 * root))) for root in passed]
                 for curve in (curves[0].deriv(), curves[1].deriv(), curves[2]):
