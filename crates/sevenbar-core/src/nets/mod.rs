@@ -2,6 +2,9 @@
 //!
 //! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `dyads`, `modes`, `described`, `sized`, `search`, `motion`.
 
+// indices of columns and rows run as in the formulas
+#![allow(clippy::needless_range_loop)]
+
 mod described;
 mod dyads;
 mod freedoms;

@@ -18,6 +18,7 @@ use crate::loops::equation::closed::{At, Closed};
 use crate::loops::modes::finder::Completeness;
 use crate::loops::motions::circuit::{OverInput, Reach};
 use crate::loops::motions::motion::{limits_meet, over_input, through};
+use crate::loops::motions::passes::Passes;
 use crate::outcome::CircuitMeasures;
 use std::f64::consts::TAU;
 
@@ -239,7 +240,9 @@ impl<'a> Asked<'a> {
         curves: Curves<SizedNet<C, R, B>>,
     ) -> (NetMotion, Vec<Reach>) {
         let Over { samples, speed, law, .. } = self.over;
-        let over = over_input(self.described, net, curves, self.ends, (samples, speed, law));
+        let selected = |_: &Passes<SizedNet<C, R, B>>, circuit, _: (f64, f64)| circuit_of(net, circuit);
+        let how = (samples, speed, law);
+        let over = over_input(self.described, net, curves, self.ends, how, &selected);
         let values_of = |(point, circuits): (curve_points::ChangePoint<SizedNet<C, R, B>>, Vec<usize>)| {
             let values = self
                 .described
@@ -247,7 +250,7 @@ impl<'a> Asked<'a> {
             (values, circuits, point.rays.len() + point.lost, point.finite)
         };
         let change_points = over.change_points.into_iter().map(values_of).collect();
-        let (circuits, reaches) = over.circuits.into_iter().map(|c| circuit_of(net, c)).unzip();
+        let (circuits, reaches) = over.circuits.into_iter().unzip();
         let motion = NetMotion {
             motion_type: "",
             search: over.search,

@@ -141,20 +141,17 @@ fn followed(linkage: &Loop, curves: Curves, asked: &Asked) -> Option<Motion> {
     let Asked { samples, speed, law, keep, .. } = *asked;
     let chain = linkage.reduced.chain.as_ref()?;
     let ends = ends(linkage, asked.input, asked.output)?;
-    let over = over_input(linkage, chain, curves, ends, (samples, speed, law));
-    let circuits = over
-        .circuits
-        .into_iter()
-        .zip(&over.passes)
-        .map(|(circuit, passes)| {
-            let circuit = Circuit::from(circuit);
-            if keep || law.is_some() {
-                circuit
-            } else {
-                circuit.on_course(linkage, passes, over.grid)
-            }
-        });
-    let circuits = circuits.collect();
+    // one after the other, since the rows of all may not fit into memory
+    let selected = |passes: &Passes, circuit, grid| {
+        let circuit = Circuit::from(circuit);
+        if keep || law.is_some() {
+            circuit
+        } else {
+            circuit.on_course(linkage, passes, grid)
+        }
+    };
+    let how = (samples, speed, law);
+    let over = over_input(linkage, chain, curves, ends, how, &selected);
     let change_points = over.change_points.into_iter().map(|(at, circuits)| ChangePoint {
         values: joint_values(linkage, &at.at),
         circuits,
@@ -164,35 +161,38 @@ fn followed(linkage: &Loop, curves: Curves, asked: &Asked) -> Option<Motion> {
     Some(Motion {
         motion_type: "",
         search: over.search,
-        circuits,
+        circuits: over.circuits,
         change_points: change_points.collect(),
         moving: over.moving,
     })
 }
 
 /// Curves over an input.
-pub(crate) struct Over<'a, S: Closed> {
-    /// The passes of each circuit.
-    pub passes: Vec<Passes<'a, S>>,
-    pub circuits: Vec<OverInput<S>>,
+pub(crate) struct Over<S: Closed, C> {
+    pub circuits: Vec<C>,
     /// Each with the circuits that pass it or end there.
     pub change_points: Vec<(curve_points::ChangePoint<S>, Vec<usize>)>,
     /// As the curves have it, with columns of the description.
     pub search: Search,
     /// Columns of the description that move where the input rests, if it does somewhere.
     pub moving: Option<Vec<usize>>,
-    /// Origin and step of the inputs of rows.
-    pub grid: (f64, f64),
 }
 
-/// Curves over an input, with so many samples a turn, at a speed or by a law.
-pub(crate) fn over_input<'a, S: Closed, D: Described>(
+/// Rows: so many samples a turn, at a speed, or by a law.
+pub(crate) type How<'a> = (usize, f64, Option<&'a [[f64; 4]]>);
+
+/// What is kept of a circuit, by its passes and the origin and step of the inputs of its rows.
+type Selected<'a, S, C> = dyn 'a + Fn(&Passes<S>, OverInput<S>, (f64, f64)) -> C;
+
+/// Curves over an input; `selected` is what is kept of each circuit, by its passes and the origin and step of the inputs of its rows.
+pub(crate) fn over_input<S: Closed, D: Described, C>(
     linkage: &D,
-    chain: &'a S,
+    chain: &S,
     mut curves: Curves<S>,
     (driver, follower): (Column, Column),
-    (samples, speed, law): (usize, f64, Option<&[[f64; 4]]>),
-) -> Over<'a, S> {
+    (samples, speed, law): How,
+    selected: &Selected<'_, S, C>,
+) -> Over<S, C> {
     let own = std::mem::take(&mut curves.curves);
     let rests = |c: &Curve<S>| c.rests(driver.inner);
     let moving = own.iter().any(rests).then(|| moving(linkage, &own));
@@ -204,13 +204,15 @@ pub(crate) fn over_input<'a, S: Closed, D: Described>(
     let grid = grid(chain, &passes, samples);
     let wanted = Wanted { driver, follower, grid, speed, law };
     // a pose so far out that the loop hardly closes leaves nothing to tell
-    let (passes, circuits): (Vec<Passes<S>>, Vec<OverInput<S>>) = passes
+    let (passes, circuits): (Vec<Passes<S>>, Vec<C>) = passes
         .into_iter()
-        .map(|p| {
+        .filter_map(|p| {
             let circuit = circuit(linkage, &p, &wanted);
-            (p, circuit)
+            (!circuit.rows.is_empty()).then(|| {
+                let circuit = selected(&p, circuit, grid);
+                (p, circuit)
+            })
         })
-        .filter(|(_, c)| !c.rows.is_empty())
         .unzip();
     let on_circuits = |point: &curve_points::ChangePoint<S>| {
         let numbers = 0..passes.len();
@@ -233,7 +235,7 @@ pub(crate) fn over_input<'a, S: Closed, D: Described>(
         count.column = outer(count.column).ok_or(Uncounted::Searched)?;
         Ok(count)
     });
-    Over { passes, circuits, change_points, search, moving, grid }
+    Over { circuits, change_points, search, moving }
 }
 
 impl Motion {
