@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Sized
-from decimal import Decimal
 from numbers import Real
 from types import MappingProxyType
 from typing import Any, TypeGuard
@@ -204,7 +203,9 @@ def short_way(angles: npt.ArrayLike) -> Floats:
 
 def _is_real(array: npt.NDArray[Any]) -> bool:
     # integers beyond 64 bits come as objects, as do a caller's own kinds of numbers
-    return array.dtype.kind in "iuf" or (
-        array.dtype.kind == "O"
-        and all(isinstance(x, Real | Decimal) and not isinstance(x, bool) for x in array.flat)
-    )
+    if array.dtype.kind != "O":
+        return array.dtype.kind in "iuf"
+    # few callers have them
+    from decimal import Decimal
+
+    return all(isinstance(x, Real | Decimal) and not isinstance(x, bool) for x in array.flat)

@@ -6,7 +6,6 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import count
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -33,7 +32,6 @@ from sevenbar.kinematics.loop.joint_text import check_own_unit
 from sevenbar.kinematics.loop.joints import KINDS
 from sevenbar.kinematics.loop.rigid import unit
 from sevenbar.kinematics.loop.stops import Cone, Stops
-from sevenbar.kinematics.numbers.lengths import LONGER, across, drawn_length, reached
 from sevenbar.text.listed import listed
 from sevenbar.text.units import LENGTHS, as_written, measured_unit
 
@@ -381,11 +379,9 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     """
     if has_links(raw):
         from sevenbar.description.links import named_links
+        from sevenbar.description.net import net_of
 
-        links = named_links(raw, source)
-        if not links.is_loop:
-            from sevenbar.description.net import net_of
-
+        if not (links := named_links(raw, source)).is_loop:
             return net_of(links, raw, source)
         try:
             return _of_loop(links.loop_tables(), source)
@@ -471,17 +467,21 @@ def _values(form: LoopForm) -> dict[Place, float]:
         for place, vector in vectors.items():
             result |= {("joint", i, *place, k): value for k, value in enumerate(vector)}
         if joint.longer is not None:
+            from sevenbar.kinematics.numbers.lengths import LONGER
+
             result["joint", i, LONGER] = joint.longer
     return result
 
 
 def _linkage(form: LoopForm, written: Form, joints: tuple[Joint, ...], **parts: Any) -> Linkage:
     """The linkage of a form's word at its numbers."""
-    # `import sevenbar` needs no words
+    # `import sevenbar` needs no words, and no lengths of drawings
+    from sevenbar.kinematics.numbers.lengths import across
     from sevenbar.kinematics.numbers.word import Slots, outer_of
 
     numbers = _values(form)
-    slots, values = Slots(zip(numbers, count())), np.array([*numbers.values()], dtype=np.float64)
+    slots = Slots((place, i) for i, place in enumerate(numbers))
+    values = np.array([*numbers.values()], dtype=np.float64)
     slots.across = across(_tables(form.joint or ()))
     slots.to_drawn = drawn_off_zero(joints)
     base, links, ground, frames = outer_of(written, [joint.kind for joint in joints], slots)
@@ -507,8 +507,7 @@ def _from_dimensions(form: LoopForm, rssr: RssrForm) -> Linkage:
         tuple(Joint(kind, name, backwards=name == "rocker") for name, kind in form.joints),
         points=(Point("A", 1, (rssr.L1, 0.0, 0.0)), Point("B", 3, (0.0, 0.0, 0.0))),
         dimensions={
-            key: rssr.coupler if key == "L2" else getattr(rssr, key)
-            for key in ("M", "N", "L1", "L2", "L3", "D")
+            k: rssr.coupler if k == "L2" else getattr(rssr, k) for k in ("M", "N", "L1", "L2", "L3", "D")
         },
     )
 
@@ -543,6 +542,8 @@ def _tables(drawn: Sequence[JointForm]) -> list[dict[str, Any]]:
 
 def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> Linkage:
     """Joints as drawn, each at the `value` that it is given there, or at zero."""
+    from sevenbar.kinematics.numbers.lengths import reached
+
     names, kinds = zip(*form.joints, strict=True)
     rssr = "".join(kinds) == "RSSR"
     problems = _coincident(drawn, names) if rssr else _coincident_balls(drawn)
@@ -551,7 +552,6 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
     ]
     if problems := problems or aslant or _too_short(drawn):
         raise DescriptionError(problems, source)
-    last = len(drawn) - 1
     joints = tuple(
         # a joint U at zero is not the identity: it turns from its first axis to its second
         Joint(
@@ -559,7 +559,7 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
             name,
             joint.pitch or 0.0,
             angle_between(*joint.axes) if joint.axes else 0.0,
-            backwards=i == last,
+            backwards=i + 1 == len(drawn),
             value=joint.value or 0.0,
         )
         for i, (joint, name) in enumerate(zip(drawn, names, strict=True))
@@ -570,20 +570,20 @@ def _from_drawing(form: LoopForm, drawn: tuple[JointForm, ...], source: str) -> 
 
 def _too_short(drawn: Sequence[JointForm]) -> list[Problem]:
     """Links that are longer than drawn, where the drawing gives no direction, or shorter by all they have."""
+    from sevenbar.kinematics.numbers.lengths import drawn_length
+
     tables, problems = _tables(drawn), []
-    for i, joint in enumerate(drawn):
+    for i, joint in enumerate(drawn, 1):
         if joint.longer is None:
             continue
-        length, place = drawn_length(tables, i), f"joint[{i + 1}].longer"
+        length, place = drawn_length(tables, i - 1), f"joint[{i}].longer"
         size = max(math.hypot(*np.subtract(other.at, joint.at)) for other in drawn)
         if not length > NO_LENGTH * size:
-            message = (
-                f"link {i + 1} has no length as drawn, so no direction; draw it with one, or leave this out"
-            )
-            problems.append(Problem(place, message))
+            why = f"link {i} has no length as drawn, so no direction; draw it with one, or leave this out"
+            problems.append(Problem(place, why))
         elif not length + joint.longer > NO_LENGTH * size:
-            message = f"{joint.longer:g} leaves nothing of link {i + 1}; give more than {-length:g}"
-            problems.append(Problem(place, message))
+            why = f"{joint.longer:g} leaves nothing of link {i}; give more than {-length:g}"
+            problems.append(Problem(place, why))
     return problems
 
 
