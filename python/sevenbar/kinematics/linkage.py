@@ -454,7 +454,7 @@ class Linkage(Solvable):
         self._refuse_unheld()
         return self.agreeing(agree)._general.circuit(values, column, output_column, samples, rate, law)
 
-    def net_ratio_at_rest(self, pose: Floats, column: int, output: int) -> float | None:
+    def _net_ratio_at_rest(self, pose: Floats, column: int, output: int) -> float | None:
         """d(output)/d(input) of a net at a pose (columns,) where both rest; `None` where one moves."""
         return self._net.ratio_at_rest(pose, column, output)
 

@@ -131,7 +131,7 @@ class Solvable(Loop, ABC):
         """Why a motion of it has no circuit, or which link has no length."""
 
     @abstractmethod
-    def net_ratio_at_rest(self, pose: Floats, column: int, output: int) -> float | None:
+    def _net_ratio_at_rest(self, pose: Floats, column: int, output: int) -> float | None:
         """d(output)/d(input) of a net at a pose (columns,) where both rest; `None` where one moves."""
 
     @abstractmethod

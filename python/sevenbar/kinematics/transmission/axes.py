@@ -147,7 +147,7 @@ def ratios_at_rest(loop: Solvable, circuit: Circuit) -> dict[int, float]:
     rows = np.flatnonzero((circuit.status == "dead-centre") & np.isfinite(circuit.q).all(axis=1))
     first, second = circuit.input_column, circuit.output_column
     if loop.net is not None:
-        result = {int(row): loop.net_ratio_at_rest(circuit.q[row], first, second) for row in rows}
+        result = {int(row): loop._net_ratio_at_rest(circuit.q[row], first, second) for row in rows}
     else:
         parts = expanded(loop)
         ends = [parts.columns.index(column) for column in (first, second)]
