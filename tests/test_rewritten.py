@@ -11,7 +11,7 @@ from evidence.rewritten.__main__ import compared
 from evidence.rewritten.answers import Answers, differences
 from evidence.rewritten.families import families, lattice
 from evidence.rewritten.reasons import reason
-from evidence.rewritten.ways import Way
+from evidence.rewritten.ways import Way, ways
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.report import as_dict
 
@@ -64,6 +64,13 @@ def test_a_loop_on_the_lattice_answers_alike(index: int) -> None:
     assert found.moves
     assert found.ways >= 20
     assert found.differences == []
+
+
+@pytest.mark.parametrize("written", ["as drawn", "turned and moved off", "mirrored and turned"])
+def test_an_output_that_rocks_by_one_turn_is_a_rocker_to_rounding(written: str) -> None:
+    # it turns back at -pi and at pi; the slides run off to infinity
+    way = next(way for way in ways(lattice(2165, seed=1), np.random.default_rng(1)) if way.name == written)
+    assert way.linkage.motion(36).motion_type == "double-rocker"
 
 
 def test_the_circuit_through_a_pose_is_the_one_it_lies_on() -> None:

@@ -11,6 +11,9 @@ use std::f64::consts::TAU;
 /// differences of coordinates are rounding, of three products for each of seven links.
 pub const NO_SIZE: f64 = 64.0 * f64::EPSILON;
 
+/// A range [rad] that exceeds a turn by less is one turn, between ends that are exact to rounding: a joint that rocks from -pi to pi.
+const ONE_TURN: f64 = 1e-9;
+
 /// A column of joint values, in the description and in the chain.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Column {
@@ -56,7 +59,7 @@ pub(crate) trait Described {
     fn role(&self, column: Column, range: Option<[f64; 2]>, endless: bool) -> Role {
         match range {
             _ if self.is_slide(column.outer) => Role::Slider,
-            Some([low, high]) if endless && high - low > TAU => Role::Spindle,
+            Some([low, high]) if endless && high - low > TAU + ONE_TURN => Role::Spindle,
             Some(_) => Role::Rocker,
             None => Role::Crank,
         }
