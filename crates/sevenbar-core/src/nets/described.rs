@@ -34,6 +34,8 @@ struct Columns {
 #[derive(Clone, Debug)]
 pub struct DescribedNet {
     pub(super) net: Net,
+    /// The same with lengths relative to the size.
+    relative: Net,
     joints: Vec<NetJoint>,
     columns: Vec<Outer>,
 }
@@ -93,7 +95,7 @@ impl DescribedNet {
             }
         }
         let joints = joints.into_iter().map(|(joint, _)| joint).collect();
-        Self { net, joints, columns }
+        Self { relative: net.relative(), net, joints, columns }
     }
 
     /// A column as it is followed; `None` of a joint that is not in the tree.
@@ -139,9 +141,9 @@ impl DescribedNet {
     fn poses(&self, columns: &Columns) -> Vec<Placement<Series<f64, TERMS>>> {
         let count = self.net.steps.len();
         let mut poses = vec![Placement::still(); count];
-        let relative = self.net.relative();
         let mut screws = vec![Screw::still(); count];
-        relative.place(&columns.values, &columns.balls, &mut poses, &mut screws);
+        self.relative
+            .place(&columns.values, &columns.balls, &mut poses, &mut screws);
         poses
     }
 

@@ -35,6 +35,9 @@ const PUT_RIGHT: f64 = 0.05;
 /// A rate by the length of the curve below which a column rests: a dead centre is known to the root of rounding.
 const RESTS: f64 = 1e-6;
 
+/// Most columns of a net that is followed.
+const MOST_COLUMNS: usize = 17;
+
 /// Why a net has no motion that is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotFollowed {
@@ -115,10 +118,11 @@ fn sized<W: Sized>(described: &DescribedNet, work: W) -> Result<W::Out, NotFollo
         return Err(NotFollowed::Freedoms(count - rank));
     }
     let net = &described.net;
-    match count {
-        0..=9 => Ok(work.run(&SizedNet::<9, 8, 3>::new(net, &independent))),
-        10..=17 => Ok(work.run(&SizedNet::<17, 16, 5>::new(net, &independent))),
-        _ => Err(NotFollowed::Columns(count)),
+    // one size for all: each costs as much code as the chain's
+    if count <= MOST_COLUMNS {
+        Ok(work.run(&SizedNet::<MOST_COLUMNS, 16, 5>::new(net, &independent)))
+    } else {
+        Err(NotFollowed::Columns(count))
     }
 }
 

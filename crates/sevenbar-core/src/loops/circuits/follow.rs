@@ -133,12 +133,15 @@ pub(super) fn walk_until<S: Closed>(
     let each = each.zip(reached.chunks_mut(together));
     for (((starts, curves), reached), narrowing) in each.zip(narrowing.chunks_mut(together)) {
         let walk = Walk { chain, starts, stops, until, curves, reached, narrowing, nodes: 0 };
-        if !S::SIDE_BY_SIDE {
-            Kernel::run::<false>(walk);
-        } else if walk.starts.len() == 1 {
-            simd::dispatch(walk);
+        // asked by itself, so that what is not wanted is not compiled
+        if S::SIDE_BY_SIDE {
+            if walk.starts.len() == 1 {
+                simd::dispatch(walk);
+            } else {
+                vectors::dispatch(walk);
+            }
         } else {
-            vectors::dispatch(walk);
+            Kernel::run::<false>(walk);
         }
     }
     (curves, reached)

@@ -31,12 +31,13 @@ pub(super) fn rows_near<S: Closed>(
     pass: usize,
     starts: &[Near<S>],
 ) -> Vec<Option<Row<S>>> {
-    if !S::SIDE_BY_SIDE {
-        return vec![None; starts.len()];
+    if S::SIDE_BY_SIDE {
+        let mut rows = Vec::with_capacity(starts.len());
+        dispatch(RowsNear { chain, input, pass, starts, rows: &mut rows });
+        rows
+    } else {
+        vec![None; starts.len()]
     }
-    let mut rows = Vec::with_capacity(starts.len());
-    dispatch(RowsNear { chain, input, pass, starts, rows: &mut rows });
-    rows
 }
 
 struct RowsNear<'a, S: Closed> {
