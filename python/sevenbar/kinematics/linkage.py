@@ -511,8 +511,7 @@ class Linkage(Solvable):
         return column, output_column, sample_count("samples", samples), self._speed(speed, column)
 
     def _has_closed_form(self, method: str) -> bool:
-        if method != "auto":
-            check_word("method", method, ("auto", "general"))
+        check_word("method", method, ("auto", "general"))
         if method != "auto" or self.kind != "RSSR":
             return False
         # the general way is not driven by a crank without length, which spins idly as the coupler does
