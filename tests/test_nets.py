@@ -528,6 +528,15 @@ def test_analyze_prints_freedoms_and_blocks(tmp_path):
     assert [block["links"] for block in order] == [["rocker", "link"], ["crank", "coupler"]]
     for words in (["--input", "nix"], ["--ranges"]):
         assert runner.invoke(app, ["analyze", str(file), *words]).exit_code != 0
+    assert runner.invoke(app, ["plot", str(file), "--out", str(tmp_path / "figures")]).exit_code == 0
+    table = tmp_path / "motion.csv"
+    assert runner.invoke(app, ["export", str(file), "--out", str(table)]).exit_code == 0
+    assert table.read_text(encoding="utf-8").count("\n") > 700
+    # a body or an engine's model is refused before a file is begun
+    for command in (["forces", str(file)], ["simulate", str(file)], ["export", str(file), "--to", "glb"]):
+        with pytest.raises(NotCoveredError, match="are of single loops"):
+            runner.invoke(app, command, catch_exceptions=False)
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["figures", "motion.csv", "watt.toml"]
 
 
 def test_rows_of_a_rod_keep_its_length():

@@ -301,6 +301,16 @@ def test_a_net_of_two_freedoms_or_none_has_no_motion():
         held.motion()
 
 
+def test_a_link_between_two_balls_moves_as_a_rod_and_says_so():
+    ends = [
+        {"name": f"end {k}", "kind": "S", "at": at, "between": [link, "track rod"]}
+        for k, (link, at) in enumerate(zip(TRACK_ROD["between"], TRACK_ROD["at"], strict=True))
+    ]
+    drawn = sb.from_axes([*WISHBONE, *ends], ground="frame", drive="lower")
+    with pytest.raises(NotCoveredError, match="'track rod' spins idly between two balls; write it as a rod"):
+        drawn.motion()
+
+
 def test_a_film_shows_every_row_of_a_platform_on_rods(tmp_path):
     linkage = suspension()
     motion = linkage.motion(24)

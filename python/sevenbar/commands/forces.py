@@ -17,6 +17,7 @@ from sevenbar.commands.poses import forces_at, refuse_at
 from sevenbar.errors import RequestError, no_joint, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import chosen_circuit
+from sevenbar.kinematics.loop.single import check_single
 from sevenbar.text.units import split_quantity
 
 
@@ -100,6 +101,7 @@ def forces(
     at_rest = unit is not None
     rate = f"1 {unit}" if unit else None if at_rest else speed
     loaded = sb.load(linkage)
+    check_single(loaded)
     if loaded.loading.is_empty:
         raise RequestError(f"{linkage}: {NOTHING_ACTS.format(place='it')}")
     names, known = options.words(joint, "--joint"), [one.name for one in loaded.joints]

@@ -23,6 +23,7 @@ from sevenbar.export.pose import Pose, extent_of, shortest_link
 from sevenbar.kinematics.loop.rigid import inverse, perpendicular, placed
 from sevenbar.kinematics.loop.rigid import pose as matrix
 from sevenbar.kinematics.loop.rigid import unit as unit_vector
+from sevenbar.kinematics.loop.single import check_single
 
 #: Sizes as shares of the height of a hub. A hole is wider than its shaft by what a fit would never be, so
 #: that no two parts touch.
@@ -132,7 +133,8 @@ def hub_height(pose: Pose) -> float:
 
 
 def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
-    """All parts in a pose, each joint at its seat."""
+    """All parts in a pose, each joint at its seat; raises `NotCoveredError` for a net."""
+    check_single(pose.linkage)
     linkage, graph = pose.linkage, pose.linkage.graph
     colours = _link_colours(pose)
     lines = pose.polylines()

@@ -360,7 +360,7 @@ class Linkage(Solvable):
     @property
     def idle_links(self) -> frozenset[int]:
         """Links, counted from 1, with a freedom of their own that moves no other link."""
-        return self._general.idle_links()
+        return self._net.idle_links() if self.net else self._general.idle_links()
 
     @property
     def followed_generally(self) -> bool:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sevenbar.kinematics.circuits.motion import Motion, Solvable
 from sevenbar.kinematics.nets.order import LinkBlock, order_of
 from sevenbar.reporting.drawn import drawn_lines, drawn_of
-from sevenbar.reporting.page import Facts
 from sevenbar.text.words import say
+
+if TYPE_CHECKING:
+    from sevenbar.reporting.page import Facts
 
 #: How links of a block are found, in words.
 SOLVERS = {
@@ -62,6 +64,9 @@ def names_of(linkage: Solvable, block: LinkBlock) -> list[str]:
 
 def block_facts(linkage: Solvable, block: LinkBlock) -> Facts:
     """A block as a row of a table, and by its keys."""
+    # JSON of a single loop needs nothing that prints pages
+    from sevenbar.reporting.page import Facts
+
     names = names_of(linkage, block)
     by = [linkage.joints[joint].name for joint in block.joints]
     by += [linkage.rods[rod].name for rod in block.rods]

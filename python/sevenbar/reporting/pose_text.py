@@ -155,7 +155,10 @@ def _vectors(linkage: Loop, known: Sequence[tuple[str, OnePose]], room: int) -> 
                 sheets += wide_sheets(first, selected, room)
                 selected = []
     links = [(mode, pose, link) for mode, pose in known for link in pose.links]
-    first = [(say("mode"), [mode for mode, *_ in links]), (say("link"), [f"{link}" for *_, link in links])]
+    first = [
+        (say("mode"), [mode for mode, *_ in links]),
+        (say("link"), [linkage.link_label(link) for *_, link in links]),
+    ]
     columns = []
     for order, (mark, end) in enumerate((("ω", "rad/s"), ("α", "rad/s²")), start=1):
         rows = np.array(

@@ -57,7 +57,7 @@ def _(linkage: Linkage) -> str:
         ("loop" if linkage.net is None else "joints", joints_text(linkage)),
         ("dimensions", dimensions_text(linkage) or _rows(linkage)),
         ("drive", drive_text(drive.joint, drive.speed, linkage.unit_of(drive.joint), drive.output)),
-        ("points", ", ".join(f"{point.name} on link {point.link}" for point in linkage.points)),
+        ("points", ", ".join(f"{point.name} on {linkage.link_name(point.link)}" for point in linkage.points)),
         ("length unit", linkage.length_unit),
     ]
     return lines(f"Linkage '{linkage.heading}'", facts)

@@ -94,7 +94,7 @@ def _as_dict(links: Sequence[int], relative_to: int | None, motion: Motion) -> d
 def _text(links: Sequence[int], relative_to: int | None, motion: Motion) -> RenderableType:
     linkage = motion.linkage
     unit = linkage.length_unit
-    other = "the ground" if relative_to in (None, linkage.graph.ground) else f"link {relative_to}"
+    other = "the ground" if relative_to in (None, linkage.graph.ground) else linkage.link_name(relative_to)
     heads = ("link", "circuit", "axis", f"pitch\n[{unit}/rad]", "rate\n[rad/s]", f"slide rate\n[{unit}/s]")
     rows = []
     for link in links:
@@ -105,7 +105,7 @@ def _text(links: Sequence[int], relative_to: int | None, motion: Motion) -> Rend
             scale = {"pitch": circuit.size, "rate": 0.0, "slide_rate": fastest}
             cells = [_range(ranges[name], REST * size) for name, size in scale.items()]
             words = ", ".join(f"{n} {word}" for word, n in counted(axes.status).items())
-            rows.append((f"{link}", f"{circuit.index}", words, *cells))
+            rows.append((linkage.link_label(link), f"{circuit.index}", words, *cells))
     title = Text(linkage.heading, style="bold underline")
     drive = drive_text(motion.input, motion.speed, linkage.unit_of(motion.input))
     facts = Text(f"screw axes against {other}, {drive}; --out writes all rows")

@@ -83,9 +83,10 @@ class Worker(threading.Thread):
         try:
             action()
         except Exception:
-            # the page may be gone
+            # the page may be gone, and is where the tab has ended meanwhile
             with suppress(Exception):
-                self._fault()
+                if not self._ended:
+                    self._fault()
 
     def _begun(self, key: Hashable, one: _Asked) -> bool:
         """Takes an action out of what is asked for, unless another has taken its place."""

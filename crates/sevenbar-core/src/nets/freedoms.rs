@@ -102,8 +102,21 @@ fn at_pose(net: &Net, pose: &[f64]) -> Freedoms {
     }
 }
 
-/// Of so many rows those that repeat none before them, up to a rank (Gram and Schmidt).
+/// Of so many rows those that repeat none before them, as many as a rank.
 fn independent(columns: &[Vec<f64>], rows: usize, rank: usize) -> Vec<usize> {
+    let mut repeats = REPEATS;
+    loop {
+        let selected = apart(columns, rows, rank, repeats);
+        // where rows repeat others but for little, that little counts
+        if selected.len() == rank || repeats < f64::EPSILON {
+            return selected;
+        }
+        repeats *= 0.1;
+    }
+}
+
+/// Of so many rows, up to a rank, those of which more than this part is square to all before them (Gram and Schmidt).
+fn apart(columns: &[Vec<f64>], rows: usize, rank: usize, repeats: f64) -> Vec<usize> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let (mut selected, mut square): (Vec<usize>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
     for r in 0..rows {
@@ -119,7 +132,7 @@ fn independent(columns: &[Vec<f64>], rows: usize, rank: usize) -> Vec<usize> {
             }
         }
         let (length, whole) = (dot(&rest, &rest).sqrt(), dot(&row, &row).sqrt());
-        if selected.len() < rank && length > REPEATS * whole && whole > NO_RANK {
+        if selected.len() < rank && length > repeats * whole && whole > NO_RANK {
             square.push(rest.iter().map(|x| x / length).collect());
             selected.push(r);
         }

@@ -1,6 +1,6 @@
-//! Numbers as power series in time, so that what is written for numbers gives its derivatives: `x(t) = x0 + x1 t + x2 t^2 + ..`
+//! Numbers as power series in time, so that what is written for numbers gives its derivatives.
 //!
-//! Of one number or of several side by side; [`crate::taylor`] has what a plain number needs besides.
+//! `x(t) = x0 + x1 t + x2 t^2 + ..`, of one number or of several side by side; [`crate::taylor`] has what a plain number needs besides.
 
 use crate::loops::equation::rotations::{Rotation, cross};
 use crate::number::Number;

@@ -346,6 +346,10 @@ class Loop(Drawable):
         """What messages call a link, counted from 1."""
         return self.link_names[link - 1] if self.link_names else f"link {link}"
 
+    def link_label(self, link: int) -> str:
+        """What tables of links call a link, counted from 1: its name, or its number."""
+        return self.link_names[link - 1] if self.link_names else f"{link}"
+
     @property
     def in_rows(self) -> bool:
         """Whether it is written as rows, a row a link."""

@@ -11,5 +11,5 @@ def check_single(linkage: Loop) -> None:
     if linkage.net is not None:
         raise NotCoveredError(
             "net: its freedoms, modes and motion with rates, points and links are found; forces, ranges of "
-            "joints, sensitivities, exports and design are of single loops"
+            "joints, sensitivities, bodies, engines and design are of single loops"
         )

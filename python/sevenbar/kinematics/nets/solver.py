@@ -164,6 +164,10 @@ class NetSolver:
         spinning += [self._linkage.link_name(link) for link in Parts(self._linkage).spins.values()]
         return tuple(f"turn of {name} about the line of its two balls" for name in spinning)
 
+    def idle_links(self) -> frozenset[int]:
+        """The links, counted from 1, that have such a freedom."""
+        return frozenset(Parts(self._linkage).spins.values())
+
 
 def _listed(linkage: Solvable, links: list[int]) -> str:
     return ", ".join(map(linkage.link_name, links))

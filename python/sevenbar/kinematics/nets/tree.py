@@ -21,7 +21,7 @@ from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import X, Z
 from sevenbar.kinematics.nets.chords import ChordRow, Triple, joint_rows, rod_row, three
-from sevenbar.kinematics.nets.order import Order
+from sevenbar.kinematics.nets.order import Order, Parts
 
 T = TypeVar("T")
 
@@ -193,6 +193,9 @@ class Tree:
 
     def followed(self, work: Callable[[_core.Net], T]) -> T:
         """The result of work of the core, or why it follows no motion of this net."""
+        if spins := Parts(self.linkage).spins:
+            name = self.linkage.link_name(min(spins.values()))
+            raise NotCoveredError(f"net: '{name}' spins idly between two balls; write it as a rod")
         try:
             return work(self.core)
         except _core.CoreError as error:
