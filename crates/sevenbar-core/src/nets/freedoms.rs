@@ -107,7 +107,7 @@ fn independent(columns: &[Vec<f64>], rows: usize, rank: usize) -> Vec<usize> {
     let mut repeats = REPEATS;
     loop {
         let selected = apart(columns, rows, rank, repeats);
-        // where rows repeat others but for little, that little counts
+        // where rows nearly repeat others, what is left of them counts
         if selected.len() == rank || repeats < f64::EPSILON {
             return selected;
         }
