@@ -233,7 +233,7 @@ def test_a_motion_is_the_same_however_a_net_is_written():
     again = sb.from_pins(other, ground="L frame", drive="crank").motion(72, output="lever")
     assert again.limits == pytest.approx(plain.limits, abs=1e-10)
 
-    def told(motion):
+    def seen(motion):
         names = [motion.linkage.columns.index(name) for name in ("crank", "rocker", "lever")]
         return sorted(
             # of one that turns back either pass may be the first
@@ -244,7 +244,7 @@ def test_a_motion_is_the_same_however_a_net_is_written():
             for c in motion
         )
 
-    assert told(plain) == told(again)
+    assert seen(plain) == seen(again)
 
 
 def test_three_equal_cranks_move_as_one_parallelogram_drawn_bent_or_flat():

@@ -17,7 +17,7 @@ use crate::loops::description::described_loop::{Column, Described};
 use crate::loops::equation::closed::{At, Closed};
 use crate::loops::modes::finder::Completeness;
 use crate::loops::motions::circuit::{OverInput, Reach};
-use crate::loops::motions::motion::{limits_meet, over_input, through};
+use crate::loops::motions::motion::{PUT_RIGHT, common_type, limits_meet, over_input, through};
 use crate::loops::motions::passes::Passes;
 use crate::outcome::CircuitMeasures;
 use std::f64::consts::TAU;
@@ -28,9 +28,6 @@ const SEEDS: usize = 24;
 /// Values of a slide at which they are, and how far apart [share of the size].
 const SLIDE_SEEDS: i32 = 24;
 const SLIDE_SEED: f64 = 0.02;
-
-/// How far a column of a given pose [rad, or relative to the size] may be moved to close the net.
-const PUT_RIGHT: f64 = 0.05;
 
 /// A rate by the length of the curve below which a column rests: a dead centre is known to the root of rounding.
 const RESTS: f64 = 1e-6;
@@ -376,21 +373,13 @@ fn circuit_of<const C: usize, const R: usize, const B: usize>(
 
 /// What the circuits have in common, or why there are none; `meeting` says that two limits of a column nearly do.
 fn motion_type(motion: &NetMotion, meeting: bool) -> &'static str {
-    let Some((first, others)) = motion.circuits.split_first() else {
-        return match &motion.search.found {
-            Some(found) if found.finite == 1 => "not-followed",
-            Some(_) => "rigid",
-            None if !motion.change_points.is_empty() => "rigid",
-            None => "cannot-assemble",
-        };
-    };
-    let changes = |(_, circuits, ways, _): &NetChangePoint| *ways == 0 || !circuits.is_empty();
-    let one = first.measures.motion_type;
-    if meeting || motion.change_points.iter().any(changes) {
-        "change-point"
-    } else if others.iter().all(|c| c.measures.motion_type == one) {
-        one
-    } else {
-        "mixed"
-    }
+    let types = motion.circuits.iter().map(|c| c.measures.motion_type);
+    let points = motion.change_points.iter();
+    let points = points.map(|(_, circuits, ways, _)| (circuits.len(), *ways));
+    common_type(types, points, meeting).unwrap_or(match &motion.search.found {
+        Some(found) if found.finite == 1 => "not-followed",
+        Some(_) => "rigid",
+        None if !motion.change_points.is_empty() => "rigid",
+        None => "cannot-assemble",
+    })
 }

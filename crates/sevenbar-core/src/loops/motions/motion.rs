@@ -20,7 +20,7 @@ use crate::loops::modes::finder::Completeness;
 use crate::loops::modes::polish::{Settled, polish};
 
 /// How far a joint of a given pose [rad, or relative to the size] may be moved to close the loop.
-const PUT_RIGHT: f64 = 0.05;
+pub(crate) const PUT_RIGHT: f64 = 0.05;
 
 /// A circuit of less extent [rad, or relative to the size] is nearly an isolated pose: its other joints move about as little as the one
 /// whose limits meet.
@@ -306,8 +306,10 @@ fn motion_type(
     change_points: &[ChangePoint],
     meeting: bool,
 ) -> &'static str {
-    let Some((first, others)) = circuits.split_first() else {
-        return match &search.found {
+    let types = circuits.iter().map(|c| c.measures.motion_type);
+    let points = change_points.iter().map(|p| (p.circuits.len(), p.ways));
+    common_type(types, points, meeting).unwrap_or_else(|| {
+        match &search.found {
             Some(found) if found.finite > 1 => "two-inputs",
             // a motion was seen beside a pose, and could not be followed
             Some(found) if found.finite == 1 => "not-followed",
@@ -316,18 +318,27 @@ fn motion_type(
             // rank six at most
             None if !linkage.can_be_driven() && linkage.freedoms() > 7 => "two-inputs",
             None => "cannot-assemble",
-        };
-    };
+        }
+    })
+}
+
+/// The common type of circuits of these types, or "mixed"; none where there are no circuits. Of each change point it takes how many circuits
+/// meet there, and how many ways lead out.
+pub(crate) fn common_type(
+    mut types: impl Iterator<Item = &'static str>,
+    mut change_points: impl Iterator<Item = (usize, usize)>,
+    meeting: bool,
+) -> Option<&'static str> {
+    let one = types.next()?;
     // from an isolated pose, too, a circuit may grow
-    let changes = |p: &ChangePoint| p.ways == 0 || !p.circuits.is_empty();
-    let one = first.measures.motion_type;
-    if meeting || change_points.iter().any(changes) {
+    let changes = |(circuits, ways)| ways == 0 || circuits > 0;
+    Some(if meeting || change_points.any(changes) {
         "change-point"
-    } else if others.iter().all(|c| c.measures.motion_type == one) {
+    } else if types.all(|other| other == one) {
         one
     } else {
         "mixed"
-    }
+    })
 }
 
 /// The one circuit through a pose, given by its joint values and closed by Newton's method with the input held.
