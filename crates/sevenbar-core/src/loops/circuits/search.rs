@@ -71,7 +71,8 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
     let mut out = Curves::new(wished);
     out.search.columns.clone_from(&seeds);
     for seed in seeds {
-        let finder = ModeFinder::well_placed(chain, seed);
+        let usual = ModeFinder::new(chain, seed);
+        let finder = usual.better_placed().unwrap_or(usual);
         let searched = finder.completeness() == Completeness::Searched;
         if searched {
             out.search.completeness = Completeness::Searched;

@@ -27,8 +27,8 @@ pub fn modes(linkage: &Loop, column: usize, value: f64) -> Option<Modes> {
     let mut finder = ModeFinder::new(chain, input);
     let value = value * linkage.inward(column);
     let (mut found, mut fewer) = finder.once(value);
-    if fewer && finder.has_free_axes() {
-        finder = ModeFinder::well_placed(chain, input);
+    if fewer && let Some(better) = finder.better_placed() {
+        finder = better;
         (found, fewer) = finder.once(value);
     }
     let mut completeness = finder.completeness();

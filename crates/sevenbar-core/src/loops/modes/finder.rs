@@ -84,14 +84,13 @@ impl<'a> ModeFinder<'a> {
         Self::with_axes(chain, input, Pose::STILL.rotation, 0x5eed)
     }
 
-    /// With the turns of balls about other axes where solutions are lost with the usual ones, and are not with these: on some circuits a
-    /// ball may stand in a gimbal throughout.
-    pub fn well_placed(chain: &'a Chain, input: usize) -> Self {
-        let usual = Self::new(chain, input);
+    /// One with the turns of balls about other axes, if solutions are lost with these and are not with those: on some circuits a ball may
+    /// stand in a gimbal throughout.
+    pub fn better_placed(&self) -> Option<Self> {
         // the added joints are about axes in general position: what is lost about these is about any others
-        let is_lossy = chain.ball_count() > 0 && usual.is_degenerate();
-        let other = is_lossy.then(|| Self::about_other_axes(chain, input));
-        other.filter(|o| !o.is_degenerate()).unwrap_or(usual)
+        let is_lossy = self.chain.ball_count() > 0 && self.is_degenerate();
+        let other = is_lossy.then(|| Self::about_other_axes(self.chain, self.input));
+        other.filter(|o| !o.is_degenerate())
     }
 
     /// With the turns of balls, and the added joints, about other axes: where those about one choice are singular, as in a gimbal, these
