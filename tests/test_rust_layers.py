@@ -31,7 +31,7 @@ loops::circuits: curve follow walked_again on_curve turnings join meetings spher
 loops::motions: row row_lanes passes extremes rows circuit met_twice motion measures
 loops
 
-nets: order series square steps rows net freedoms joints dyads modes described sized search motion
+nets: order series square steps rows net freedoms joints dyads monodromy planar_family planar_block modes described sized search motion
 """
 
 

@@ -163,6 +163,16 @@ _RawDyad = tuple[
     tuple[int | None, int | None],
 ]
 
+#: A planar block: its normal, the steps of its links, each joint's letter R P or, of a rod, L, its place and
+#: its direction (of a rod two places), and the steps of its two links.
+_RawBlock = tuple[
+    tuple[float, float, float],
+    Sequence[int],
+    Sequence[
+        tuple[str, tuple[float, float, float], tuple[float, float, float], tuple[int | None, int | None]]
+    ],
+]
+
 @final
 class NetRows:
     """The rows of a circuit of a net, which makes points of them; pickled as their numbers."""
@@ -201,14 +211,17 @@ class Net:
     ) -> tuple[int, list[list[float]], list[list[float]]]: ...
     def modes(
         self,
-        dyads: Sequence[_RawDyad],
+        solved: Sequence[_RawDyad | _RawBlock],
         driven: int,
         value: float,
-    ) -> list[tuple[list[float], list[tuple[list[list[float]], list[float]]], float, bool]]: ...
-    def searched_modes(self, column: int, value: float) -> tuple[_Floats, _Floats]: ...
+    ) -> tuple[
+        list[tuple[list[float], list[tuple[list[list[float]], list[float]]], float, bool]],
+        Literal["closed-form", "algebraic", "monodromy", "searched"],
+    ]: ...
+    def searched_modes(self, column: int, value: float) -> tuple[_Floats, _Floats, npt.NDArray[np.bool_]]: ...
     def motion(
         self,
-        dyads: Sequence[_RawDyad] | None,
+        solved: Sequence[_RawDyad | _RawBlock] | None,
         input: int,
         output: int,
         samples: int,
@@ -440,7 +453,7 @@ class RawSearch:
     @property
     def found(self) -> RawFound | None: ...
     @property
-    def completeness(self) -> Literal["counted", "algebraic", "searched"]: ...
+    def completeness(self) -> Literal["counted", "algebraic", "monodromy", "searched"]: ...
     @property
     def columns(self) -> list[int]: ...
     @property

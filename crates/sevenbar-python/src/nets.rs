@@ -12,8 +12,8 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use sevenbar_core::nets::{
-    self, DescribedNet, Dyad, Edge, Facing, Move, NetCircuit, NetJoint, NetThrough, NotFollowed, Over, Pair,
-    Reading, Row, Stage, Step, Unbalanced,
+    self, BlockJoint, DescribedNet, Dyad, Edge, Facing, Move, NetCircuit, NetJoint, NetThrough, NotFollowed,
+    Over, Pair, Part, PlanarBlock, Reading, Row, Stage, Step, Unbalanced,
 };
 use sevenbar_core::rigid::{Pose, Vec3};
 
@@ -119,15 +119,65 @@ type RawDyad = (Vec3, [(char, Vec3); 3], [usize; 2], [Option<usize>; 2]);
 /// Values of the columns, the pose (rotation, translation) to which each step leads, the greatest error of a row, whether it is on a curve.
 type RawMode = (Vec<f64>, Vec<([[f64; 3]; 3], Vec3)>, f64, bool);
 
-fn stage((normal, joints, links, known): RawDyad) -> Stage {
-    let pairs = joints.map(|(letter, v)| {
-        if letter == 'R' {
-            Pair::Hinge(v)
-        } else {
-            Pair::Slide(v)
+/// Modes, and the word for their completeness.
+type RawModes = (Vec<RawMode>, &'static str);
+
+/// A planar block: its normal, the steps of its links, each joint's letter R P or, of a rod, L, with its place and its direction, or two
+/// places, and the steps of its two links.
+type RawBlock = (Vec3, Vec<usize>, Vec<(char, Vec3, Vec3, [Option<usize>; 2])>);
+
+/// Links that are solved together.
+#[derive(FromPyObject)]
+enum RawPart {
+    Dyad(RawDyad),
+    Block(RawBlock),
+}
+
+impl RawPart {
+    fn part(self) -> Part {
+        match self {
+            Self::Dyad((normal, joints, links, known)) => {
+                let pairs = joints.map(|(letter, v)| {
+                    if letter == 'R' {
+                        Pair::Hinge(v)
+                    } else {
+                        Pair::Slide(v)
+                    }
+                });
+                Part::Dyad(Stage { dyad: Dyad { normal, pairs }, links, known })
+            }
+            Self::Block((normal, links, joints)) => {
+                let joint = |(letter, first, second, on)| {
+                    let joint = match letter {
+                        'R' => BlockJoint::Hinge(first),
+                        'P' => BlockJoint::Slide(first, second),
+                        _ => BlockJoint::Rod([first, second]),
+                    };
+                    (joint, on)
+                };
+                let joints = joints.into_iter().map(joint).collect();
+                Part::Planar(PlanarBlock { normal, links, joints })
+            }
         }
-    });
-    Stage { dyad: Dyad { normal, pairs }, links, known }
+    }
+}
+
+fn parts(raw: Vec<RawPart>, steps: usize) -> PyResult<Vec<Part>> {
+    let parts: Vec<Part> = raw.into_iter().map(RawPart::part).collect();
+    let beyond = |part: &Part| match part {
+        Part::Dyad(stage) => {
+            let known = stage.known.into_iter().flatten();
+            stage.links.into_iter().chain(known).any(|step| step >= steps)
+        }
+        Part::Planar(block) => {
+            let on = block.joints.iter().flat_map(|(_, on)| on.iter().flatten());
+            block.links.iter().chain(on).any(|&step| step >= steps)
+        }
+    };
+    if parts.iter().any(beyond) {
+        return Err(CoreError::new_err("a part is on a step that is not there"));
+    }
+    Ok(parts)
 }
 
 #[pymethods]
@@ -232,37 +282,32 @@ impl Net {
         (found.rank, found.repeated, found.free)
     }
 
-    /// All modes of dyads, each after those at which it hangs, with a step held at a value [rad, or relative to the size].
-    fn modes(
-        &self,
-        py: Python<'_>,
-        dyads: Vec<RawDyad>,
-        driven: usize,
-        value: f64,
-    ) -> PyResult<Vec<RawMode>> {
-        let stages: Vec<Stage> = dyads.into_iter().map(stage).collect();
-        let steps = stages
-            .iter()
-            .flat_map(|s| s.links.into_iter().chain(s.known.into_iter().flatten()));
-        if steps.chain([driven]).any(|step| step >= self.net.steps.len()) {
-            return Err(CoreError::new_err("a dyad is on a step that is not there"));
+    /// All modes of links solved together, each after those at which they hang, with a step held at a value [rad, or relative to the size], and
+    /// their completeness.
+    fn modes(&self, py: Python<'_>, solved: Vec<RawPart>, driven: usize, value: f64) -> PyResult<RawModes> {
+        let steps = self.net.steps.len();
+        let solved = parts(solved, steps)?;
+        if driven >= steps {
+            return Err(CoreError::new_err("a step is held that is not there"));
         }
-        let found = py.detach(|| nets::modes(&self.net, &stages, driven, value));
+        let found = working(py, || nets::modes(&self.net, &solved, driven, value))?;
+        // what has too many unknowns is searched
+        let (found, word) = match found {
+            Some(found) => (
+                found.modes,
+                found.completeness.map_or("closed-form", |c| c.name()),
+            ),
+            None => (Vec::new(), "searched"),
+        };
         let pose = |p: Pose| (p.rotation, p.translation);
-        Ok(found
-            .into_iter()
-            .map(|mode| {
-                (
-                    mode.values,
-                    mode.poses.into_iter().map(pose).collect(),
-                    mode.residual,
-                    mode.on_curve,
-                )
-            })
-            .collect())
+        let raw = found.into_iter().map(|mode| {
+            let poses = mode.poses.into_iter().map(pose).collect();
+            (mode.values, poses, mode.residual, mode.on_curve)
+        });
+        Ok((raw.collect(), word))
     }
 
-    /// Joint values (m, columns) and closure errors (m,) of the modes that are found from many places with a column at a value.
+    /// Joint values (m, columns), closure errors (m,) of the modes that are found from many places with a column at a value, and which are isolated.
     fn searched_modes<'py>(
         &self,
         py: Python<'py>,
@@ -271,31 +316,36 @@ impl Net {
     ) -> PyResult<SearchedModes<'py>> {
         let found =
             working(py, || nets::searched_modes(&self.described, column, value))?.map_err(not_followed)?;
-        let (values, residuals): (Vec<Vec<f64>>, Vec<f64>) = found.into_iter().unzip();
-        let shape = [values.len(), self.described.column_count()];
+        let values: Vec<f64> = found.iter().flat_map(|mode| mode.0.iter().copied()).collect();
+        let residuals: Vec<f64> = found.iter().map(|mode| mode.1).collect();
+        let isolated: Vec<bool> = found.iter().map(|mode| mode.2).collect();
+        let shape = [found.len(), self.described.column_count()];
         Ok((
-            PyArray1::from_vec(py, values.concat()).reshape(shape)?,
+            PyArray1::from_vec(py, values).reshape(shape)?,
             residuals.into_pyarray(py),
+            isolated.into_pyarray(py),
         ))
     }
 
-    /// The whole motion over the inputs of a column; modes are those of dyads, each after those at which it hangs, or are searched for.
-    #[pyo3(signature = (dyads, input, output, samples, speed, law=None))]
+    /// The whole motion over the inputs of a column; modes are those of links solved together, each after those at which
+    /// they hang, or are searched for.
+    #[pyo3(signature = (solved, input, output, samples, speed, law=None))]
     #[expect(clippy::too_many_arguments)]
     fn motion<'py>(
         &self,
         py: Python<'py>,
-        dyads: Option<Vec<RawDyad>>,
+        solved: Option<Vec<RawPart>>,
         input: usize,
         output: usize,
         samples: usize,
         speed: f64,
         law: Option<PyReadonlyArray2<'py, f64>>,
     ) -> PyResult<(RawMotion, Vec<Py<NetRows>>)> {
-        let stages: Option<Vec<Stage>> = dyads.map(|dyads| dyads.into_iter().map(stage).collect());
+        let steps = self.net.steps.len();
+        let solved = solved.map(|raw| parts(raw, steps)).transpose()?;
         let law = law_rows(law);
         let over = Over { input, output, samples, speed, law: law.as_deref() };
-        let motion = working(py, || nets::net_motion(&self.described, stages.as_deref(), &over))?
+        let motion = working(py, || nets::net_motion(&self.described, solved.as_deref(), &over))?
             .map_err(not_followed)?;
         let (mut circuits, mut rows) = (Vec::new(), Vec::new());
         for circuit in motion.circuits {
@@ -377,8 +427,12 @@ impl Net {
     }
 }
 
-/// Joint values and closure errors of modes.
-type SearchedModes<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+/// Joint values and closure errors of modes, and which are isolated.
+type SearchedModes<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<bool>>,
+);
 
 /// What goes through a pose.
 #[derive(IntoPyObject)]

@@ -30,6 +30,7 @@ COMPLETE = {
     "closed-form": "all modes are found",
     "counted": "all modes and all circuits are found",
     "algebraic": "all modes are found",
+    "monodromy": "all modes are found to which triangles lead, from two seeds until ten brought none",
     "searched": "the modes that a search from many starts found; there may be others",
 }
 

@@ -14,6 +14,7 @@ from sevenbar.text.words import say
 _MODES = {
     "counted": "all modes over the complex numbers",
     "algebraic": "all modes over the complex numbers",
+    "monodromy": "modes over the complex numbers by triangles, from two seeds until ten brought none",
     "searched": "modes by search from many starts, screws within one turn to each side",
 }
 

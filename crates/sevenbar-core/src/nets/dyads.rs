@@ -40,44 +40,49 @@ const PARALLEL: f64 = 1e-12;
 
 /// A pose in the plane.
 #[derive(Clone, Copy, Debug)]
-struct Flat {
-    z: Complex64,
-    t: Complex64,
+pub(super) struct Flat {
+    pub z: Complex64,
+    pub t: Complex64,
 }
 
 impl Flat {
-    fn carry(&self, x: Complex64) -> Complex64 {
+    /// The image of a place.
+    pub fn carry(&self, x: Complex64) -> Complex64 {
         self.z * x + self.t
     }
 
     /// The pose with this turn that takes a place to another.
-    fn through(z: Complex64, from: Complex64, to: Complex64) -> Self {
+    pub fn through(z: Complex64, from: Complex64, to: Complex64) -> Self {
         Self { z, t: to - z * from }
     }
 }
 
 /// Directions x and y in the plane.
-struct Plane {
+pub(super) struct Plane {
     x: Vec3,
     y: Vec3,
     normal: Vec3,
 }
 
 impl Plane {
-    fn across(normal: Vec3) -> Self {
+    /// Across a direction of length 1.
+    pub fn across(normal: Vec3) -> Self {
         let x = unit(cross(normal, most_perpendicular_axis(normal)));
         Self { x, y: cross(normal, x), normal }
     }
 
-    fn place(&self, v: Vec3) -> Complex64 {
+    /// A place, or a direction, as a number.
+    pub fn place(&self, v: Vec3) -> Complex64 {
         Complex64::new(dot(v, self.x), dot(v, self.y))
     }
 
-    fn flat(&self, pose: &Pose) -> Flat {
+    /// A pose of what moves in it.
+    pub fn flat(&self, pose: &Pose) -> Flat {
         Flat { z: self.place(pose.turn(self.x)), t: self.place(pose.translation) }
     }
 
-    fn pose(&self, flat: &Flat) -> Pose {
+    /// The same in space.
+    pub fn pose(&self, flat: &Flat) -> Pose {
         let [x, y, n] = [self.x, self.y, self.normal];
         let images = [
             std::array::from_fn::<f64, 3, _>(|k| flat.z.re * x[k] + flat.z.im * y[k]),

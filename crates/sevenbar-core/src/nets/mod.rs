@@ -1,6 +1,6 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `dyads`, `modes`, `described`, `sized`, `search`, `motion`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `modes`, `described`, `sized`, `search`, `motion`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
@@ -10,9 +10,12 @@ mod dyads;
 mod freedoms;
 mod joints;
 mod modes;
+mod monodromy;
 mod motion;
 mod net;
 mod order;
+mod planar_block;
+mod planar_family;
 mod rows;
 mod search;
 mod series;
@@ -24,12 +27,13 @@ pub use described::{DescribedNet, NetRow, NetRows};
 pub use dyads::{Dyad, Pair};
 pub use freedoms::{Freedoms, freedoms};
 pub use joints::{NetJoint, Reading};
-pub use modes::{Mode, Stage, modes};
+pub use modes::{Mode, NetModes, Part, Stage, modes};
 pub use motion::{
-    NetChangePoint, NetCircuit, NetMotion, NetThrough, NotFollowed, Over, net_circuit_through, net_motion,
-    ratio_at_rest, searched_modes,
+    FoundMode, NetChangePoint, NetCircuit, NetMotion, NetThrough, NotFollowed, Over, net_circuit_through,
+    net_motion, ratio_at_rest, searched_modes,
 };
 pub use net::{Facing, Net};
 pub use order::{Block, Edge, Unbalanced, biconnected_parts, blocks};
+pub use planar_block::{BlockJoint, PlanarBlock};
 pub use rows::Row;
 pub use steps::{Move, Step};

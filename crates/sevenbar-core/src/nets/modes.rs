@@ -1,12 +1,15 @@
 //! All modes of a net at one value of its input, block by block: `e(q) = 0` with the input held.
 //!
-//! Source: docs/theory_nets.md, (7).
+//! Source: docs/theory_nets.md, (7) and (10) to (13).
 
 use super::dyads::Dyad;
 use super::net::Net;
+use super::planar_block::{Before, PlanarBlock};
 use super::rows::On;
 use super::steps::Move;
+use crate::loops::equation::rotations::short_way;
 use crate::loops::least_squares;
+use crate::loops::modes::completeness::Completeness;
 use crate::rigid::{Pose, cross, dot, most_perpendicular_axis, sub, unit};
 
 /// A dyad of a net: the steps that carry its two links, and those that carry the known links at which it hangs.
@@ -18,6 +21,24 @@ pub struct Stage {
     pub links: [usize; 2],
     /// Those of the known links.
     pub known: [On; 2],
+}
+
+/// Links that are solved together.
+#[derive(Clone, Debug)]
+pub enum Part {
+    /// Two, in closed form.
+    Dyad(Stage),
+    /// Others in a plane.
+    Planar(PlanarBlock),
+}
+
+/// Modes of a net, and how it is known that none is missing.
+#[derive(Clone, Debug)]
+pub struct NetModes {
+    /// The modes.
+    pub modes: Vec<Mode>,
+    /// `None` where they are in closed form; "searched" where some paths ended at no isolated pose: there may be others.
+    pub completeness: Option<Completeness>,
 }
 
 /// A pose of a net: a value for each column [rad, or relative to the size], where each step leads, the greatest error of a row.
@@ -36,39 +57,87 @@ pub struct Mode {
 /// Singular values below this part of the greatest are zero: two modes that nearly meet are still corrected.
 const NO_RANK: f64 = 1e-10;
 
+/// Modes nearer than this in every column [rad, or relative to the size] are one: two that meet part by the root of rounding.
+const MEET: f64 = 1e-6;
+
 /// Steps of Newton's method that take the rounding of the closed form off, and the error [rad, or relative to the size] of a mode.
 const STEPS: usize = 2;
 const CLOSES: f64 = 1e-9;
 
-/// All isolated modes of a net that dyads make up, each stage after those that it hangs at, with a step held at a value; and some poses of
-/// each curve of poses.
-pub fn modes(net: &Net, stages: &[Stage], driven: usize, value: f64) -> Vec<Mode> {
-    let mut start = vec![Pose::STILL; net.steps.len()];
+/// All isolated modes of a net, each part after those that it hangs at, with a step held at a value; and some poses of each curve of poses that
+/// a dyad has. `None` where a part has more unknowns than are followed.
+pub fn modes(net: &Net, parts: &[Part], driven: usize, value: f64) -> Option<NetModes> {
     let unit = if net.slides(driven) { net.size } else { 1.0 };
-    start[driven] = net.steps[driven].moved(value * unit).into();
+    let moved: Pose = net.steps[driven].moved(value * unit).into();
+    let from = net.steps[driven].parent;
+    let mut start = vec![Pose::STILL; net.steps.len()];
+    if from.is_none() {
+        start[driven] = moved;
+    }
+    let mut completeness: Option<Completeness> = None;
     let mut partial = vec![(start, false)];
-    for stage in stages {
+    for part in parts {
         let mut longer = Vec::new();
         for (poses, on_curve) in &partial {
-            let known = stage.known.map(|on| on.map_or(Pose::STILL, |k| poses[k]));
-            let known = [&known[0], &known[1]];
-            let isolated = stage.dyad.poses(known).into_iter().map(|both| (both, *on_curve));
-            let curves = stage.dyad.on_curve(known).into_iter().map(|both| (both, true));
-            for (both, on_curve) in isolated.chain(curves) {
-                let mut next = poses.clone();
-                for (step, pose) in stage.links.into_iter().zip(both) {
-                    next[step] = pose;
+            match part {
+                Part::Dyad(stage) => {
+                    let known = stage.known.map(|on| on.map_or(Pose::STILL, |k| poses[k]));
+                    let known = [&known[0], &known[1]];
+                    let isolated = stage.dyad.poses(known).into_iter().map(|both| (both, *on_curve));
+                    let curves = stage.dyad.on_curve(known).into_iter().map(|both| (both, true));
+                    for (both, on_curve) in isolated.chain(curves) {
+                        longer.push((placed(poses, &stage.links, &both), on_curve));
+                    }
                 }
-                longer.push((next, on_curve));
+                Part::Planar(block) => {
+                    let before = Before { poses, held: driven, from, moved, size: net.size };
+                    let together = block.together(&before)?;
+                    let own = together.completeness;
+                    completeness = Some(own.or_less(completeness));
+                    for own in together.poses {
+                        let mut next = placed(poses, &block.links, &own);
+                        // the link that the held joint welds to one of these
+                        if let Some(k) = from.filter(|k| block.links.contains(k)) {
+                            next[driven] = next[k].then(&moved);
+                        } else if let Some(k) = from.filter(|_| block.links.contains(&driven)) {
+                            next[k] = next[driven].then(&moved.inverse());
+                        }
+                        longer.push((next, *on_curve));
+                    }
+                }
             }
         }
         partial = longer;
     }
-    partial
+    let closed = partial
         .iter()
         .map(|(poses, on_curve)| settled(net, net.values(poses), (driven, value), *on_curve))
-        .filter(|mode| mode.residual < CLOSES)
-        .collect()
+        .filter(|mode| mode.residual < CLOSES);
+    let mut modes: Vec<Mode> = Vec::new();
+    for mode in closed {
+        // two that meet are one, as dyads have it
+        if completeness.is_none() || mode.on_curve || modes.iter().all(|m| !same(net, m, &mode)) {
+            modes.push(mode);
+        }
+    }
+    Some(NetModes { modes, completeness })
+}
+
+/// Poses with those of some steps put in.
+fn placed(poses: &[Pose], steps: &[usize], own: &[Pose]) -> Vec<Pose> {
+    let mut next = poses.to_vec();
+    for (&step, pose) in steps.iter().zip(own) {
+        next[step] = *pose;
+    }
+    next
+}
+
+/// Whether two modes are one.
+fn same(net: &Net, a: &Mode, b: &Mode) -> bool {
+    a.values.iter().zip(&b.values).enumerate().all(|(c, (x, y))| {
+        let apart = if net.slides(c) { x - y } else { short_way(x - y) };
+        apart.abs() < MEET
+    })
 }
 
 /// The mode that a few of Newton's steps lead to, with a step held.
@@ -147,11 +216,12 @@ mod tests {
         rows.extend(closing(3, 4, at[5]));
         let net = Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 40.0 };
         let dyad = |a, b, c| Dyad { normal: z, pairs: [Pair::Hinge(a), Pair::Hinge(b), Pair::Hinge(c)] };
-        let stages = [
-            Stage { dyad: dyad(at[1], at[2], at[3]), links: [1, 2], known: [Some(0), None] },
-            Stage { dyad: dyad(at[4], at[5], at[6]), links: [3, 4], known: [Some(2), None] },
+        let stage = |dyad, links, known| Part::Dyad(Stage { dyad, links, known });
+        let parts = [
+            stage(dyad(at[1], at[2], at[3]), [1, 2], [Some(0), None]),
+            stage(dyad(at[4], at[5], at[6]), [3, 4], [Some(2), None]),
         ];
-        let found = modes(&net, &stages, 0, 0.0);
+        let found = modes(&net, &parts, 0, 0.0).unwrap().modes;
         assert_eq!(found.len(), 4);
         assert!(found.iter().all(|m| m.residual < 1e-15));
         // the drawing is one of them

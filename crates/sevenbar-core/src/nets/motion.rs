@@ -6,8 +6,8 @@
 
 use super::described::{DescribedNet, NetRow, NetRows};
 use super::freedoms::{Freedoms, freedoms};
-use super::modes::{Stage, modes as dyad_modes};
-use super::search::{STARTS, STARTS_OF_MANY, searched, settled};
+use super::modes::{Part, modes};
+use super::search::{STARTS, STARTS_OF_MANY, is_isolated, searched, settled};
 use super::sized::SizedNet;
 use crate::loops::circuits::change_points as curve_points;
 use crate::loops::circuits::curve;
@@ -123,22 +123,24 @@ fn sized<W: Sized>(described: &DescribedNet, work: W) -> Result<W::Out, NotFollo
     }
 }
 
-/// The columns of the description at each mode that is found from many places with a column at a value [rad, or length], and its closure
-/// error.
+/// A mode that is found: the columns of the description, its closure error, whether it is isolated.
+pub type FoundMode = (Vec<f64>, f64, bool);
+
+/// The modes that are found from many places with a column at a value [rad, or length].
 pub fn searched_modes(
     described: &DescribedNet,
     column: usize,
     value: f64,
-) -> Result<Vec<(Vec<f64>, f64)>, NotFollowed> {
+) -> Result<Vec<FoundMode>, NotFollowed> {
     struct Modes<'a>(&'a DescribedNet, usize, f64);
     impl Sized for Modes<'_> {
-        type Out = Vec<(Vec<f64>, f64)>;
+        type Out = Vec<FoundMode>;
         fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> Self::Out {
             let mut found = searched(net, self.1, self.2, STARTS);
             found.retain(|at| self.0.closes(net.values(at), net.balls(at)));
             let values_of = |at: &At<SizedNet<C, R, B>>| {
                 let values = self.0.outer_values(net.values(at), net.balls(at));
-                (values, net.residual(&net.place(at)))
+                (values, net.residual(&net.place(at)), is_isolated(net, self.1, at))
             };
             found.iter().map(values_of).collect()
         }
@@ -150,20 +152,20 @@ pub fn searched_modes(
     )
 }
 
-/// The whole motion of a net; its modes are those of dyads if it is made up of `stages`.
+/// The whole motion of a net; its modes are those of its `parts` where these are given.
 pub fn net_motion(
     described: &DescribedNet,
-    stages: Option<&[Stage]>,
+    parts: Option<&[Part]>,
     over: &Over,
 ) -> Result<NetMotion, NotFollowed> {
-    struct Motion<'a>(Asked<'a>, Option<&'a [Stage]>);
+    struct Motion<'a>(Asked<'a>, Option<&'a [Part]>);
     impl Sized for Motion<'_> {
         type Out = NetMotion;
         fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> NetMotion {
             self.0.motion(net, self.1)
         }
     }
-    sized(described, Motion(Asked::new(described, over)?, stages))
+    sized(described, Motion(Asked::new(described, over)?, parts))
 }
 
 /// The one circuit through a pose of a net, given by the columns of the description.
@@ -224,9 +226,9 @@ impl<'a> Asked<'a> {
     fn motion<const C: usize, const R: usize, const B: usize>(
         &self,
         net: &SizedNet<C, R, B>,
-        stages: Option<&[Stage]>,
+        parts: Option<&[Part]>,
     ) -> NetMotion {
-        let curves = self.curves(net, stages);
+        let curves = self.curves(net, parts);
         let turns = [self.ends.0, self.ends.1].map(|column| net.is_turn(column.inner));
         let (mut motion, reaches) = self.over(net, curves);
         let meeting = limits_meet(reaches.iter(), turns);
@@ -266,7 +268,7 @@ impl<'a> Asked<'a> {
     fn curves<const C: usize, const R: usize, const B: usize>(
         &self,
         net: &SizedNet<C, R, B>,
-        stages: Option<&[Stage]>,
+        parts: Option<&[Part]>,
     ) -> Curves<SizedNet<C, R, B>> {
         let input = self.ends.0.inner;
         let turns = net.is_turn(input);
@@ -280,21 +282,24 @@ impl<'a> Asked<'a> {
         };
         let mut curves = Curves::new(&[input, self.ends.1.inner]);
         // modes at some values of a slide say nothing of those beyond
-        if stages.is_none() || !turns {
+        if parts.is_none() || !turns {
             curves.search.completeness = Completeness::Searched;
         }
         curves.search.columns = vec![input];
         curves.search.values = values.len();
         curves.take(net, &[net.at(&drawn)], input);
         for value in values {
-            let modes: Vec<At<SizedNet<C, R, B>>> = match stages {
-                Some(stages) => dyad_modes(&self.described.net, stages, input, value)
-                    .iter()
-                    .filter(|mode| !mode.on_curve)
-                    .map(|mode| net.at(&mode.values))
-                    .collect(),
-                None => searched(net, input, value, STARTS_OF_MANY),
-            };
+            let found = parts.and_then(|parts| modes(&self.described.net, parts, input, value));
+            let isolated = found
+                .iter()
+                .flat_map(|found| &found.modes)
+                .filter(|mode| !mode.on_curve);
+            let mut modes: Vec<At<SizedNet<C, R, B>>> = isolated.map(|mode| net.at(&mode.values)).collect();
+            let word = found.map_or(Some(Completeness::Searched), |found| found.completeness);
+            if word == Some(Completeness::Searched) {
+                modes.extend(searched(net, input, value, STARTS_OF_MANY));
+            }
+            curves.search.completeness = curves.search.completeness.or_less(word);
             let unknown = curves.unknown(net, &modes);
             curves.take(net, &unknown, input);
         }

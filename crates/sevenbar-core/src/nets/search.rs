@@ -4,6 +4,7 @@ use super::sized::SizedNet;
 use crate::loops::equation::closed::{At, Closed, input_row};
 use crate::loops::modes::many_starts::{anywhere, same};
 use crate::loops::modes::polish::CLOSED;
+use crate::loops::singular_values;
 use crate::random::Random;
 use crate::stopping;
 
@@ -14,6 +15,24 @@ pub(super) const STARTS_OF_MANY: usize = 60;
 /// Most steps of Newton's method, and the longest [rad, or relative to the size].
 const MOST_STEPS: usize = 60;
 const LONGEST: f64 = 1.0;
+
+/// Below this part of the greatest a singular value is that of a pose where modes meet, or of one on a curve of poses: Newton's method ends
+/// anywhere near by.
+const ISOLATED: f64 = 1e-5;
+
+/// Whether a pose with a column held is isolated.
+pub(super) fn is_isolated<const C: usize, const R: usize, const B: usize>(
+    net: &SizedNet<C, R, B>,
+    held: usize,
+    at: &At<SizedNet<C, R, B>>,
+) -> bool {
+    let screws = net.place(at).screws;
+    let passive = (0..net.used()).filter(|&c| c != held);
+    let columns: Vec<Vec<f64>> = passive.map(|c| screws[c][..net.used() - 1].to_vec()).collect();
+    let (values, _) = singular_values(&columns);
+    let ends = values.first().zip(values.last());
+    ends.is_some_and(|(greatest, least)| *least > ISOLATED * greatest)
+}
 
 /// The closed pose that Newton's method leads to with a column held; `None` where it leads to none.
 pub(super) fn settled<const C: usize, const R: usize, const B: usize>(

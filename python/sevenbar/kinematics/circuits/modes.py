@@ -47,7 +47,7 @@ class Modes(ReadOnly, Printed):
 
     q: Floats
     residual: Floats
-    completeness: Literal["closed-form", "algebraic", "searched"]
+    completeness: Literal["closed-form", "algebraic", "monodromy", "searched"]
     columns: tuple[str, ...]
     input: float
     #: Other poses that redundant constraints alone keep open: how much [rad, relative to the size], rising.

@@ -205,7 +205,7 @@ class Motion(ReadOnly, Drawable):
     speed_written: str = ""
 
     @property
-    def completeness(self) -> Literal["closed-form", "counted", "algebraic", "searched"]:
+    def completeness(self) -> Literal["closed-form", "counted", "algebraic", "monodromy", "searched"]:
         """How it is known that no circuit is missing."""
         return self.search.completeness
 

@@ -50,7 +50,7 @@ class Search:
     motions out of them, `None` where there are none.
     """
 
-    completeness: Literal["closed-form", "counted", "algebraic", "searched"]
+    completeness: Literal["closed-form", "counted", "algebraic", "monodromy", "searched"]
     columns: tuple[str, ...] = ()
     values: int = 0
     unfollowed: int = 0

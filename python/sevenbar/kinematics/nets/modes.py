@@ -1,11 +1,11 @@
-"""All modes of a net of dyads at one value of its input, in closed form.
+"""All modes of a net at one value of its input: dyads in closed form, other planar blocks by monodromy.
 
-Source: docs/theory_nets.md, (7).
+Source: docs/theory_nets.md, (7) and (10) to (13).
 """
 
 from __future__ import annotations
 
-from typing import Literal, cast
+from typing import cast
 
 import numpy as np
 
@@ -13,43 +13,76 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.loop.geometry import Loop
+from sevenbar.kinematics.loop.joints import Z
 from sevenbar.kinematics.loop.rigid import inverse, pose
 from sevenbar.kinematics.nets.chords import Triple, three
 from sevenbar.kinematics.nets.order import LinkBlock, order_of
 from sevenbar.kinematics.nets.tree import Tree
 
-#: A dyad as the core takes it.
+#: A dyad as the core takes it, and another planar block.
 RawDyad = tuple[Triple, list[tuple[str, Triple]], tuple[int, int], tuple[int | None, int | None]]
+RawBlock = tuple[Triple, list[int], list[tuple[str, Triple, Triple, tuple[int | None, int | None]]]]
+
+#: Poses of a search nearer than this in every joint [rad, or relative to the size], where modes meet, are one.
+NEAR = 1e-5
+
+#: Most places where modes meet; more are of a curve of poses that all close.
+MOST_MEETING = 12
 
 
 def net_modes(linkage: Loop, column: int, value: float) -> Modes:
-    """Every assembly mode at one value of a column [rad, or length] of a net of dyads.
+    """Every assembly mode at one value of a column [rad, or length] of a net whose blocks are planar.
 
-    Of any other net those that are found from many places.
+    Of any other net those that are found from many places, and these besides where some are not certain.
     """
     order = order_of(linkage, column)
-    tree = Tree(linkage, (linkage.column_of(column).joint,), order)
-    dyads = dyads_of(linkage, tree)
-    if dyads is None:
+    driven = linkage.column_of(column).joint
+    tree = Tree(linkage, (driven,), order)
+    parts = parts_of(linkage, tree)
+    if parts is None:
         return _searched(linkage, tree, column, value)
     scale = 1.0 if linkage.turns(column) else linkage.size
-    # the driven joint is the first step
-    raw = tree.core.modes(dyads, 0, value / scale)
+    raw, word = tree.core.modes(parts, tree.columns[driven][0], value / scale)
     frames = [_frames(linkage, tree, poses) for _, poses, _, _ in raw]
     q = np.array([_values(linkage, one) for one in frames]).reshape(-1, len(linkage.columns))
     residual = np.array([error for _, _, error, _ in raw]) * linkage.size
     on_curve = np.array([curved for *_, curved in raw], dtype=bool)
-    isolated = np.flatnonzero(~on_curve)
-    rank = isolated[_ranked(q[isolated])]
     curve = q[on_curve][0] if on_curve.any() else None
-    completeness: Literal["closed-form", "algebraic"] = "closed-form" if curve is None else "algebraic"
-    return Modes(q[rank], residual[rank], completeness, linkage.columns, value, on_curve=curve)
+    q, residual = q[~on_curve], residual[~on_curve]
+    if word == "searched":
+        more = _searched(linkage, tree, column, value)
+        curve = more.on_curve if curve is None else curve
+        place = _apart(linkage, np.vstack([q, more.q]))
+        q, residual = np.vstack([q, more.q])[place], np.append(residual, more.residual)[place]
+    elif word == "closed-form" and curve is not None:
+        word = "algebraic"
+    rank = _ranked(q)
+    return Modes(q[rank], residual[rank], word, linkage.columns, value, on_curve=curve)
 
 
 def _searched(linkage: Loop, tree: Tree, column: int, value: float) -> Modes:
-    q, residual = tree.followed(lambda core: core.searched_modes(column, value))
-    rank = _ranked(q)
-    return Modes(q[rank], residual[rank] * linkage.size, "searched", linkage.columns, value)
+    q, residual, isolated = tree.followed(lambda core: core.searched_modes(column, value))
+    singular = _apart(linkage, q[~isolated])
+    # a few are where modes meet, many lie on a curve
+    is_curve = len(singular) > MOST_MEETING
+    others = np.flatnonzero(~isolated)[singular]
+    place = np.flatnonzero(isolated) if is_curve else np.append(np.flatnonzero(isolated), others)
+    curve = q[others[0]] if is_curve else None
+    rank = place[_ranked(q[place])]
+    residual = residual[rank] * linkage.size
+    return Modes(q[rank], residual, "searched", linkage.columns, value, on_curve=curve)
+
+
+def _apart(linkage: Loop, q: Floats) -> Integers:
+    """Those of modes (m, columns) that are not near one before them."""
+    turning, unit = linkage.turning, np.where(linkage.turning, 1.0, linkage.size)
+    result: list[int] = []
+    for place, one in enumerate(q):
+        off = (q[result] - one) / unit
+        off = np.where(turning, (off + np.pi) % (2 * np.pi) - np.pi, off)
+        if not (np.abs(off) < NEAR).all(axis=1).any():
+            result.append(place)
+    return np.array(result, dtype=np.int64)
 
 
 def _ranked(q: Floats) -> Integers:
@@ -58,16 +91,47 @@ def _ranked(q: Floats) -> Integers:
     return order
 
 
-def dyads_of(linkage: Loop, tree: Tree) -> list[RawDyad] | None:
-    """The dyads that a net is made up of, in the order in which they are solved.
+def parts_of(linkage: Loop, tree: Tree) -> list[RawDyad | RawBlock] | None:
+    """The dyads and other planar blocks that a net is made up of, in the order in which they are solved.
 
-    `None` where there are other blocks, or two moving links turn against each other by the input.
+    `None` where there are others, or the driven joint or one of theirs has more than one freedom.
     """
-    driven, order = tree.first[0], tree.order
-    at_ground = linkage.graph.ground in linkage.graph.between[driven]
-    if not (at_ground and order.blocks and all(block.solver == "dyad" for block in order.blocks)):
+    driven, blocks = tree.first[0], tree.order.blocks
+    own = [joint for block in blocks for joint in block.joints]
+    simple = all(linkage.joints[joint].kind in ("R", "P") for joint in (driven, *own))
+    if not (blocks and simple and all(block.group == "planar" for block in blocks)):
         return None
-    return [_dyad(linkage, tree, block) for block in order.blocks]
+    at_ground = linkage.graph.ground in linkage.graph.between[driven]
+    return [
+        # the held joint may weld one more link to a dyad
+        _dyad(linkage, tree, block) if block.solver == "dyad" and at_ground else _block(linkage, tree, block)
+        for block in blocks
+    ]
+
+
+def _block(linkage: Loop, tree: Tree, block: LinkBlock) -> RawBlock:
+    carrier, between = tree.carrier, linkage.graph.between
+    joints: list[tuple[str, Triple, Triple, tuple[int | None, int | None]]] = []
+    for joint in block.joints:
+        a, b = between[joint]
+        frame = linkage.drawn_joint_on(joint, a)
+        kind, on = linkage.joints[joint].kind, (carrier[a], carrier[b])
+        joints.append((kind, three(frame[:3, 3]), three(frame[:3, 2]), on))
+    for number in block.rods:
+        rod = linkage.rods[number]
+        a, b = rod.between
+        joints.append(("L", *rod.at, (carrier[a], carrier[b])))
+    # every moving link has a step
+    links = [cast("int", carrier[link]) for link in block.links]
+    return _normal(linkage, block), links, joints
+
+
+def _normal(linkage: Loop, block: LinkBlock) -> Triple:
+    """The direction about which the links of a planar block turn."""
+    for joint in block.joints:
+        if linkage.joints[joint].kind == "R":
+            return three(linkage.drawn_joint_on(joint, linkage.graph.between[joint][0])[:3, Z])
+    raise NotCoveredError(f"net: three slides in a row turn nothing: {_listed(linkage, block)}")
 
 
 def _dyad(linkage: Loop, tree: Tree, block: LinkBlock) -> RawDyad:
@@ -75,19 +139,15 @@ def _dyad(linkage: Loop, tree: Tree, block: LinkBlock) -> RawDyad:
     between = linkage.graph.between
     inner = next(j for j in block.joints if {*between[j]} == {first, second})
     ends = [next(j for j in block.joints if link in between[j] and j != inner) for link in block.links]
-    normal = None
     pairs = []
     for joint in (ends[0], inner, ends[1]):
         frame = linkage.drawn_joint_on(joint, between[joint][0])
         turns = linkage.joints[joint].kind == "R"
-        normal = frame[:3, 2] if turns else normal
         pairs.append(("R" if turns else "P", three(frame[:3, 3 if turns else 2])))
-    if normal is None:
-        raise NotCoveredError(f"net: three slides in a row turn nothing: {_listed(linkage, block)}")
     known = [sum(between[joint]) - link for joint, link in zip(ends, block.links, strict=True)]
     # every moving link has a step
     links = cast("tuple[int, int]", (tree.carrier[first], tree.carrier[second]))
-    return three(normal), pairs, links, (tree.carrier[known[0]], tree.carrier[known[1]])
+    return _normal(linkage, block), pairs, links, (tree.carrier[known[0]], tree.carrier[known[1]])
 
 
 def _listed(linkage: Loop, block: LinkBlock) -> str:

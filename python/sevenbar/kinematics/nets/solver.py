@@ -9,7 +9,7 @@ from sevenbar.arrays import Floats, Integers, Words
 from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.circuits.from_core import circuit_from, motion_from, trace_from
 from sevenbar.kinematics.loop.mobility import Mobility
-from sevenbar.kinematics.nets.modes import dyads_of, net_modes
+from sevenbar.kinematics.nets.modes import net_modes, parts_of
 from sevenbar.kinematics.nets.order import Parts, order_of
 from sevenbar.kinematics.nets.tree import CoreCircuit, NetRows, Tree
 from sevenbar.kinematics.solvers.general import AGREE, at_rest, no_circuit
@@ -71,15 +71,15 @@ class NetSolver:
         )
 
     def modes(self, column: int, value: float) -> Modes:
-        """Every assembly mode at one value of a column; of nets of dyads."""
+        """Every assembly mode at one value of a column."""
         return net_modes(self._linkage, column, value)
 
     def motion(self, column: int, output: int, samples: int, speed: float, law: Law | None) -> Motion:
         """Every circuit through the modes at many values of a column."""
         linkage, tree = self._linkage, self._tree(column, output)
         table = None if law is None else law.table
-        dyads = dyads_of(linkage, tree)
-        raw, rows = tree.followed(lambda core: core.motion(dyads, column, output, samples, speed, table))
+        parts = parts_of(linkage, tree)
+        raw, rows = tree.followed(lambda core: core.motion(parts, column, output, samples, speed, table))
         if raw.moving is not None and not raw.circuits:
             raise at_rest(linkage, column, raw.moving)
         circuits = tuple(

@@ -23,7 +23,7 @@ pub(crate) struct Pace {
 }
 
 /// For paths that stay well apart, as between general parameters.
-pub(super) const BRISK: Pace = Pace { aimed: 1e-2, largest: 8e-2, second: 2e-3 };
+pub(crate) const BRISK: Pace = Pace { aimed: 1e-2, largest: 8e-2, second: 2e-3 };
 
 /// For paths that come near each other, as at the end of a path near a dead centre.
 pub(crate) const CAREFUL: Pace = Pace { aimed: 1e-4, largest: 1e-3, second: 1e-5 };
@@ -88,7 +88,7 @@ pub(crate) struct Place {
 
 /// A straight stretch of the parameter's path: its direction, its length, and the parameter at its end.
 #[derive(Clone, Copy)]
-pub(super) struct Way {
+pub(crate) struct Way {
     pub direction: Complex64,
     pub length: f64,
     pub end: Complex64,
@@ -98,7 +98,7 @@ pub(super) struct Way {
 
 /// The places at the end of each way of each start, way by way; `ways` is one list for all, or one for each. `None` where a path
 /// does not arrive at a finite regular solution.
-pub(super) fn follow<H: Homotopy>(
+pub(crate) fn follow<H: Homotopy>(
     homotopy: &H,
     starts: &[Place],
     ways: &[&[Way]],

@@ -3,7 +3,7 @@
 pub(crate) mod assembly;
 mod chain_closure;
 pub(crate) mod circle;
-mod completeness;
+pub(crate) mod completeness;
 pub(crate) mod continuation;
 mod curves_at_input;
 pub(crate) mod finder;

@@ -200,7 +200,7 @@ pub(crate) fn distinct(
 }
 
 /// Solutions at general parameters lie farther apart than this; far ones are not known better.
-pub(super) const SAME_GENERAL: f64 = 1e-4;
+pub(crate) const SAME_GENERAL: f64 = 1e-4;
 
 fn same(slides: &Slides, a: &Solution, b: &Solution, apart: f64) -> bool {
     (0..UNKNOWNS).all(|i| {

@@ -1,0 +1,301 @@
+//! All solutions of a family of systems by monodromy, whether they are all, and from them those of one system.
+//!
+//! One solution that closes by construction is carried round triangles of random parameters; solutions are exchanged until ten triangles bring
+//! nothing new, and from another member and solution as many are found. The trace test certifies them: while what rests goes evenly, the sum over
+//! all solutions of an unknown does so, too, and that over a part of them does not.
+//!
+//! Source: docs/theory_nets.md, (10) to (13).
+
+use crate::loops::equation::closure::{Slides, Solution, UNKNOWNS};
+use crate::loops::modes::continuation::{BRISK, CAREFUL, Homotopy, Pace, Place, Way, follow};
+use crate::loops::modes::many_starts::SAME_MODE;
+use crate::loops::modes::starts::{SAME_GENERAL, distinct};
+use crate::random::Random;
+use num_complex::Complex64;
+
+/// A vector `(v+, v-)`, or a number and nothing.
+pub(super) type Pair = [Complex64; 2];
+
+/// Systems with the same unknowns, whose numbers may be any.
+pub(super) trait Family {
+    /// The systems on the straight line between two members.
+    type Way: Homotopy;
+    /// Which unknowns are lengths.
+    fn slides(&self) -> Slides;
+    /// A general member.
+    fn random(&self, random: &mut Random) -> Vec<Pair>;
+    /// A member with one of its solutions.
+    fn closed(&self, random: &mut Random) -> (Vec<Pair>, Solution);
+    /// The straight line between two members.
+    fn between(&self, from: &[Pair], to: &[Pair]) -> Self::Way;
+    /// Changes of a member's constants by which the trace test may be made.
+    fn ways_of_constants(&self, random: &mut Random) -> Vec<Vec<Pair>>;
+    /// How many unknowns it has.
+    fn unknowns(&self) -> usize;
+}
+
+/// A general member with its solutions.
+pub(super) struct Start {
+    member: Vec<Pair>,
+    pub solutions: Vec<Solution>,
+}
+
+/// The starts of a family.
+pub(super) struct Starts {
+    /// Found by themselves; they have as many solutions, unless `agree` is false.
+    pub starts: [Start; 2],
+    agree: bool,
+    /// Whether the trace test says that there are no others.
+    pub certified: bool,
+}
+
+/// Where the paths to one system end.
+pub(super) struct Ends {
+    /// Isolated solutions, each once.
+    pub regular: Vec<Solution>,
+    /// How many paths arrive at none of them and do not run to infinity: solutions meet, or a curve of them closes.
+    pub left_over: usize,
+}
+
+/// Triangles in a row that bring nothing new before all is believed to be found, and most triangles.
+pub(super) const IDLE_TRIANGLES: usize = 10;
+const MOST_TRIANGLES: usize = 200;
+
+/// Where the trace is compared [in the parameter], and to what part of it.
+const TRACED_AT: [(f64, f64); 4] = [(0.5, 0.0), (-0.4, 0.3), (0.2, -0.6), (0.1, 0.7)];
+const SAME_TRACE: f64 = 1e-6;
+
+/// A sum that changes by less than this part of itself is taken to rest.
+const MOVES: f64 = 1e-3;
+
+/// Where it is seen whether a path runs to infinity, from the end of a way [in the parameter], and by how much the logarithm of an unknown grows
+/// in between if it does.
+const NEAR_THE_END: [f64; 2] = [1e-3, 1e-5];
+const GROWS: f64 = 0.5;
+
+/// Ways to one system that are tried: from which start, at which pace.
+const TRIES: [(usize, Pace); 4] = [(0, BRISK), (1, BRISK), (0, CAREFUL), (1, CAREFUL)];
+
+impl Starts {
+    /// Those of a family.
+    pub fn found<F: Family>(family: &F) -> Self {
+        let mut random = [Random(0x5ee_d01), Random(0x5ee_d02)];
+        let mut starts = [0, 1].map(|k: usize| Start::found(family, &mut random[k]));
+        // the one that has fewer is sought anew
+        for _ in 0..2 {
+            let counts = [0, 1].map(|k: usize| starts[k].solutions.len());
+            if counts[0] == counts[1] {
+                break;
+            }
+            let fewer = usize::from(counts[1] < counts[0]);
+            starts[fewer] = Start::found(family, &mut random[fewer]);
+        }
+        let agree = starts[0].solutions.len() == starts[1].solutions.len();
+        let certified = agree && starts[0].passes_trace_test(family, &mut random[0]);
+        Self { starts, agree, certified }
+    }
+
+    /// How many solutions a general member has, as far as is known.
+    pub fn count(&self) -> usize {
+        self.starts[0].solutions.len().max(self.starts[1].solutions.len())
+    }
+
+    /// Whether both starts have as many solutions.
+    pub fn agree(&self) -> bool {
+        self.agree
+    }
+
+    /// The solutions of a member.
+    pub fn ends<F: Family>(&self, family: &F, to: &[Pair]) -> Ends {
+        let (total, slides) = (self.count(), family.slides());
+        let mut regular: Vec<Solution> = Vec::new();
+        let mut infinite = total;
+        let mut idle = false;
+        for (attempt, (start, pace)) in TRIES.into_iter().enumerate() {
+            let start = &self.starts[start];
+            let way = family.between(&start.member, to);
+            let (ends, gone) = start.arriving(&way, pace);
+            let before = regular.len();
+            regular = distinct(&slides, regular.into_iter().chain(ends), SAME_MODE);
+            infinite = infinite.min(gone);
+            if regular.len() >= total {
+                break;
+            }
+            // a path may have jumped to another: what one start finds is what the other does
+            let as_before = attempt > 0 && regular.len() == before;
+            if as_before && (idle || regular.len() + infinite >= total) {
+                break;
+            }
+            idle = as_before;
+        }
+        let infinite = infinite.min(total.saturating_sub(regular.len()));
+        let left_over = total.saturating_sub(regular.len() + infinite);
+        Ends { regular, left_over }
+    }
+}
+
+impl Start {
+    /// All solutions that triangles bring of a random member.
+    fn found<F: Family>(family: &F, random: &mut Random) -> Self {
+        let slides = family.slides();
+        let (member, solution) = family.closed(random);
+        let mut solutions = vec![solution];
+        let mut idle = 0;
+        for _ in 0..MOST_TRIANGLES {
+            let corners = [family.random(random), family.random(random)];
+            let [a, b] = [&corners[0], &corners[1]];
+            let mut carried = solutions.clone();
+            for (from, to) in [(&member, a), (a, b), (b, &member)] {
+                carried = arriving(&family.between(from, to), &carried);
+            }
+            let before = solutions.len();
+            solutions = distinct(&slides, solutions.into_iter().chain(carried), SAME_GENERAL);
+            idle = if solutions.len() == before { idle + 1 } else { 0 };
+            if idle == IDLE_TRIANGLES {
+                break;
+            }
+        }
+        Self { member, solutions }
+    }
+
+    /// Whether the sum of some unknown over all solutions changes evenly while constants do.
+    fn passes_trace_test<F: Family>(&self, family: &F, random: &mut Random) -> bool {
+        let ways = family.ways_of_constants(random);
+        ways.iter().any(|change| self.is_even_along(family, change))
+    }
+
+    fn is_even_along<F: Family>(&self, family: &F, change: &[Pair]) -> bool {
+        let start = sum(&self.solutions);
+        let mut slopes = Vec::new();
+        for (re, im) in TRACED_AT {
+            let by = Complex64::new(re, im);
+            let to: Vec<Pair> = self
+                .member
+                .iter()
+                .zip(change)
+                .map(|(v, c)| std::array::from_fn(|s| v[s] + by * c[s]))
+                .collect();
+            let there = arriving(&family.between(&self.member, &to), &self.solutions);
+            if there.len() < self.solutions.len() {
+                return false;
+            }
+            let there = sum(&there);
+            let slope: Solution = std::array::from_fn(|i| (there[i] - start[i]) / by);
+            slopes.push(slope);
+        }
+        // a sum that rests says nothing, and one has poles where another has none
+        (0..family.unknowns()).any(|i| {
+            let most = slopes
+                .iter()
+                .fold(start[i].norm(), |m: f64, s| m.max(s[i].norm()));
+            let even = |s: &Solution| (s[i] - slopes[0][i]).norm() < SAME_TRACE * most;
+            slopes[0][i].norm() > MOVES * most && slopes.iter().all(even)
+        })
+    }
+
+    /// The solutions that arrive, and how many paths run to infinity.
+    fn arriving<H: Homotopy>(&self, way: &H, pace: Pace) -> (Vec<Solution>, usize) {
+        let [first, second] = NEAR_THE_END;
+        let ways = [
+            straight(0.0, 1.0 - first, false),
+            straight(1.0 - first, 1.0 - second, false),
+            straight(1.0 - second, 1.0, true),
+        ];
+        let places: Vec<Place> = self
+            .solutions
+            .iter()
+            .map(|x| Place::begun(x, Complex64::ZERO))
+            .collect();
+        let reached = follow(way, &places, &[&ways], pace);
+        let (mut arrived, mut infinite) = (Vec::new(), 0);
+        for path in reached.chunks(ways.len()) {
+            let size = |place: &Option<Place>| place.as_ref().map(|p| farthest(way.slides(), p.solution()));
+            match (size(&path[0]), size(&path[1]), &path[2]) {
+                (_, _, Some(place)) => arrived.push(*place.solution()),
+                (Some(before), Some(after), None) if after - before > GROWS => infinite += 1,
+                _ => (),
+            }
+        }
+        (arrived, infinite)
+    }
+}
+
+/// The sum over solutions.
+fn sum(solutions: &[Solution]) -> Solution {
+    std::array::from_fn(|i| solutions.iter().map(|x| x[i]).sum())
+}
+
+/// The logarithm of the unknown that is farthest from where it began.
+fn farthest(slides: &Slides, x: &Solution) -> f64 {
+    (0..UNKNOWNS).fold(0.0, |most: f64, i| {
+        let size = x[i].norm();
+        most.max(if slides[i] {
+            (1.0 + size).ln()
+        } else {
+            size.ln().abs()
+        })
+    })
+}
+
+/// A stretch of the way from 0 to 1.
+fn straight(from: f64, to: f64, settle: bool) -> Way {
+    Way { direction: Complex64::ONE, length: to - from, end: to.into(), settle }
+}
+
+/// The solutions that arrive at the end of a way between general members.
+fn arriving<H: Homotopy>(way: &H, starts: &[Solution]) -> Vec<Solution> {
+    let places: Vec<Place> = starts.iter().map(|x| Place::begun(x, Complex64::ZERO)).collect();
+    let ends = follow(way, &places, &[&[straight(0.0, 1.0, true)]], BRISK);
+    ends.iter().flatten().map(|place| *place.solution()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::planar_family::{Chord, Closes, PlanarFamily, Term};
+    use super::*;
+
+    /// Two ternary links on the ground, and two links between them: the turns of the one and of one between, and so on.
+    fn stephenson() -> PlanarFamily {
+        let at = |vector, turn, back| Term { vector, turn, slide: None, back };
+        // the ground's places 0 and 1; links 0 and 1 on it, link 2 from one to the other, link 3 likewise
+        let way = |first: usize, link: usize| {
+            let terms = vec![
+                at(0, None, false),
+                at(first, Some(0), false),
+                at(first + 1, Some(link), false),
+                at(1, None, true),
+                at(first + 2, Some(1), true),
+            ];
+            Chord { closes: Closes::Pin, terms }
+        };
+        PlanarFamily {
+            turns: 4,
+            slides: Vec::new(),
+            vectors: 8,
+            at_rest: vec![0, 1],
+            chords: vec![way(2, 2), way(5, 3)],
+        }
+    }
+
+    #[test]
+    fn the_trace_test_fails_where_one_solution_is_missing() {
+        let family = stephenson();
+        let mut random = Random(7);
+        let mut start = Start::found(&family, &mut random);
+        assert_eq!(start.solutions.len(), 6);
+        assert!(start.passes_trace_test(&family, &mut random));
+        for k in 0..6 {
+            let solution = start.solutions.remove(k);
+            assert!(!start.passes_trace_test(&family, &mut random));
+            start.solutions.insert(k, solution);
+        }
+    }
+
+    #[test]
+    fn paths_lead_to_all_solutions_of_another_general_member() {
+        let family = stephenson();
+        let starts = Starts::found(&family);
+        let ends = starts.ends(&family, &family.random(&mut Random(9)));
+        assert_eq!((ends.regular.len(), ends.left_over), (6, 0));
+    }
+}

@@ -1,0 +1,388 @@
+//! The family of a planar block: turns and slides of its links, closed by pins, slides and rods, with complex numbers for all its dimensions.
+//!
+//! A vector `(x, y)` of the plane is the pair `(x + i y, x - i y)`, which a turn `Z = e^(i q)` takes to `(Z v+, v- / Z)`. In a real net the second
+//! is the conjugate of the first; in the family both are any numbers. Links are turned and shifted in their plane only, so that none is turned over.
+//!
+//! Source: docs/theory_nets.md, (11) and (12).
+
+use super::monodromy::{Family, Pair, Starts};
+use crate::loops::equation::closure::{Linear, Slides, Solution, UNKNOWNS};
+use crate::loops::equation::lanes::Lanes;
+use crate::loops::modes::continuation::{Homotopy, Pace};
+use crate::loops::modes::phases::Watch;
+use crate::random::Random;
+use crate::vectors::Vector;
+use num_complex::Complex64;
+use std::collections::HashMap;
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
+
+/// A vector along a path from the ground to a place on a link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Term {
+    /// Which of the family's vectors.
+    pub vector: usize,
+    /// The turn that carries it; `None` where it rests.
+    pub turn: Option<usize>,
+    /// The slide along it.
+    pub slide: Option<usize>,
+    /// Whether it is on the way back to the ground.
+    pub back: bool,
+}
+
+/// How a chord closes, with the distance d between its places on the two links.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Closes {
+    /// `d = 0`, by the vector of the last term.
+    Pin,
+    /// `d . n = h`: the normal with the turn that carries it, and the height.
+    Slide { turn: Option<usize>, normal: usize, height: usize },
+    /// `d . d = L^2`, the square in place of a vector.
+    Rod { square: usize },
+}
+
+/// What closes a cycle: the terms of `d`.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Chord {
+    pub closes: Closes,
+    pub terms: Vec<Term>,
+}
+
+/// The pattern of a block: links and joints, without their dimensions.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct PlanarFamily {
+    /// How many turns are unknown; slides are the unknowns after them.
+    pub turns: usize,
+    /// For each slide the turn of the link along which it goes.
+    pub slides: Vec<Option<usize>>,
+    /// How many vectors and numbers it has.
+    pub vectors: usize,
+    /// Those that rest: places on the links at which it hangs.
+    pub at_rest: Vec<usize>,
+    pub chords: Vec<Chord>,
+}
+
+/// Families whose starts are kept.
+const MOST_FAMILIES: usize = 500;
+
+impl PlanarFamily {
+    /// Its starts. They are kept once found: constants that are computed, not written down.
+    pub fn starts(&self) -> Arc<Starts> {
+        type Known = HashMap<PlanarFamily, Arc<OnceLock<Arc<Starts>>>>;
+        static KNOWN: LazyLock<Mutex<Known>> = LazyLock::new(Mutex::default);
+        let slot = {
+            // nothing can go wrong while it is held
+            let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+            if known.len() >= MOST_FAMILIES {
+                known.clear();
+            }
+            known.entry(self.clone()).or_default().clone()
+        };
+        slot.get_or_init(|| Arc::new(Starts::found(self))).clone()
+    }
+
+    /// Whether it has as many rows as unknowns, and no more than are followed.
+    pub fn is_square(&self) -> bool {
+        let rows = |chord: &Chord| if chord.closes == Closes::Pin { 2 } else { 1 };
+        let count: usize = self.chords.iter().map(rows).sum();
+        count == self.unknowns() && count <= UNKNOWNS && count > 0
+    }
+
+    /// The sum of terms at a solution.
+    pub fn sum(&self, terms: &[Term], member: &[Pair], x: &Solution) -> Pair {
+        let mut sum = [Complex64::ZERO; 2];
+        for term in terms {
+            let turn = term.turn.map_or(Complex64::ONE, |g| x[g]);
+            let factor = term.slide.map_or(Complex64::ONE, |s| x[self.turns + s]);
+            let factor = if term.back { -factor } else { factor };
+            let [plus, minus] = member[term.vector];
+            sum[0] += plus * turn * factor;
+            sum[1] += minus / turn * factor;
+        }
+        sum
+    }
+
+    /// Changes the numbers that close each chord, so that a solution is one.
+    fn close(&self, member: &mut [Pair], x: &Solution) {
+        for chord in &self.chords {
+            let d = self.sum(&chord.terms, member, x);
+            match chord.closes {
+                Closes::Pin => {
+                    let Some(last) = chord.terms.last() else {
+                        continue;
+                    };
+                    let turn = last.turn.map_or(Complex64::ONE, |g| x[g]);
+                    let sign = if last.back { 1.0 } else { -1.0 };
+                    member[last.vector][0] += sign * d[0] / turn;
+                    member[last.vector][1] += sign * d[1] * turn;
+                }
+                Closes::Slide { turn, normal, height } => {
+                    let turn = turn.map_or(Complex64::ONE, |g| x[g]);
+                    let n = member[normal];
+                    member[height][0] = 0.5 * (d[0] * n[1] / turn + d[1] * n[0] * turn);
+                }
+                Closes::Rod { square } => member[square][0] = d[0] * d[1],
+            }
+        }
+    }
+}
+
+impl Family for PlanarFamily {
+    type Way = Between;
+
+    fn slides(&self) -> Slides {
+        std::array::from_fn(|i| (self.turns..self.unknowns()).contains(&i))
+    }
+
+    fn random(&self, random: &mut Random) -> Vec<Pair> {
+        (0..self.vectors)
+            .map(|_| [random.number(), random.number()])
+            .collect()
+    }
+
+    fn closed(&self, random: &mut Random) -> (Vec<Pair>, Solution) {
+        let mut member = self.random(random);
+        let mut x = [Complex64::ONE; UNKNOWNS];
+        for (i, x) in x.iter_mut().enumerate().take(self.unknowns()) {
+            *x = if i < self.turns {
+                random.phase()
+            } else {
+                random.number()
+            };
+        }
+        self.close(&mut member, &x);
+        (member, x)
+    }
+
+    fn between(&self, from: &[Pair], to: &[Pair]) -> Between {
+        Between::new(self, from, to)
+    }
+
+    /// Where what rests goes one way: all such places together, or one of them, or the height of a slide or the square of a rod.
+    fn ways_of_constants(&self, random: &mut Random) -> Vec<Vec<Pair>> {
+        let still = || vec![[Complex64::ZERO; 2]; self.vectors];
+        let mut together = still();
+        for &k in &self.at_rest {
+            together[k][0] = random.number();
+        }
+        let mut ways = vec![together];
+        let own = self.chords.iter().filter_map(|chord| match chord.closes {
+            Closes::Pin => None,
+            Closes::Slide { height, .. } => Some(height),
+            Closes::Rod { square } => Some(square),
+        });
+        for k in self.at_rest.iter().copied().chain(own) {
+            let mut one = still();
+            one[k][0] = random.number();
+            ways.push(one);
+        }
+        ways
+    }
+
+    fn unknowns(&self) -> usize {
+        self.turns + self.slides.len()
+    }
+}
+
+/// Signs of the exponents of `v+` and `v-`.
+const SIGNS: [f64; 2] = [1.0, -1.0];
+
+/// Coefficients of `d`, or of the normal, that go with one turn and one slide, where a way begins and how they change along it.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    is_normal: bool,
+    turn: Option<usize>,
+    slide: Option<usize>,
+    from: Pair,
+    rate: Pair,
+}
+
+/// A chord along a way.
+#[derive(Clone, Debug)]
+struct Moving {
+    closes: Closes,
+    parts: Vec<Part>,
+    /// The height or square, and how it changes.
+    number: Pair,
+}
+
+/// The members of the family on the straight line from one to another, while the parameter goes from 0 to 1.
+pub(super) struct Between {
+    slides: Slides,
+    turns: usize,
+    unknowns: usize,
+    chords: Vec<Moving>,
+}
+
+/// Most steps on one path.
+const MOST_STEPS: usize = 800;
+
+/// Second correction at the end of a path, where the next would be rounding.
+const LAST_SECOND: f64 = 1e-8;
+
+/// The closure is known to this times one to six [relative to the size]: see `loops/modes/straight`.
+const ROUNDING: f64 = 2e-16;
+
+impl Between {
+    fn new(family: &PlanarFamily, from: &[Pair], to: &[Pair]) -> Self {
+        let chord = |chord: &Chord| {
+            let mut parts: Vec<Part> = Vec::new();
+            for term in &chord.terms {
+                let sign = if term.back { -1.0 } else { 1.0 };
+                let begin = from[term.vector].map(|v| sign * v);
+                let rate: Pair = std::array::from_fn(|s| sign * to[term.vector][s] - begin[s]);
+                let same = parts
+                    .iter_mut()
+                    .find(|p| p.turn == term.turn && p.slide == term.slide);
+                if let Some(part) = same {
+                    for s in 0..2 {
+                        part.from[s] += begin[s];
+                        part.rate[s] += rate[s];
+                    }
+                } else {
+                    parts.push(Part {
+                        is_normal: false,
+                        turn: term.turn,
+                        slide: term.slide,
+                        from: begin,
+                        rate,
+                    });
+                }
+            }
+            let rate = |k: usize, s: usize| to[k][s] - from[k][s];
+            let number = match chord.closes {
+                Closes::Pin => [Complex64::ZERO; 2],
+                Closes::Slide { turn, normal, height } => {
+                    let rates = [rate(normal, 0), rate(normal, 1)];
+                    parts.push(Part { is_normal: true, turn, slide: None, from: from[normal], rate: rates });
+                    [from[height][0], rate(height, 0)]
+                }
+                Closes::Rod { square } => [from[square][0], rate(square, 0)],
+            };
+            Moving { closes: chord.closes, parts, number }
+        };
+        Self {
+            slides: family.slides(),
+            turns: family.turns,
+            unknowns: family.unknowns(),
+            chords: family.chords.iter().map(chord).collect(),
+        }
+    }
+}
+
+/// A number on the way: its value, its derivatives by the unknowns, and that by the parameter.
+#[derive(Clone, Copy)]
+struct Half<V> {
+    value: Lanes<V>,
+    columns: [Lanes<V>; UNKNOWNS],
+    drift: Lanes<V>,
+}
+
+impl Homotopy for Between {
+    #[inline(always)]
+    fn slides(&self) -> &Slides {
+        &self.slides
+    }
+
+    #[inline(always)]
+    fn watch(&self) -> Option<&Watch> {
+        None
+    }
+
+    fn most_steps(&self, _: Pace) -> usize {
+        MOST_STEPS
+    }
+
+    #[inline(always)]
+    fn settled(&self, _: f64, second: f64) -> bool {
+        second <= LAST_SECOND
+    }
+
+    #[inline(always)]
+    fn ahead<V: Vector>(&self, at: Lanes<V>, by: Lanes<V>) -> Lanes<V> {
+        at + by
+    }
+
+    #[inline(always)]
+    fn linearise<V: Vector, const DRIFT: bool>(&self, x: &[Lanes<V>; UNKNOWNS], at: Lanes<V>) -> Linear<V> {
+        let t = at.re;
+        let zero = Lanes::<V>::zero();
+        let one = Lanes::<V>::one();
+        let half = V::splat(0.5);
+        let none = Half::<V> { value: zero, columns: [zero; UNKNOWNS], drift: zero };
+        let mut rows = [[zero; UNKNOWNS + 2]; 6];
+        let mut turned = [[one; UNKNOWNS]; 2];
+        for g in 0..self.turns {
+            turned[0][g] = x[g];
+            turned[1][g] = x[g].recip();
+        }
+        let mut r = 0;
+        for chord in &self.chords {
+            // the two halves of d, and of the normal; of a rod both are d
+            let mut d = [none; 2];
+            let mut n = [none; 2];
+            for part in &chord.parts {
+                for s in 0..2 {
+                    let rate = Lanes::splat(part.rate[s]);
+                    let mut value = Lanes::splat(part.from[s]).plus_scaled(rate, t);
+                    let mut drift = rate;
+                    if let Some(g) = part.turn {
+                        value = value * turned[s][g];
+                        drift = drift * turned[s][g];
+                    }
+                    let to = if part.is_normal { &mut n[s] } else { &mut d[s] };
+                    if let Some(k) = part.slide {
+                        let k = self.turns + k;
+                        to.columns[k] = to.columns[k] + value;
+                        value = value * x[k];
+                        drift = drift * x[k];
+                    }
+                    if let Some(g) = part.turn {
+                        // the derivative of Z by its angle is i Z, of its inverse -i times that
+                        let by = value.times_i().scale(V::splat(SIGNS[s]));
+                        to.columns[g] = to.columns[g] + by;
+                    }
+                    to.value = to.value + value;
+                    to.drift = to.drift + drift;
+                }
+            }
+            if chord.closes == Closes::Pin {
+                for side in &d {
+                    let unknown = Lanes { re: V::splat(ROUNDING * (r + 1) as f64), im: V::splat(0.0) };
+                    for c in 0..self.unknowns {
+                        rows[r][c] = side.columns[c];
+                    }
+                    rows[r][UNKNOWNS] = unknown - side.value;
+                    rows[r][UNKNOWNS + 1] = -side.drift;
+                    r += 1;
+                }
+                continue;
+            }
+            if matches!(chord.closes, Closes::Rod { .. }) {
+                n = d;
+            }
+            let rate = Lanes::splat(chord.number[1]);
+            let number = Lanes::splat(chord.number[0]).plus_scaled(rate, t);
+            let unknown = Lanes { re: V::splat(ROUNDING * (r + 1) as f64), im: V::splat(0.0) };
+            let value = (d[0].value * n[1].value).plus_product(d[1].value, n[0].value);
+            for c in 0..self.unknowns {
+                rows[r][c] = (d[0].columns[c] * n[1].value)
+                    .plus_product(d[0].value, n[1].columns[c])
+                    .plus_product(d[1].columns[c], n[0].value)
+                    .plus_product(d[1].value, n[0].columns[c])
+                    .scale(half);
+            }
+            let drift = (d[0].drift * n[1].value)
+                .plus_product(d[0].value, n[1].drift)
+                .plus_product(d[1].drift, n[0].value)
+                .plus_product(d[1].value, n[0].drift);
+            rows[r][UNKNOWNS] = unknown + number - value.scale(half);
+            rows[r][UNKNOWNS + 1] = rate - drift.scale(half);
+            r += 1;
+        }
+        // unknowns that it has not rest
+        for k in self.unknowns..UNKNOWNS {
+            rows[k][k] = one;
+        }
+        Linear { rows }
+    }
+}
