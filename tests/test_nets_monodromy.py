@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.kinematics.circuits.poses import poses
+from sevenbar.kinematics.circuits.poses import joint_frames, poses
 from test_nets import STEPHENSON, net, pin
 
 #: A platform on three legs, one of which stands on the crank.
@@ -232,6 +232,49 @@ def test_slides_in_a_block_lose_no_mode_of_a_search(seed):
     linkage = sliders(np.random.default_rng(seed))
     modes = loses_none(linkage, 0, 0.1)
     assert modes.completeness in ("algebraic", "monodromy")
+
+
+def shaper(kind):
+    """A crank whose pin is in a slot of a lever, or has the slot; a link from its end to a ram."""
+    pivot, tip, ram = (0, -80), (60, 80), (160, 100)
+    slot, z = [30, 80, 0], [0, 0, 1]
+    slotted = {"K": (["lever", "crank"], [slot, z]), "L": (["crank", "lever"], [z, slot])}
+    between, axes = slotted[kind]
+    joints = [
+        {"name": "crank", "kind": "R", "at": [0, 0, 0], "axis": z, "between": ["frame", "crank"]},
+        {"name": "pin", "kind": kind, "at": [30, 0, 0], "axes": axes, "between": between},
+        {"name": "lever", "kind": "R", "at": [*pivot, 0], "axis": z, "between": ["frame", "lever"]},
+        {"name": "tip", "kind": "R", "at": [*tip, 0], "axis": z, "between": ["lever", "link"]},
+        {"name": "bolt", "kind": "R", "at": [*ram, 0], "axis": z, "between": ["link", "ram"]},
+        {"name": "guide", "kind": "P", "at": [*ram, 0], "axis": [1, 0, 0], "between": ["frame", "ram"]},
+    ]
+    return sb.from_axes(joints, ground="frame", drive="crank")
+
+
+def shaper_by_hand(angle):
+    pivot, tip, ram = -80j, 60 + 80j, 160 + 100j
+    result = []
+    for way in (1, -1):
+        turn = way * (30 * np.exp(1j * angle) - pivot)
+        end = pivot + (tip - pivot) * turn / abs(turn) / np.exp(1j * np.angle(30 - pivot))
+        half = np.emath.sqrt(abs(tip - ram) ** 2 - (ram - end).imag ** 2)
+        result += [end.real + sign * half - ram.real for sign in (1, -1) if half.imag == 0]
+    return np.array(result)
+
+
+@pytest.mark.parametrize("kind", ["K", "L"])
+def test_a_pin_in_a_slot_is_met_from_both_sides(kind):
+    linkage = shaper(kind)
+    guide = linkage.columns.index("guide")
+    for angle in (0.0, 0.7, 2.5, -2.0):
+        modes = linkage.assembly_modes(angle)
+        assert modes.completeness == "algebraic"
+        same_places(modes.q[:, guide], shaper_by_hand(angle), 1e-9)
+        # every joint closes
+        before, after = joint_frames(linkage, poses(linkage, modes.q))
+        for joint, own in enumerate(linkage.joints):
+            moves = before[:, joint] @ own.motion(modes.q[:, linkage.places[joint]])
+            assert np.abs(moves - after[:, joint]).max() < 1e-9 * linkage.size
 
 
 def test_circuits_of_a_block_are_algebraic():

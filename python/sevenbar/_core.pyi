@@ -163,8 +163,9 @@ _RawDyad = tuple[
     tuple[int | None, int | None],
 ]
 
-#: A planar block: its normal, the steps of its links, each joint's letter R P or, of a rod, L, its place and
-#: its direction (of a rod two places), and the steps of its two links.
+#: A planar block: its normal, the steps of its links, each joint's letter, its place and its direction (of a
+#: rod two places), and the steps of its two links: R P, K of a pin of the first in a slot of the second, L of
+#: a rod.
 _RawBlock = tuple[
     tuple[float, float, float],
     Sequence[int],

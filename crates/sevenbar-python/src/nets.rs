@@ -122,8 +122,8 @@ type RawMode = (Vec<f64>, Vec<([[f64; 3]; 3], Vec3)>, f64, bool);
 /// Modes, and the word for their completeness.
 type RawModes = (Vec<RawMode>, &'static str);
 
-/// A planar block: its normal, the steps of its links, each joint's letter R P or, of a rod, L, with its place and its direction, or two
-/// places, and the steps of its two links.
+/// A planar block: its normal, the steps of its links, each joint's letter with its place and its direction, or of a rod two places, and
+/// the steps of its two links: R P, of a pin of the first in a slot of the second K, of a rod L.
 type RawBlock = (Vec3, Vec<usize>, Vec<(char, Vec3, Vec3, [Option<usize>; 2])>);
 
 /// Links that are solved together.
@@ -151,6 +151,7 @@ impl RawPart {
                     let joint = match letter {
                         'R' => BlockJoint::Hinge(first),
                         'P' => BlockJoint::Slide(first, second),
+                        'K' => BlockJoint::Slot(first, second),
                         _ => BlockJoint::Rod([first, second]),
                     };
                     (joint, on)

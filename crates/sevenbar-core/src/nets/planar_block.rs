@@ -18,6 +18,8 @@ pub enum BlockJoint {
     Hinge(Vec3),
     /// A slide at a place along a direction.
     Slide(Vec3, Vec3),
+    /// A pin of the first link at a place, in a slot of the second along a direction.
+    Slot(Vec3, Vec3),
     /// A rod from a place on the one link to one on the other.
     Rod([Vec3; 2]),
 }
@@ -294,7 +296,11 @@ impl Builder<'_> {
         loop {
             let next = left.iter().position(|&j| {
                 let reached = self.ends[j].map(|end| self.is_reached(&end));
-                !matches!(self.block.joints[j].0, BlockJoint::Rod(_)) && reached[0] != reached[1]
+                let leads = matches!(
+                    self.block.joints[j].0,
+                    BlockJoint::Hinge(_) | BlockJoint::Slide(..)
+                );
+                leads && reached[0] != reached[1]
             });
             let Some(place) = next else {
                 return left;
@@ -314,7 +320,7 @@ impl Builder<'_> {
         let (at, along) = match self.block.joints[joint].0 {
             BlockJoint::Hinge(at) => (at, None),
             BlockJoint::Slide(at, along) => (at, Some(along)),
-            BlockJoint::Rod(_) => return,
+            BlockJoint::Slot(..) | BlockJoint::Rod(_) => return,
         };
         let Some(mut path) = self.path(&from, at) else {
             return;
@@ -334,7 +340,7 @@ impl Builder<'_> {
         let ends = self.ends[joint];
         let shape = self.block.joints[joint].0;
         let at = match shape {
-            BlockJoint::Hinge(at) | BlockJoint::Slide(at, _) => [at; 2],
+            BlockJoint::Hinge(at) | BlockJoint::Slide(at, _) | BlockJoint::Slot(at, _) => [at; 2],
             BlockJoint::Rod(at) => at,
         };
         let paths = [0, 1].map(|s: usize| self.path(&ends[s], at[s]));
@@ -352,7 +358,7 @@ impl Builder<'_> {
             .collect();
         let closes = match shape {
             BlockJoint::Hinge(_) => Closes::Pin,
-            BlockJoint::Slide(_, along) => {
+            BlockJoint::Slide(_, along) | BlockJoint::Slot(_, along) => {
                 let (direction, turn) = self.direction(&ends[1], along);
                 let normal = self.vector(Complex64::I * direction);
                 self.member.push([Complex64::ZERO; 2]);

@@ -186,14 +186,14 @@ impl Family for PlanarFamily {
 /// Signs of the exponents of `v+` and `v-`.
 const SIGNS: [f64; 2] = [1.0, -1.0];
 
-/// Coefficients of `d`, or of the normal, that go with one turn and one slide, where a way begins and how they change along it.
+/// The coefficient that goes with one turn and one slide in d+, d-, n+ or n-, where a way begins and how it changes along it.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    is_normal: bool,
+    side: usize,
     turn: Option<usize>,
     slide: Option<usize>,
-    from: Pair,
-    rate: Pair,
+    from: Complex64,
+    rate: Complex64,
 }
 
 /// A chord along a way.
@@ -226,37 +226,32 @@ impl Between {
     fn new(family: &PlanarFamily, from: &[Pair], to: &[Pair]) -> Self {
         let chord = |chord: &Chord| {
             let mut parts: Vec<Part> = Vec::new();
+            let mut add = |side: usize, turn, slide, [from, to]: [Complex64; 2]| {
+                let same = |p: &&mut Part| p.side == side && p.turn == turn && p.slide == slide;
+                if let Some(part) = parts.iter_mut().find(same) {
+                    part.from += from;
+                    part.rate += to - from;
+                } else {
+                    parts.push(Part { side, turn, slide, from, rate: to - from });
+                }
+            };
             for term in &chord.terms {
                 let sign = if term.back { -1.0 } else { 1.0 };
-                let begin = from[term.vector].map(|v| sign * v);
-                let rate: Pair = std::array::from_fn(|s| sign * to[term.vector][s] - begin[s]);
-                let same = parts
-                    .iter_mut()
-                    .find(|p| p.turn == term.turn && p.slide == term.slide);
-                if let Some(part) = same {
-                    for s in 0..2 {
-                        part.from[s] += begin[s];
-                        part.rate[s] += rate[s];
-                    }
-                } else {
-                    parts.push(Part {
-                        is_normal: false,
-                        turn: term.turn,
-                        slide: term.slide,
-                        from: begin,
-                        rate,
-                    });
+                for s in 0..2 {
+                    let ends = [from, to].map(|member| sign * member[term.vector][s]);
+                    add(s, term.turn, term.slide, ends);
                 }
             }
-            let rate = |k: usize, s: usize| to[k][s] - from[k][s];
+            let number = |k: usize| [from[k][0], to[k][0] - from[k][0]];
             let number = match chord.closes {
                 Closes::Pin => [Complex64::ZERO; 2],
                 Closes::Slide { turn, normal, height } => {
-                    let rates = [rate(normal, 0), rate(normal, 1)];
-                    parts.push(Part { is_normal: true, turn, slide: None, from: from[normal], rate: rates });
-                    [from[height][0], rate(height, 0)]
+                    for s in 0..2 {
+                        add(2 + s, turn, None, [from[normal][s], to[normal][s]]);
+                    }
+                    number(height)
                 }
-                Closes::Rod { square } => [from[square][0], rate(square, 0)],
+                Closes::Rod { square } => number(square),
             };
             Moving { closes: chord.closes, parts, number }
         };
@@ -317,36 +312,33 @@ impl Homotopy for Between {
         }
         let mut r = 0;
         for chord in &self.chords {
-            // the two halves of d, and of the normal; of a rod both are d
-            let mut d = [none; 2];
-            let mut n = [none; 2];
+            // d+, d-, and those of the normal
+            let mut sides = [none; 4];
             for part in &chord.parts {
-                for s in 0..2 {
-                    let rate = Lanes::splat(part.rate[s]);
-                    let mut value = Lanes::splat(part.from[s]).plus_scaled(rate, t);
-                    let mut drift = rate;
-                    if let Some(g) = part.turn {
-                        value = value * turned[s][g];
-                        drift = drift * turned[s][g];
-                    }
-                    let to = if part.is_normal { &mut n[s] } else { &mut d[s] };
-                    if let Some(k) = part.slide {
-                        let k = self.turns + k;
-                        to.columns[k] = to.columns[k] + value;
-                        value = value * x[k];
-                        drift = drift * x[k];
-                    }
-                    if let Some(g) = part.turn {
-                        // the derivative of Z by its angle is i Z, of its inverse -i times that
-                        let by = value.times_i().scale(V::splat(SIGNS[s]));
-                        to.columns[g] = to.columns[g] + by;
-                    }
-                    to.value = to.value + value;
-                    to.drift = to.drift + drift;
+                let side = &mut sides[part.side];
+                let mut drift = Lanes::splat(part.rate);
+                let mut value = Lanes::splat(part.from).plus_scaled(drift, t);
+                if let Some(g) = part.turn {
+                    let z = turned[part.side % 2][g];
+                    value = value * z;
+                    drift = drift * z;
                 }
+                if let Some(k) = part.slide {
+                    let k = self.turns + k;
+                    side.columns[k] = side.columns[k] + value;
+                    value = value * x[k];
+                    drift = drift * x[k];
+                }
+                if let Some(g) = part.turn {
+                    // the derivative of Z by its angle is i Z, of its inverse -i times that
+                    let by = value.times_i().scale(V::splat(SIGNS[part.side % 2]));
+                    side.columns[g] = side.columns[g] + by;
+                }
+                side.value = side.value + value;
+                side.drift = side.drift + drift;
             }
             if chord.closes == Closes::Pin {
-                for side in &d {
+                for side in &sides[..2] {
                     let unknown = Lanes { re: V::splat(ROUNDING * (r + 1) as f64), im: V::splat(0.0) };
                     for c in 0..self.unknowns {
                         rows[r][c] = side.columns[c];
@@ -357,9 +349,13 @@ impl Homotopy for Between {
                 }
                 continue;
             }
-            if matches!(chord.closes, Closes::Rod { .. }) {
-                n = d;
-            }
+            // d . n, of a rod d . d
+            let (d, n) = sides.split_at(2);
+            let n = if matches!(chord.closes, Closes::Rod { .. }) {
+                d
+            } else {
+                n
+            };
             let rate = Lanes::splat(chord.number[1]);
             let number = Lanes::splat(chord.number[0]).plus_scaled(rate, t);
             let unknown = Lanes { re: V::splat(ROUNDING * (r + 1) as f64), im: V::splat(0.0) };

@@ -13,7 +13,7 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.joints import Z
+from sevenbar.kinematics.loop.joints import Y, Z
 from sevenbar.kinematics.loop.rigid import inverse, pose
 from sevenbar.kinematics.nets.chords import Triple, three
 from sevenbar.kinematics.nets.order import LinkBlock, order_of
@@ -23,7 +23,10 @@ from sevenbar.kinematics.nets.tree import Tree
 RawDyad = tuple[Triple, list[tuple[str, Triple]], tuple[int, int], tuple[int | None, int | None]]
 RawBlock = tuple[Triple, list[int], list[tuple[str, Triple, Triple, tuple[int | None, int | None]]]]
 
-#: Poses of a search nearer than this in every joint [rad, or relative to the size], where modes meet, are one.
+#: On which of its links a pin in a slot has the slot.
+SLOTS = {"K": 0, "L": 1}
+
+#: Where modes meet, poses of a search nearer than this [rad, or relative to the size] are one.
 NEAR = 1e-5
 
 #: Most places where modes meet; more are of a curve of poses that all close.
@@ -98,7 +101,12 @@ def parts_of(linkage: Loop, tree: Tree) -> list[RawDyad | RawBlock] | None:
     """
     driven, blocks = tree.first[0], tree.order.blocks
     own = [joint for block in blocks for joint in block.joints]
-    simple = all(linkage.joints[joint].kind in ("R", "P") for joint in (driven, *own))
+    # pins in slots close cycles; nothing hangs on one
+    simple = all(
+        linkage.joints[joint].kind in ("R", "P")
+        or (linkage.joints[joint].kind in SLOTS and joint not in tree.columns and joint != driven)
+        for joint in (driven, *own)
+    )
     if not (blocks and simple and all(block.group == "planar" for block in blocks)):
         return None
     at_ground = linkage.graph.ground in linkage.graph.between[driven]
@@ -114,9 +122,15 @@ def _block(linkage: Loop, tree: Tree, block: LinkBlock) -> RawBlock:
     joints: list[tuple[str, Triple, Triple, tuple[int | None, int | None]]] = []
     for joint in block.joints:
         a, b = between[joint]
-        frame = linkage.drawn_joint_on(joint, a)
-        kind, on = linkage.joints[joint].kind, (carrier[a], carrier[b])
-        joints.append((kind, three(frame[:3, 3]), three(frame[:3, 2]), on))
+        frame, kind = linkage.drawn_joint_on(joint, a), linkage.joints[joint].kind
+        if kind in SLOTS:
+            # the link with the slot last
+            a, b = (a, b) if SLOTS[kind] == 1 else (b, a)
+            place = linkage.drawn_joint_on(joint, a)[:3, 3]
+            along = linkage.drawn_joint_on(joint, b)[:3, Y]
+            joints.append(("K", three(place), three(along), (carrier[a], carrier[b])))
+        else:
+            joints.append((kind, three(frame[:3, 3]), three(frame[:3, Z]), (carrier[a], carrier[b])))
     for number in block.rods:
         rod = linkage.rods[number]
         a, b = rod.between
@@ -164,11 +178,19 @@ def _frames(linkage: Loop, tree: Tree, poses: list[tuple[list[list[float]], list
 
 
 def _values(linkage: Loop, frames: Floats) -> list[float]:
-    """The value of each joint, a hinge or a slide, by the frames (links, 4, 4) of all links."""
+    """The values of all joints, hinges, slides, pins in slots, by the frames (links, 4, 4) of all links."""
     result = []
     for joint, (before, after) in enumerate(linkage.graph.between):
         on = [frames[link - 1] @ linkage.joint_on(joint, link) for link in (before, after)]
         moved = inverse(on[0]) @ on[1]
-        turns = linkage.joints[joint].kind == "R"
-        result.append(float(np.arctan2(moved[1, 0], moved[0, 0]) if turns else moved[2, 3]))
+        turn = float(np.arctan2(moved[1, 0], moved[0, 0]))
+        match linkage.joints[joint].kind:
+            case "R":
+                result.append(turn)
+            case "P":
+                result.append(float(moved[2, 3]))
+            case "K":
+                result += [float(moved[1, 3]), turn]
+            case _:
+                result += [turn, float(moved[:3, Y] @ moved[:3, 3])]
     return result
