@@ -194,6 +194,44 @@ def test_parallelograms_in_a_block_lose_no_isolated_mode(off):
     assert loses_none(linkage, column, 0.3).completeness == "algebraic"
 
 
+def test_a_platform_drawn_where_modes_meet_keeps_the_drawing():
+    # the lines of the three legs meet in one point
+    base, top = [(70, 0), (0, 80), (60, 60)], [(20, 0), (0, 30), (20, 20)]
+    places = [(0, 0), *base, *top]
+    pins = [{**one, "at": place} for one, place in zip(PLATFORM, places, strict=True)]
+    linkage = net([*pins[:1], {**pins[1], "at": base[0]}, *pins[2:]])
+    modes = linkage.assembly_modes(0)
+    assert (np.abs(modes.q).max(axis=1) < 1e-5).sum() == 1
+
+
+def test_rods_and_slides_that_drive_lose_no_mode_of_a_search():
+    random = np.random.default_rng(2)
+    z = [0, 0, 1]
+
+    def hinge(k, *between):
+        return {
+            "name": f"pin {k}",
+            "kind": "R",
+            "at": [*random.uniform(-90, 90, 2), 0],
+            "axis": z,
+            "between": between,
+        }
+
+    def slide(k, *between):
+        at = [*random.uniform(-90, 90, 2), 0]
+        return {"name": f"pin {k}", "kind": "P", "at": at, "axis": [0.6, 0.8, 0], "between": between}
+
+    ends = [[[*place, 1], [*other, 4]] for place, other in random.uniform(-90, 90, (2, 2, 2))]
+    rods = [{"name": f"rod {k}", "between": ["left", "right"], "at": at} for k, at in enumerate(ends)]
+    joints = [hinge(0, "frame", "crank"), hinge(1, "crank", "left"), hinge(2, "frame", "right")]
+    with_rods = sb.from_axes(joints, rods=rods, ground="frame", drive="pin 0")
+    assert loses_none(with_rods, 0, 0.2).completeness == "algebraic"
+    joints += [hinge(3, "left", "upper"), hinge(4, "upper", "right")]
+    joints += [slide(5, "left", "lower"), hinge(6, "lower", "right")]
+    driven = sb.from_axes(joints, ground="frame", drive="pin 5")
+    assert loses_none(driven, driven.columns.index("pin 5"), 3.0).completeness == "algebraic"
+
+
 def test_links_are_not_turned_over():
     linkage = net(PLATFORM)
     frames = poses(linkage, linkage.assembly_modes(0).q)

@@ -58,7 +58,7 @@ pub struct Mode {
 const NO_RANK: f64 = 1e-10;
 
 /// Modes nearer than this in every column [rad, or relative to the size] are one: two that meet part by the root of rounding.
-const MEET: f64 = 1e-6;
+const MEET: f64 = 5e-6;
 
 /// Steps of Newton's method that take the rounding of the closed form off, and the error [rad, or relative to the size] of a mode.
 const STEPS: usize = 2;

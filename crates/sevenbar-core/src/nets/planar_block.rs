@@ -53,8 +53,9 @@ pub(super) struct Together {
     pub completeness: Completeness,
 }
 
-/// A solution whose turns or slides have larger imaginary parts than this is not real: two that miss each other leave the root of rounding.
-const REAL: f64 = 1e-7;
+/// A solution whose turns or slides have larger imaginary parts than this is not real: where two meet, rounding parts them by its root, and a pose
+/// may keep a closure error of about the square of this.
+const REAL: f64 = 3e-6;
 
 impl PlanarBlock {
     /// All ways to put it together; `None` where it has more unknowns than are followed.
