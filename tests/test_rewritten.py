@@ -12,6 +12,7 @@ from evidence.rewritten.answers import Answers, differences
 from evidence.rewritten.families import families, lattice
 from evidence.rewritten.reasons import reason
 from evidence.rewritten.ways import Way, ways
+from sevenbar.errors import RequestError
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.report import as_dict
 
@@ -218,3 +219,82 @@ def test_a_search_explains_circuits_that_it_missed_and_none_that_it_has_alone() 
     assert unexplained(counted, answers([2.0], completeness="searched")) == []
     other = answers([3.0], completeness="searched")
     assert set(unexplained(counted, other)) == {"completeness", "circuits"}
+
+
+def test_that_two_inputs_move_it_explains_the_freedoms_of_curves_that_touch_those_poses_and_no_others() -> (
+    None
+):
+    def moving(extents: Sequence[float], finite: int, kind: str = "change-point", **more: object) -> Answers:
+        word = kind if extents else "two-inputs"
+        kinds = [kind] * len(extents)
+        more = {"some_not_followed": True, "is_change": True} | more
+        one = answers(
+            extents, finite=finite, redundant=finite, motion_type=word, types_of_circuits=kinds, **more
+        )
+        return replace(one, plain=[])
+
+    more = moving([], 2)
+    assert unexplained(moving([1.0], 1), more) == []
+    assert {"finite", "redundant"} <= set(unexplained(moving([1.0], 1, "crank-rocker"), more))
+    assert {"finite", "redundant"} <= set(unexplained(moving([1.0], 1), moving([], 3)))
+    refused = Answers({"refused": "RequestError", "idle": 0}, [], [], {}, False, refused="input")
+    assert unexplained(more, refused) == []
+    assert unexplained(moving([1.0], 1), refused) == ["refused"]
+
+
+def test_that_a_peak_is_narrow_explains_velocities_where_all_else_agrees() -> None:
+    def fast(highest: float, extent: float = 1.0) -> Answers:
+        one = answers([extent])
+        one.circuits[0]["highest velocity"] = highest
+        return one
+
+    assert unexplained(fast(-2e4), fast(-12.0)) == []
+    assert unexplained(fast(20.0), fast(12.0)) == ["circuit, highest velocity"]
+    assert "circuit, highest velocity" in unexplained(fast(-2e4), fast(-12.0, 1.1))
+
+
+def test_that_modes_on_a_surface_are_met_or_not_explains_an_open_count_and_no_circuit() -> None:
+    counted = answers([1.0], completeness="counted", some_not_followed=True)
+    assert unexplained(counted, answers([1.0], completeness="algebraic")) == []
+    assert "circuits" in unexplained(counted, answers([1.0, 2.0], completeness="algebraic"))
+
+
+@pytest.mark.parametrize(("index", "moving"), [(2344, "theta_2"), (2368, "theta_3")])
+def test_as_rows_a_loop_moves_whose_input_and_output_stand_still(index: int, moving: str) -> None:
+    # no value of either joint but one closes: another's are asked
+    rows = next(
+        way for way in ways(lattice(index, seed=1), np.random.default_rng(1)) if way.name == "as rows"
+    )
+    with pytest.raises(RequestError, match=rf"stands still while others move.*{moving}"):
+        rows.linkage.motion(36, input=rows.input, output=rows.output)
+
+
+def test_a_drawn_loop_has_all_circuits_where_the_joints_asked_first_stand_still() -> None:
+    linkage = lattice(2344, seed=1).linkage()
+    by_slide, by_turn = (linkage.motion(36, input=name).circuits for name in ("j2", "j4"))
+    assert len(by_slide) == len(by_turn) == 4
+
+
+def test_of_three_slides_in_one_direction_two_are_idle_from_both_ends() -> None:
+    # turns about the direction stand between two of them
+    written = {way.name: way.linkage for way in ways(lattice(2073, seed=1), np.random.default_rng(1))}
+    for name in ("as drawn", "from the other end", "as rows"):
+        if linkage := written.get(name):
+            assert len(linkage.idle) == 2
+            assert linkage.motion(36).motion_type == "rigid"
+
+
+def test_of_three_turns_on_one_axis_two_are_idle() -> None:
+    places = [(0, 0, 0), (1, 2, 0), (1, 2, 1), (1, 2, 2), (4, 2, 0), (4, 0, 0)]
+    joints = [{"name": f"j{i}", "kind": "R", "at": at, "axis": (0, 0, 1)} for i, at in enumerate(places)]
+    linkage = sb.from_axes(joints, name="pins")
+    assert len(linkage.idle) == 2
+    assert linkage.motion(36).mobility.finite == 1
+
+
+def test_a_pose_from_which_nothing_moves_is_refused_as_input_of_a_circuit() -> None:
+    # 78: one at a change point, asked for on the way to a transmission angle
+    places = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
+    joints = [{"name": f"j{i}", "kind": "R", "at": at, "axis": (0, 0, 1)} for i, at in enumerate(places)]
+    with pytest.raises(RequestError, match="no motion through it could be followed"):
+        sb.from_axes(joints, name="triangle").circuit(np.zeros(3), 12)

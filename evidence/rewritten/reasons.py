@@ -27,7 +27,12 @@ COUNTS = frozenset(
 NUMBERS = ("closes", "extent of the input", "extent of the output", "swing", "time ratio")
 OF_CIRCUITS = frozenset(f"circuit, {name}" for name in NUMBERS)
 OF_OPEN = frozenset(f"{OPEN} circuit, {name}" for name in NUMBERS)
+PEAKS = ("lowest velocity", "highest velocity")
+EXTREMES = frozenset(f"circuit, {name}" for name in PEAKS)
 EXTREMES_OF_OPEN = frozenset(f"{OPEN} circuit, {name} velocity" for name in ("lowest", "highest"))
+
+#: Rate of the output against the input from which a peak is narrower than a thousandth of what it passes.
+NARROW_PEAK = 1e3
 
 
 @dataclass(frozen=True)
@@ -84,8 +89,48 @@ def _sure(drawn: Answers, written: Answers) -> set[object]:
     return {drawn.words.get(COMPLETENESS), written.words.get(COMPLETENESS)}
 
 
-def _nothing_but(what: str) -> Callable[[Way, Answers, Answers], bool]:
-    return lambda way, drawn, written: differs(way, drawn, written) == {what}
+def _nothing_but(*what: str) -> Callable[[Way, Answers, Answers], bool]:
+    return lambda way, drawn, written: differs(way, drawn, written) == set(what)
+
+
+def _two_inputs(one: Answers) -> bool:
+    """Whether it is one whose circuits are not followed, as two inputs move it."""
+    return one.words.get("motion type") == "two-inputs" and not one.circuits
+
+
+def _freedoms(one: Answers) -> int:
+    finite = one.words.get("finite")
+    return (finite if isinstance(finite, int) else 0) + _idle(one)
+
+
+def _surface_with_curves(_: Way, drawn: Answers, written: Answers) -> bool:
+    """Whether one moves with a freedom more than the other, whose circuits all pass change points."""
+    more, less = sorted((drawn, written), key=_freedoms, reverse=True)
+    kinds = less.words.get("types of circuits")
+    return (
+        _two_inputs(more)
+        and _unfollowed(more)
+        and _unfollowed(less)
+        and bool(less.circuits)
+        and set(kinds if isinstance(kinds, list) else []) == {"change-point"}
+        and _freedoms(more) == _freedoms(less) + 1
+    )
+
+
+def _peak(way: Way, drawn: Answers, written: Answers) -> bool:
+    """Whether nothing differs but extremes of the velocity, one of which is a narrow peak."""
+    found = differs(way, drawn, written)
+    highest = max(
+        (
+            abs(one[name] or 0.0)
+            for side in (drawn, written)
+            for one in side.circuits
+            for name in PEAKS
+            if name in one
+        ),
+        default=0.0,
+    )
+    return found <= EXTREMES and highest > NARROW_PEAK
 
 
 #: In the order in which they are asked.
@@ -134,6 +179,33 @@ REASONS = (
             _nothing_but(COMPLETENESS)(way, drawn, written)
             and _sure(drawn, written) == {"algebraic", "counted"}
         ),
+    ),
+    Reason(
+        "all circuits agree; modes on a surface of poses are met or not, and leave the count open",
+        frozenset((UNFOLLOWED, COMPLETENESS)),
+        lambda way, drawn, written: (
+            _nothing_but(UNFOLLOWED, COMPLETENESS)(way, drawn, written)
+            and bool(drawn.circuits)
+            and _sure(drawn, written) == {"algebraic", "counted"}
+        ),
+    ),
+    Reason(
+        "two inputs move it in some poses, not covered; curves that touch those are met in some ways",
+        frozenset(("finite", "redundant")),
+        _surface_with_curves,
+    ),
+    Reason(
+        "two inputs move it in some poses, not covered; in others the input stands still",
+        frozenset(("refused",)),
+        lambda _, drawn, written: (
+            (_two_inputs(drawn) and written.refused == "input")
+            or (_two_inputs(written) and drawn.refused == "input")
+        ),
+    ),
+    Reason(
+        "all else agrees: a peak of the velocity so narrow is met between rows or missed",
+        EXTREMES,
+        _peak,
     ),
     Reason(
         "slides run to infinity, and are followed to a distance from where they are written",

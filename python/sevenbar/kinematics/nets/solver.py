@@ -107,6 +107,8 @@ class NetSolver:
         table = None if law is None else law.table
         raw = tree.followed(lambda core: core.circuit_through(pose, column, output, samples, speed, table))
         match raw:
+            case ():
+                raise no_circuit(linkage, column, None, linkage.size)
             case tuple() as circuit:
                 return self._circuit(0, circuit, (column, output), speed, law)
             case other:

@@ -209,6 +209,8 @@ class GeneralLoop:
             column, partial(self._core.circuit_through, pose, column, output, samples, speed, table)
         )
         match raw:
+            case ():
+                raise no_circuit(self._linkage, column, None, self.size)
             case tuple() as found:
                 circuit, followed = found
                 self._last = (asked, followed)

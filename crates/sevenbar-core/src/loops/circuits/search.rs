@@ -30,6 +30,10 @@ const AHEAD: [(usize, usize); 2] = [(0, 4), (1, 1)];
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
 
+/// Where the loop closes at fewer of these values, the other joints follow: those two may stand still while others move, at a value that is
+/// a seed by chance.
+const MOVING_SEEDS: usize = 2;
+
 /// An open range narrower than this [rad] in which two branch points are missing is that of one singular pose, and open with any
 /// joint. About solutions that run to infinity at one value of a joint ranges are wider, and of a circuit nearly as narrow the count
 /// fails: another joint may have an account of them.
@@ -41,13 +45,13 @@ const NEARLY_REAL: f64 = 20.0;
 /// Two branch points, one on each side of the real inputs, become one in an isolated pose.
 const BRANCH_POINTS_OF_POSE: i64 = 2;
 
-/// The columns whose values are seeds: the wished ones if they turn, else the first that do; screws where none turns and no
-/// pose is drawn.
+/// The columns whose values may be seeds, in the order in which they are asked: the wished ones if they turn, and all others that do; screws
+/// where none turns and no pose is drawn.
 fn seed_columns(chain: &Chain, wished: &[usize], drawn: bool) -> Vec<usize> {
     let first = |fits: &dyn Fn(usize) -> bool| {
         let mut seeds: Vec<usize> = Vec::new();
         for c in wished.iter().copied().chain(0..chain.columns) {
-            if fits(c) && !seeds.contains(&c) && seeds.len() < SEED_JOINTS {
+            if fits(c) && !seeds.contains(&c) {
                 seeds.push(c);
             }
         }
@@ -69,11 +73,23 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
     // the pose of a drawing first
     let mut drawings = if drawn { vec![chain.drawn] } else { Vec::new() };
     let mut out = Curves::new(wished);
-    out.search.columns.clone_from(&seeds);
-    for seed in seeds {
+    out.search.columns = seeds.iter().copied().take(SEED_JOINTS).collect();
+    let mut met = 0;
+    for (asked, seed) in seeds.into_iter().enumerate() {
+        let further = asked >= SEED_JOINTS;
+        if further && (first_only || met >= MOVING_SEEDS) {
+            break;
+        }
         let usual = ModeFinder::new(chain, seed);
         let finder = usual.better_placed().unwrap_or(usual);
         let searched = finder.completeness() == Completeness::Searched;
+        if further {
+            // a search takes long, and from places with all joints free it is made below
+            if searched {
+                break;
+            }
+            out.search.columns.push(seed);
+        }
         if searched {
             out.search.completeness = Completeness::Searched;
         }
@@ -94,6 +110,7 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             None
         };
         let (rough, circle) = finder.around(count, survey.as_ref().map(|s| &s.watch));
+        met += rough.iter().filter(|modes| !modes.is_empty()).count();
         look_ahead(&mut out, &finder, &rough, &drawings);
         out.take(chain, &std::mem::take(&mut drawings), wished[0]);
         for modes in &rough {

@@ -73,14 +73,15 @@ fn beside_each_other(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
     let mut taken = vec![false; count];
     // the ground cannot spin, so the last joint and the first are no such pair
     let neighbours = (0..count.saturating_sub(1)).map(|i| (i, i + 1));
-    let across = (2..count)
-        .flat_map(|apart| (0..count - apart).map(move |i| (i, i + apart)))
-        .filter(|&(i, next)| pass_on(&kinds[i..=next], &links[i..next]));
+    let across = (2..count).flat_map(|apart| (0..count - apart).map(move |i| (i, i + apart)));
     for (i, next) in neighbours.chain(across) {
+        if taken[i] || taken[next] || !pass_on(&kinds[i..=next], &links[i..next], &taken[i..=next]) {
+            continue;
+        }
         let link = links[i + 1..next]
             .iter()
             .fold(links[i], |way, link| way.then(link));
-        if taken[i] || taken[next] || !dependent(kinds[i], kinds[next], &link) {
+        if !dependent(kinds[i], kinds[next], &link) {
             continue;
         }
         let idle = match (kinds[i], kinds[next]) {
@@ -100,12 +101,17 @@ fn beside_each_other(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
 }
 
 /// Whether the joints between the first and the last carry an axis of theirs into itself, as the slide of a cylindrical joint does, and
-/// turns about parallel axes do a slide's: they take no part in what the two do.
-fn pass_on(kinds: &[Kind], links: &[Pose]) -> bool {
+/// turns about parallel axes do a slide's, and one of their own kind that is held already, of three on one axis: they take no part in what
+/// the two do.
+fn pass_on(kinds: &[Kind], links: &[Pose], held: &[bool]) -> bool {
     let last = kinds.len() - 1;
+    if last == 1 {
+        return true;
+    }
     // the axes of the two are one where their screws depend
     let backwards = kinds[0] == Kind::Ball;
-    let other = match kinds[if backwards { last } else { 0 }] {
+    let own = kinds[if backwards { last } else { 0 }];
+    let other = match own {
         Kind::Turn => Kind::Slide,
         Kind::Slide => Kind::Turn,
         _ => return false,
@@ -119,7 +125,7 @@ fn pass_on(kinds: &[Kind], links: &[Pose]) -> bool {
         let [x, y, _] = link.turn([0.0, 0.0, 1.0]);
         x.hypot(y) < PARALLEL
     };
-    kinds[1..last].iter().all(|&kind| kind == other) && between.iter().all(parallel)
+    (1..last).all(|k| kinds[k] == other || (held[k] && kinds[k] == own)) && between.iter().all(parallel)
 }
 
 /// Whether the screws of two neighbours depend on each other in every pose: looked at in a few poses at random.
