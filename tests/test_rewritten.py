@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from evidence.circumstances import circumstances
 from evidence.rewritten.__main__ import compared
 from evidence.rewritten.answers import Answers, differences
 from evidence.rewritten.families import families, lattice
+from evidence.rewritten.page import Compared, written
 from evidence.rewritten.reasons import reason
 from evidence.rewritten.ways import Way, ways
 from sevenbar.errors import RequestError
@@ -298,3 +300,12 @@ def test_a_pose_from_which_nothing_moves_is_refused_as_input_of_a_circuit() -> N
     joints = [{"name": f"j{i}", "kind": "R", "at": at, "axis": (0, 0, 1)} for i, at in enumerate(places)]
     with pytest.raises(RequestError, match="no motion through it could be followed"):
         sb.from_axes(joints, name="triangle").circuit(np.zeros(3), 12)
+
+
+def test_the_page_says_which_loops_of_the_lattice_were_compared() -> None:
+    found = {"lattice": [Compared(f"lattice {k}", ways=24) for k in (7, 0, 1, 2999)]}
+    page = written(found, circumstances() | {"seed": 1})
+    assert (
+        "4 random loops with places and axes in whole numbers (of 3,000, those numbered 0 to 1, 7, 2999;"
+        in page
+    )

@@ -23,14 +23,14 @@ from evidence import ROOT
 from evidence.circumstances import circumstances
 from evidence.rewritten.answers import Answers, answers_of, differences
 from evidence.rewritten.drawing import Drawing
-from evidence.rewritten.families import families, lattice
+from evidence.rewritten.families import LATTICE, families, lattice
 from evidence.rewritten.page import Compared, keep, recorded, written
 from evidence.rewritten.reasons import reason
 from evidence.rewritten.ways import ways
 from sevenbar.errors import SevenbarError
 
-#: Loops of the lattice in a whole run, and how many a process takes at once.
-LATTICE, AT_ONCE = 3000, 5
+#: Loops of the lattice that a process takes at once.
+AT_ONCE = 5
 
 
 def compared(one: Drawing, seed: int) -> Compared:

@@ -153,6 +153,9 @@ def _spherical(arcs: tuple[float, ...], angle: float, *, together: bool = False)
 #: Kinds of the joints on a lattice, by their weights; their freedoms make 7 or 8.
 LATTICE_KINDS = {"R": (1, 6.0), "S": (3, 1.5), "C": (2, 1.0), "P": (1, 1.0)}
 
+#: Loops of the lattice in a whole run.
+LATTICE = 3000
+
 #: Places and directions are whole numbers up to these.
 REACH, STEEP = 2, 1
 

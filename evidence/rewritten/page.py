@@ -10,6 +10,7 @@ from typing import Any
 
 from evidence.circumstances import in_words
 from evidence.markdown import table
+from evidence.rewritten.families import LATTICE
 
 #: Differences of a family that the page lists; of those that have a reason, so many for each.
 LISTED, EXAMPLES = 12, 2
@@ -53,6 +54,21 @@ def keep(record: Path, family: str, one: Compared) -> None:
         file.write(json.dumps({"family": family, **asdict(one)}) + "\n")
 
 
+def _left(found: Sequence[Compared]) -> str:
+    """Which loops of the lattice were compared, where not all were."""
+    numbers = sorted({int(one.name.split()[-1]) for one in found})
+    if len(numbers) in (0, LATTICE):
+        return ""
+    spans: list[list[int]] = []
+    for number in numbers:
+        if spans and spans[-1][1] == number - 1:
+            spans[-1][1] = number
+        else:
+            spans.append([number, number])
+    words = ", ".join(str(a) if a == b else f"{a} to {b}" for a, b in spans)
+    return f" (of {LATTICE:,}, those numbered {words}; the others were not compared)"
+
+
 def written(rows: Mapping[str, Sequence[Compared]], made: Mapping[str, Any]) -> str:
     """The page as Markdown."""
     parts: dict[str, list[Compared]] = {}
@@ -73,7 +89,8 @@ def written(rows: Mapping[str, Sequence[Compared]], made: Mapping[str, Any]) -> 
         f"`python -m evidence.rewritten` writes this page ({in_words(made)}; seed {made['seed']}).",
         "",
         f"{len(rows) - ('lattice' in rows)} named linkages, {len(rows.get('lattice', ()))} random loops with "
-        f"places and axes in whole numbers; {sum(one.ways for one in every):,} ways, at least {least} each, "
+        f"places and axes in whole numbers{_left(rows.get('lattice', ()))}; "
+        f"{sum(one.ways for one in every):,} ways, at least {least} each, "
         f"{sum(one.seconds for one in every) / 60:.0f} min of processor time. "
         f"{sum(bool(one.differences) for one in every)} linkages differ without a known reason.",
         "",
