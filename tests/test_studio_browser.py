@@ -151,10 +151,14 @@ def test_the_motion_is_played_paused_stepped_and_scrubbed(desk):
     click_button(page, "Pause")
     # a quarter of the usual speed: a turn in 24 s
     assert 10 < (second - first) % 360 < 90
-    desk.wait(2000)
-    rests = desk.reading()
-    desk.wait(1000)
-    assert desk.reading() == rests
+    # a busy machine shows what was on its way for a while
+    for _ in range(20):
+        before = desk.reading()
+        desk.wait(1000)
+        if desk.reading() == before:
+            break
+    else:
+        pytest.fail("a motion that is paused goes on")
     track = row(page, "input [deg]").locator(".mantine-Slider-track").bounding_box()
     page.mouse.click(track["x"] + 0.75 * track["width"], track["y"] + track["height"] / 2)
     desk.near(0, 270, 4)

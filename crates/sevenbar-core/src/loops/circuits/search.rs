@@ -141,6 +141,11 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
     }
     // where nothing turns
     out.take(chain, &drawings, wished[0]);
+    // the first joints' account says nothing of a pose that a seed of a further one is by chance
+    if out.search.columns.len() > SEED_JOINTS && out.is_empty() && out.search.found.is_some() {
+        out.search.completeness = Completeness::Searched;
+        out.search.count = Err(Uncounted::Searched);
+    }
     if out.search.found.is_none() && !out.search.columns.is_empty() {
         look_where_paths_were_lost(&mut out, chain);
         if out.search.found.is_none() {
