@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from itertools import groupby
 from typing import Any
 
-from evidence.certainty import changes, counted, moving, narrow
+from evidence.certainty import changes, counted, moving, narrow, nets
 from evidence.certainty.family import Family, Row
 from evidence.circumstances import in_words
 from evidence.markdown import table
@@ -50,6 +50,12 @@ ASKED = {
     moving.SCREWS: (
         "Loops whose freedom follows from the subgroups of their screws, in numbers of one, two or nine "
         "digits: `mobility` and the motion by every input that can drive must say the same."
+    ),
+    nets.PART: (
+        "Planar nets of pins and slides, half of them in decimals of one digit. Damped steps from "
+        f"{nets.STARTS} random places and turns of all links, with no tree and no blocks, find poses at "
+        f"{nets.INPUTS} inputs: each isolated one must be among the modes. Where the input turns and no "
+        f"change point is met, each mode at {nets.ROWS} inputs must lie on exactly one circuit."
     ),
 }
 

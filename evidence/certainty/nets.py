@@ -1,0 +1,243 @@
+"""Planar nets: all modes against a search over the places of the links, and each mode on one circuit.
+
+The search shares nothing with the core: its unknowns are the shifts and turns of all links, it has no tree,
+no blocks and no order, and it starts from anywhere.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+import sevenbar as sb
+from evidence.certainty.family import Family, Judge
+from evidence.fuzz.checks import hold
+from sevenbar.arrays import Floats
+from sevenbar.errors import SevenbarError
+from sevenbar.kinematics.circuits.poses import poses
+
+PART = "Several loops"
+
+#: Links that pins join, and slides (~); the first joint drives. F is the ground.
+KINDS = {
+    "Watt": "F A|A B|B C|C F|C D|D E|E F",
+    "Watt, driven at the lever": "F E|E D|D C|C F|C B|B A|A F",
+    "Watt, driven between crank and coupler": "A B|F A|B C|C F|C D|D E|E F",
+    "Stephenson I": "F A|A B|B C|C F|A D|D E|E C",
+    "Stephenson II": "F E|E A|A C|C B|A D|D B|B F",
+    "Stephenson III": "F A|A B|B C|C F|B D|D E|E F",
+    "Stephenson III, driven at the dyad": "F E|E D|D B|B A|A F|B C|C F",
+    "walking leg of six links": "F A|A B|F C|C B|B L|F D|D L",
+    "walking leg of eight links": "F A|A B|A C|F T|B T|F D|C D|D G|T E|E G",
+    "eight links, three dyads in a row": "F A|A B|B C|C F|C D|D E|E F|E G|G H|H F",
+    "eight links, dyads on couplers": "F A|A B|B C|C F|B D|D E|E F|D G|G H|H F",
+    "ten links, four dyads": "F A|A B|B C|C F|C D|D E|E F|E G|G H|H F|H I|I J|J F",
+    "platform on three legs": "F A|A B|F C|F D|B P|C P|D P",
+    "truss of seven links, star": "F A|A G|F H|F I|G J|J H|H K|K I|I L|L G",
+    "truss of seven links, path": "F A|A G|G H|H I|F J|J H|G K|K I|F L|L I",
+    "truss of seven links, four": "F A|G H|A I|I G|F J|J G|F K|K H|F L|L H",
+    "shaper": "F A|A B|B ~ C|C F|C D|D E|E ~ F",
+    "two pistons on a crank": "F A|A B|B C|C ~ F|A D|D E|E ~ F",
+    "knee press": "F A|A B|B C|C F|B D|D E|E ~ F",
+    "yoke with a dyad": "F A|A B|B ~ C|C ~ F|C D|D E|E F",
+    "slider-crank and dyad, driven by the slide": "F ~ A|A B|B C|C F|B D|D E|E F",
+    "a slide in a coupler": "F A|A B|B C|C F|B ~ D|D E|E F",
+}
+
+#: How many inputs are looked at, one of them as drawn, and how far a slide may be from there [length].
+INPUTS, FAR = 3, 0.3
+
+#: Starts of the search, its steps, and what closes.
+STARTS, STEPS, CLOSED = 300, 50, 1e-10
+
+#: A pose is isolated, and said to be found, where the least singular value is this part of the greatest.
+ISOLATED = 1e-4
+
+#: Poses nearer than this in every number are one.
+SAME = 1e-5
+
+#: Rows of a turn whose modes must lie on one circuit each.
+ROWS = 24
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A pin, or a slide along a direction, of two links as drawn."""
+
+    links: tuple[str, str]
+    at: tuple[float, float]
+    along: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class Net:
+    """Joints, of which the first drives."""
+
+    joints: Sequence[Joint]
+
+    def linkage(self) -> sb.Linkage:
+        """The same as a linkage."""
+        rows = [
+            {
+                "name": f"j{k}",
+                "kind": "P" if joint.along else "R",
+                "at": (*joint.at, 0),
+                "axis": (*joint.along, 0) if joint.along else (0, 0, 1),
+                "between": joint.links,
+            }
+            for k, joint in enumerate(self.joints)
+        ]
+        return sb.from_axes(rows, ground="F", drive="j0")
+
+    @property
+    def moving(self) -> list[str]:
+        """The links but the ground."""
+        return list(dict.fromkeys(link for joint in self.joints for link in joint.links if link != "F"))
+
+    def equations(self, x: Floats, value: float) -> tuple[Floats, Floats]:
+        """Errors (starts, equations) of all joints and of the input; derivatives by shifts and turns."""
+        moving, count = self.moving, len(x)
+        errors, slopes = [], []
+
+        def add(error: Floats, parts: Sequence[tuple[str, Sequence[Floats | float]]]) -> None:
+            slope = np.zeros((count, 3 * len(moving)))
+            for link, by in parts:
+                if link != "F":
+                    first = 3 * moving.index(link)
+                    for k in range(3):
+                        slope[:, first + k] += by[k]
+            errors.append(error)
+            slopes.append(slope)
+
+        def state(link: str) -> tuple[Floats, Floats]:
+            if link == "F":
+                return np.zeros(count, dtype=complex), np.zeros(count)
+            first = 3 * moving.index(link)
+            return x[:, first] + 1j * x[:, first + 1], x[:, first + 2]
+
+        for number, joint in enumerate(self.joints):
+            (one, a), (two, b) = map(state, joint.links)
+            before, after = joint.links
+            place = complex(*joint.at)
+            p, q = np.exp(1j * a) * place, np.exp(1j * b) * place
+            apart, turned = two + q - one - p, np.angle(np.exp(1j * (b - a)))
+            if joint.along is None:
+                add(apart.real, [(after, (1, 0, -q.imag)), (before, (-1, 0, p.imag))])
+                add(apart.imag, [(after, (0, 1, q.real)), (before, (0, -1, -p.real))])
+            else:
+                along = np.exp(1j * a) * complex(*joint.along)
+                add(turned, [(after, (0, 0, 1)), (before, (0, 0, -1))])
+                for which in (1j * along, along):
+                    if which is along and number:
+                        continue
+                    swung = (apart * np.conj(1j * which)).real - (1j * p * np.conj(which)).real
+                    add(
+                        (apart * np.conj(which)).real - (value if which is along else 0.0),
+                        [
+                            (after, (which.real, which.imag, (1j * q * np.conj(which)).real)),
+                            (before, (-which.real, -which.imag, swung)),
+                        ],
+                    )
+            if joint.along is None and number == 0:
+                off = np.angle(np.exp(1j * (b - a - value)))
+                add(off, [(after, (0, 0, 1)), (before, (0, 0, -1))])
+        return np.stack(errors, axis=1), np.stack(slopes, axis=1)
+
+    def modes(self, value: float, rng: np.random.Generator) -> Floats:
+        """Isolated poses (modes, links, 4) with the input at a value: where damped steps end."""
+        count = len(self.moving)
+        x = rng.uniform(-1.5, 1.5, (STARTS, count, 3))
+        x[:, :, 2] *= math.pi / 1.5
+        x = x.reshape(STARTS, -1)
+        for _ in range(STEPS):
+            error, slope = self.equations(x, value)
+            square = np.einsum("sek,sel->skl", slope, slope)
+            damping = 0.1 * np.minimum((error**2).sum(axis=1), 1.0) + 1e-15
+            square += damping[:, None, None] * np.eye(square.shape[1])
+            x -= np.linalg.solve(square, np.einsum("sek,se->sk", slope, error)[:, :, None])[:, :, 0]
+        error, slope = self.equations(x, value)
+        closed = np.abs(error).max(axis=1) < CLOSED
+        singular = np.linalg.svd(slope[closed], compute_uv=False)
+        found: list[Floats] = []
+        for pose, values in zip(x[closed], singular, strict=True):
+            flat = flattened(pose.reshape(count, 3))
+            if values[-1] > ISOLATED * values[0] and not any(np.abs(flat - f).max() < SAME for f in found):
+                found.append(flat)
+        return np.array(found).reshape(len(found), count, 4)
+
+
+def flattened(states: Floats) -> Floats:
+    """Shifts and turns (.., 3) as numbers without whole turns (.., 4)."""
+    return np.stack([states[..., 0], states[..., 1], np.cos(states[..., 2]), np.sin(states[..., 2])], axis=-1)
+
+
+def drawn(kind: str, rng: np.random.Generator) -> Net:
+    """A net of a kind: with places anywhere, or in decimals as people draw."""
+    decimals = rng.random() < 0.5
+    joints = []
+    for text in KINDS[kind].split("|"):
+        first, *slide, second = text.split()
+        at = rng.uniform(-1, 1, 2)
+        slope = rng.uniform(0, math.pi)
+        if decimals:
+            at, slope = at.round(1), rng.choice([0.0, math.pi / 2, math.pi / 4])
+        along = (math.cos(slope), math.sin(slope)) if slide else None
+        joints.append(Joint((first, second), (float(at[0]), float(at[1])), along))
+    return Net(joints)
+
+
+def complete(kind: str) -> Judge:
+    """Judges nets of a kind: no isolated pose is missing, and each mode of a turn lies on one circuit."""
+
+    def judge(rng: np.random.Generator, seen: Counter[str]) -> None:
+        while True:
+            net = drawn(kind, rng)
+            try:
+                linkage = net.linkage()
+                # two joints of a link in one place, and nets drawn where they cannot be told, are drawn again
+                if linkage.mobility().finite == 1:
+                    break
+            except SevenbarError:
+                continue
+        slide = net.joints[0].along is not None
+        reach = FAR if slide else math.pi
+        for value in (0.0, *rng.uniform(-reach, reach, INPUTS - 1)):
+            modes = linkage.assembly_modes(value)
+            seen[str(modes.completeness)] += 1
+            frames = poses(linkage, modes.q)
+            numbers = [linkage.link_names.index(link) for link in net.moving]
+            known = np.stack([frames[:, n][:, [0, 1, 0, 1], [3, 3, 0, 0]] for n in numbers], axis=1)
+            for pose in net.modes(value, rng):
+                seen["poses"] += 1
+                near = np.abs(known - pose).max(axis=(1, 2), initial=0.0) < 10 * SAME
+                hold(near.any(), f"a pose at {value:g} is no mode ({modes.completeness}, {len(known)} modes)")
+        if not slide:
+            on_one_circuit(linkage, seen)
+
+    return judge
+
+
+def on_one_circuit(linkage: sb.Linkage, seen: Counter[str]) -> None:
+    """Each mode at inputs of a turn is a row of one circuit, or touches a change point."""
+    motion = linkage.motion(ROWS)
+    column = linkage.columns.index(motion.input)
+    turning = linkage.turning
+    for angle in np.arange(ROWS) * math.tau / ROWS:
+        for mode in linkage.assembly_modes(angle).q:
+            on = 0
+            for circuit in motion:
+                at = np.abs(np.exp(1j * circuit.q[:, column]) - np.exp(1j * angle)) < 1e-9
+                rows = circuit.q[at]
+                turned = np.abs(np.exp(1j * rows) - np.exp(1j * mode))
+                apart = np.where(turning, turned, np.abs(rows - mode) / linkage.size)
+                on += bool((apart.max(axis=1, initial=0.0) < SAME).any())
+            seen["modes on circuits"] += 1
+            if on != 1 and not motion.change_points:
+                hold(False, f"a mode at {angle:.4f} lies on {on} circuits of {len(motion)}")
+
+
+FAMILIES = [Family(PART, kind, 40, complete(kind), quick=1) for kind in KINDS]
