@@ -48,7 +48,7 @@ KINDS = {
     "a slide in a coupler": "F A|A B|B C|C F|B ~ D|D E|E F",
 }
 
-#: How many inputs are looked at, one of them as drawn, and how far a slide may be from there [length].
+#: How many inputs are tried, one of them as drawn, and how far a slide may be from there [length].
 INPUTS, FAR = 3, 0.3
 
 #: Starts of the search, its steps, and what closes.
@@ -198,7 +198,7 @@ def complete(kind: str) -> Judge:
             net = drawn(kind, rng)
             try:
                 linkage = net.linkage()
-                # two joints of a link in one place, and nets drawn where they cannot be told, are drawn again
+                # two joints of a link in one place, and nets whose freedoms have no count, are drawn again
                 if linkage.mobility().finite == 1:
                     break
             except SevenbarError:

@@ -225,7 +225,7 @@ REASONS = (
         ),
     ),
     Reason(
-        "beside the ground the turn of a link is a motion of all others as one body",
+        "next to the ground the turn of a link is a motion of all others as one body",
         COUNTS | {COMPLETENESS, UNFOLLOWED, "finite", "idle", "refused"},
         lambda way, drawn, written: not way.same_ground and abs(_idle(drawn) - _idle(written)) == 1,
     ),
