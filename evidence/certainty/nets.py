@@ -15,9 +15,9 @@ import numpy as np
 
 import sevenbar as sb
 from evidence.certainty.family import Family, Judge
-from evidence.fuzz.checks import hold
+from evidence.fuzz.checks import Broken, hold
 from sevenbar.arrays import Floats
-from sevenbar.errors import SevenbarError
+from sevenbar.errors import DescriptionError
 from sevenbar.kinematics.circuits.poses import poses
 
 PART = "Several loops"
@@ -50,6 +50,9 @@ KINDS = {
 
 #: How many inputs are tried, one of them as drawn, and how far a slide may be from there [length].
 INPUTS, FAR = 3, 0.3
+
+#: Nets that are drawn until one has one freedom.
+MOST_DRAWN = 50
 
 #: Starts of the search, its steps, and what closes.
 STARTS, STEPS, CLOSED = 300, 50, 1e-10
@@ -194,15 +197,17 @@ def complete(kind: str) -> Judge:
     """Judges nets of a kind: no isolated pose is missing, and each mode of a turn lies on one circuit."""
 
     def judge(rng: np.random.Generator, seen: Counter[str]) -> None:
-        while True:
+        for _ in range(MOST_DRAWN):
             net = drawn(kind, rng)
             try:
                 linkage = net.linkage()
-                # two joints of a link in one place, and nets whose freedoms have no count, are drawn again
-                if linkage.mobility().finite == 1:
-                    break
-            except SevenbarError:
+            except DescriptionError:
+                # two joints of a link in one place, say
                 continue
+            if linkage.mobility().finite == 1:
+                break
+        else:
+            raise Broken(f"none of {MOST_DRAWN} that were drawn moves with one freedom")
         slide = net.joints[0].along is not None
         reach = FAR if slide else math.pi
         for value in (0.0, *rng.uniform(-reach, reach, INPUTS - 1)):
@@ -237,7 +242,7 @@ def on_one_circuit(linkage: sb.Linkage, seen: Counter[str]) -> None:
                 on += bool((apart.max(axis=1, initial=0.0) < SAME).any())
             seen["modes on circuits"] += 1
             if on != 1 and not motion.change_points:
-                hold(False, f"a mode at {angle:.4f} lies on {on} circuits of {len(motion)}")
+                raise Broken(f"a mode at {angle:.4f} lies on {on} circuits of {len(motion)}")
 
 
 FAMILIES = [Family(PART, kind, 40, complete(kind), quick=1) for kind in KINDS]

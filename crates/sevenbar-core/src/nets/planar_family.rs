@@ -8,8 +8,7 @@
 use super::monodromy::{Family, Pair, Starts};
 use crate::loops::equation::closure::{Linear, Slides, Solution, UNKNOWNS};
 use crate::loops::equation::lanes::Lanes;
-use crate::loops::modes::continuation::{Homotopy, Pace};
-use crate::loops::modes::phases::Watch;
+use crate::loops::modes::continuation::{Homotopy, ROUNDING};
 use crate::random::Random;
 use crate::vectors::Vector;
 use num_complex::Complex64;
@@ -61,11 +60,11 @@ pub(super) struct PlanarFamily {
     pub chords: Vec<Chord>,
 }
 
-/// Families whose starts are kept.
+/// Families whose starts are cached.
 const MOST_FAMILIES: usize = 500;
 
 impl PlanarFamily {
-    /// Its starts. They are kept once found: constants that are computed, not written down.
+    /// Its starts, cached: constants that are computed, not written down.
     pub fn starts(&self) -> Arc<Starts> {
         type Known = HashMap<PlanarFamily, Arc<OnceLock<Arc<Starts>>>>;
         static KNOWN: LazyLock<Mutex<Known>> = LazyLock::new(Mutex::default);
@@ -213,15 +212,6 @@ pub(super) struct Between {
     chords: Vec<Moving>,
 }
 
-/// Most steps on one path.
-const MOST_STEPS: usize = 800;
-
-/// Second correction at the end of a path, where the next would be rounding.
-const LAST_SECOND: f64 = 1e-8;
-
-/// The closure is known to this times one to six [relative to the size]: see `loops/modes/straight`.
-const ROUNDING: f64 = 2e-16;
-
 impl Between {
     fn new(family: &PlanarFamily, from: &[Pair], to: &[Pair]) -> Self {
         let chord = |chord: &Chord| {
@@ -276,25 +266,6 @@ impl Homotopy for Between {
     #[inline(always)]
     fn slides(&self) -> &Slides {
         &self.slides
-    }
-
-    #[inline(always)]
-    fn watch(&self) -> Option<&Watch> {
-        None
-    }
-
-    fn most_steps(&self, _: Pace) -> usize {
-        MOST_STEPS
-    }
-
-    #[inline(always)]
-    fn settled(&self, _: f64, second: f64) -> bool {
-        second <= LAST_SECOND
-    }
-
-    #[inline(always)]
-    fn ahead<V: Vector>(&self, at: Lanes<V>, by: Lanes<V>) -> Lanes<V> {
-        at + by
     }
 
     #[inline(always)]

@@ -4,24 +4,13 @@
 //!
 //! Source: docs/theory.md, (6).
 
-use super::continuation::{Homotopy, Pace, Place, Way, follow};
-use super::phases::Watch;
+use super::continuation::{Homotopy, Pace, Place, ROUNDING, Way, follow};
 use crate::loops::equation::closure::{
     JOINTS, Linear, Parameters, Slides, Solution, UNKNOWNS, cosine_sine, cross, turn,
 };
 use crate::loops::equation::lanes::Lanes;
 use crate::vectors::Vector;
 use num_complex::Complex64;
-
-/// Most steps on one path; the longest of 10^5 random paths that arrive took 300.
-const MOST_STEPS: usize = 800;
-
-/// Second correction at the end of a path, where the next would be rounding.
-const LAST_SECOND: f64 = 1e-8;
-
-/// The closure is known to this times one to six [rad, or relative to the size]. Added to it, so that paths seldom arrive at a solution that
-/// does not stand alone: where numbers are exact, as in special geometry, nothing else would move one along its continuum.
-const ROUNDING: f64 = 2e-16;
 
 /// Twists, shifts, turns and the input's slide go from the one to the other while the parameter goes from 0 to 1.
 struct Straight<'a> {
@@ -55,25 +44,6 @@ impl Homotopy for Straight<'_> {
     #[inline(always)]
     fn slides(&self) -> &Slides {
         self.slides
-    }
-
-    #[inline(always)]
-    fn watch(&self) -> Option<&Watch> {
-        None
-    }
-
-    fn most_steps(&self, _: Pace) -> usize {
-        MOST_STEPS
-    }
-
-    #[inline(always)]
-    fn settled(&self, _: f64, second: f64) -> bool {
-        second <= LAST_SECOND
-    }
-
-    #[inline(always)]
-    fn ahead<V: Vector>(&self, at: Lanes<V>, by: Lanes<V>) -> Lanes<V> {
-        at + by
     }
 
     /// What stands still or is zero is left out.
