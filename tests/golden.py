@@ -40,9 +40,9 @@ AGREE = 1e-9
 
 NUMBER = re.compile(r"(?<![A-Za-z_\d.])[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?")
 
-#: Searches whose end is flat: rounding decides how far they go, and it differs with the vector unit for which the record is made.
-FLAT = ("task.path", "task.straight", "task.front", "commands.function")
-RECORDED_WITH = "avx512"
+#: Searches whose end is flat, and the vector unit that each record is made with: rounding decides where they end,
+#: and other units round otherwise.
+FLAT = {"task.path": "avx512", "task.straight": "avx512", "task.front": "avx2", "commands.function": "avx512"}
 
 #: Linkages whose files say what acts on them.
 LOADED = ("engine", "rssr_press", "seven_r_bodies")

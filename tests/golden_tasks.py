@@ -169,7 +169,7 @@ length_1 = "35:45"
 length_3 = "70:90"
 [[want]]
 kind = "function"
-pairs = [[20, 60], [60, 75], [100, 100]]
+pairs = [[20, 60], [60, 90], [100, 130]]
 [[want]]
 kind = "figure"
 name = "swing"

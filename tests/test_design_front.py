@@ -8,7 +8,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.draft import Draft
 from sevenbar.design.task import DesignTask, FigureWant, FreeNumber
-from sevenbar.design.task.front import pareto
+from sevenbar.design.task.front import ParetoPoint, _unbeaten, pareto
 from sevenbar.design.task.programs import MinimaxValues, lowered
 
 #: The front of a planar 4R, coupler and ground 100, crank 10 to 60, rocker 30 to 150, by brute force over both:
@@ -117,6 +117,11 @@ def test_a_front_over_lengths_of_a_drawing_is_that_of_the_law_of_cosines():
     assert front.values[0][0] == pytest.approx(0, abs=1e-6)
     for off, angle in front.values:
         assert angle == pytest.approx(best(swing, lowest, 70, off), abs=0.1)
+
+
+def test_designs_that_are_equally_good_but_for_rounding_are_one_point():
+    tied = [(0.0016, 54.843858089793), (0.0103, 54.84385808979296), (0.0016 + 1e-12, 54.843858089793)]
+    assert [point.values for point in _unbeaten([ParetoPoint(pair, None) for pair in tied])] == tied[:1]
 
 
 @pytest.mark.parametrize("slope", [1.0, 1e2, 1e4])

@@ -42,7 +42,8 @@ BESIDES = 1e-12
 #: Two points closer than this share of the front's extent are the same, and count as equally good.
 SAME = 1e-4
 
-#: What a want at its best may lose while the other is improved [relative, and of its unit]: beyond rounding.
+#: What a want at its best may lose while the other is improved, and what counts as equally good whatever the
+#: front's extent [relative, and of its unit]: beyond rounding.
 LOST = 1e-9
 
 #: A gap narrower than this share of the front's extent is not halved.
@@ -202,7 +203,9 @@ def _unbeaten(kept: Sequence[ParetoPoint]) -> list[ParetoPoint]:
     """The points of which none is better in both, each once, by rising first value."""
     ordered = sorted(kept, key=lambda point: point.values)
     every = np.array([point.values for point in ordered]).reshape(-1, 2)
-    slack = SAME * np.ptp(every, axis=0) if len(every) else np.zeros(2)
+    slack = np.zeros(2)
+    if len(every):
+        slack = np.maximum(SAME * np.ptp(every, axis=0), LOST * np.maximum(np.abs(every).max(axis=0), 1.0))
     best = math.inf
     front: list[ParetoPoint] = []
     for point in ordered:
