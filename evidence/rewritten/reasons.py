@@ -133,6 +133,24 @@ def _peak(way: Way, drawn: Answers, written: Answers) -> bool:
     return found <= EXTREMES and highest > NARROW_PEAK
 
 
+def _breaks_off(way: Way, drawn: Answers, written: Answers) -> bool:
+    """Whether one has a circuit through a change point of which it says that it is not known to close."""
+
+    def breaks(one: Answers) -> bool:
+        return "change-point" in str(one.words.get("types of circuits")) and not all(
+            circuit["closes"] for circuit in one.circuits
+        )
+
+    return (breaks(drawn) or breaks(written)) and _plain_alike(way, drawn, written)
+
+
+def _stops_for_a_moment(_: Way, drawn: Answers, written: Answers) -> bool:
+    """Whether one has one dead centre more than the other, and both the same number of circuits."""
+    centres = [one.words.get("dead centres") for one in (drawn, written)]
+    counts = [sum(one) if isinstance(one, list) else 0 for one in centres]
+    return abs(counts[0] - counts[1]) == 1 and drawn.words["circuits"] == written.words["circuits"]
+
+
 #: In the order in which they are asked.
 REASONS = (
     Reason(
@@ -206,6 +224,16 @@ REASONS = (
         "all else agrees: a peak of the velocity so narrow is met between rows or missed",
         EXTREMES,
         _peak,
+    ),
+    Reason(
+        "a circuit breaks off at a change point where curves touch, and says that it is not known to close",
+        COUNTS | OF_CIRCUITS | OF_OPEN,
+        _breaks_off,
+    ),
+    Reason(
+        "two dead centres in one place, at which the input stops for a moment and goes on, are one or none",
+        EXTREMES | {"dead centres", "limits"},
+        _stops_for_a_moment,
     ),
     Reason(
         "slides run to infinity, and are followed to a distance from where they are written",
