@@ -14,8 +14,6 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.reporting.extents import usable_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
-from sevenbar.reporting.net_facts import net_facts
-from sevenbar.reporting.repeated import repeated_lines
 from sevenbar.reporting.shown import Shown, drive_text
 from sevenbar.text.words import retold, say
 
@@ -69,7 +67,12 @@ def closure_text(circuits: Iterable[Circuit], unit: str = "") -> str:
 def facts_of(motion: Motion) -> list[tuple[str, str]]:
     """What the report says of the motion as a whole: names, in English, and words."""
     linkage = motion.linkage
-    facts = [("loop", joints_text(linkage))] if linkage.net is None else net_facts(motion)
+    if linkage.net is None:
+        facts = [("loop", joints_text(linkage))]
+    else:
+        from sevenbar.reporting.net_facts import net_facts
+
+        facts = net_facts(motion)
     if linkage.form == "rows":
         closing, _ = linkage.graph.joints_of(linkage.graph.ground)
         number, _ = linkage.graph.between[closing]
@@ -118,11 +121,12 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.idle:
         facts.append(("idle freedom", idle_text(motion.idle)))
     if motion.motion_type != "cannot-assemble":
-        lines = (
-            map(retold, motion.redundant)
-            if linkage.net is None
-            else repeated_lines(linkage, len(motion.redundant))
-        )
+        if linkage.net is None:
+            lines = [*map(retold, motion.redundant)]
+        else:
+            from sevenbar.reporting.repeated import repeated_lines
+
+            lines = repeated_lines(linkage, len(motion.redundant))
         facts.append(("redundant", say("; ").join(lines) or say("no constraints")))
     if not linkage.loading.is_empty:
         from sevenbar.reporting.force_words import acting_text

@@ -24,7 +24,6 @@ from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures
 from sevenbar.reporting.files import Files, LongTable, Report, head_of, json_file, json_text, without_nan
 from sevenbar.reporting.force_peaks import peaks_dict
 from sevenbar.reporting.how_found import how_found
-from sevenbar.reporting.net_facts import net_dict
 from sevenbar.reporting.summary import summary
 from sevenbar.text.markdown import escaped, table
 
@@ -107,6 +106,8 @@ def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
         "redundant": list(motion.redundant),
     }
     if linkage.net is not None:
+        from sevenbar.reporting.net_facts import net_dict
+
         report["net"] = net_dict(linkage, linkage.input_column(motion.input))
     return without_nan(report)  # type: ignore[no-any-return]
 
