@@ -114,7 +114,7 @@ bench: wheel  ## Sevenbar beside its peers, installed one by one: docs/benchmark
 	build/bench/bin/python -m evidence.benches --install $(BENCH)
 
 .PHONY: accuracy
-accuracy: $(VENV)/.installed-dev  ## Measure how exact every linkage of the gallery is; writes docs/accuracy.md
+accuracy: $(VENV)/.installed-dev  ## Measure how exact every loop of the gallery is; writes docs/accuracy.md
 	$(BIN)/python -m evidence.accuracy
 
 .PHONY: structure

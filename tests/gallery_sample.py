@@ -5,7 +5,7 @@ The whole gallery is in `make proof`.
 
 import pytest
 
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 
 SAMPLE = (
     *("rssr", "seven_r", "planar_4r", "bennett", "rscr", "rsur", "rssp", "swash_plate"),
@@ -19,4 +19,4 @@ FEW = ("rssr", "planar_4r", "rsur", "rssp", "swash_plate", "screw_drill")
 
 def sampled(sample=SAMPLE):
     """The names of the gallery; those outside the sample are proofs."""
-    return [pytest.param(name, marks=() if name in sample else pytest.mark.proof) for name in names()]
+    return [pytest.param(name, marks=() if name in sample else pytest.mark.proof) for name in loops()]

@@ -19,7 +19,7 @@ import trimesh
 import golden_tasks
 import sevenbar as sb
 from commands import sevenbar
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 from sevenbar.drawing import plot
 from sevenbar.export.tables import write_csv
 
@@ -51,9 +51,9 @@ LOADED = ("engine", "rssr_press", "seven_r_bodies")
 SINGLE = {
     "analyze_rocker": ("analyze", "rssr", "--input", "rocker", "--json"),
     "analyze_ranges": ("analyze", "seven_r", "--ranges"),
-    "analyze_net": ("analyze", "examples/watt.toml"),
-    "analyze_net_json": ("analyze", "examples/watt.toml", "--json"),
-    "modes_net": ("modes", "examples/watt.toml", "--at", "10deg"),
+    "analyze_net": ("analyze", "watt"),
+    "analyze_net_json": ("analyze", "watt", "--json"),
+    "modes_net": ("modes", "watt", "--at", "10deg"),
     "analyze_chinese": ("analyze", "planar_4r", "--lang", "zh"),
     "modes_slider": ("modes", "rssp", "--input", "slider", "--at=-20mm"),
     "axodes_between": ("axodes", "planar_4r", "--link", "2", "--relative-to", "1"),
@@ -109,7 +109,7 @@ FILES = {
 def cases():
     """Each case by name: a function that gives its text."""
     found = {}
-    for name in names():
+    for name in loops():
         found[f"{name}.analyze"] = partial(printed, "analyze", name)
         found[f"{name}.analyze.json"] = partial(printed, "analyze", name, "--json")
         found[f"{name}.modes"] = partial(printed, "modes", name, "--at", where(name))

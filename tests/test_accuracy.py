@@ -305,7 +305,7 @@ def test_the_kept_page_is_the_one_that_the_kept_results_give() -> None:
     kept = ROOT / "evidence" / "accuracy" / "results.json"
     results = json.loads(kept.read_text(encoding="utf-8"))
     assert kept.stat().st_size < 200_000
-    assert sorted(results["rows"]) == sorted(gallery.names())
+    assert sorted(results["rows"]) == sorted(gallery.loops())
     assert (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8") == page.text(results)
     for name in figures.FIGURES:
         assert (ROOT / "docs" / "images" / f"accuracy_{name}.svg").stat().st_size < 100_000

@@ -13,7 +13,7 @@ from rich.console import Console
 
 import sevenbar as sb
 from commands import mistake, sevenbar
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops, names
 from sevenbar.reporting import report
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
@@ -433,7 +433,7 @@ def test_each_way_not_to_move_is_told_in_a_sentence():
     assert "turns fully" not in told
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_the_report_of_every_linkage_of_the_gallery_holds_its_extremes_within_a_page(name):
     motion = sb.load(name).motion(samples=36)
     told = _report(motion)

@@ -17,7 +17,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.draft import Draft
 from sevenbar.description.files import loads
-from sevenbar.description.gallery import names, text
+from sevenbar.description.gallery import loops, text
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.numbers.dimensions import Dimension
 from sevenbar.studio.panels.shaping import largest_length, number_text, slider_range
@@ -59,7 +59,7 @@ WAYS = {
     "windows": text("seven_r").replace("\n", "\r\n"),
     "no last line end": f"format = 1\n[rssr]\n{RSSR}".rstrip(),
 }
-TEXTS = {name: text(name) for name in names()} | WAYS
+TEXTS = {name: text(name) for name in loops()} | WAYS
 
 
 def comments(content: str) -> list[str]:
@@ -304,7 +304,7 @@ def test_a_slider_holds_its_value_whatever_that_is(unit: str) -> None:
                 assert low > 0 or not positive or unit in ("deg", "rad")
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_every_slider_of_the_gallery_has_room_on_both_sides_in_fine_steps(name: str) -> None:
     dimensions = Draft.of(text(name), name).dimensions
     size = largest_length(dimensions)

@@ -14,7 +14,7 @@ from PIL import Image
 
 import sevenbar as sb
 from gallery_sample import FEW, sampled
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 from sevenbar.drawing import output_curves, paths, plot, skeleton
 from sevenbar.drawing.animate import animate
 from sevenbar.errors import RequestError
@@ -24,10 +24,10 @@ from sevenbar.kinematics.loop.rigid import inverse, pose
 
 @pytest.fixture(scope="module")
 def motions() -> dict[str, sb.Motion]:
-    return {name: sb.load(name).motion(samples=48) for name in names()}
+    return {name: sb.load(name).motion(samples=48) for name in loops()}
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_the_joints_values_lead_to_the_links_places(motions: dict[str, sb.Motion], name: str) -> None:
     motion = motions[name]
     for circuit in motion:
@@ -42,7 +42,7 @@ def test_the_joints_values_lead_to_the_links_places(motions: dict[str, sb.Motion
             np.testing.assert_allclose(given[:, i], pose(turn, place), atol=1e-9 * max(circuit.size, 1.0))
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_drawn_links_are_rigid_and_meet_in_the_joints(motions: dict[str, sb.Motion], name: str) -> None:
     motion = motions[name]
     slide = {i for i, joint in enumerate(motion.linkage.joints) if joint.kind in "PCHE"}

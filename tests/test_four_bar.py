@@ -286,7 +286,7 @@ def test_of_a_triangle_one_pose_is_enough():
 
 
 def test_other_loops_have_none():
-    for name in sb.gallery.names():
+    for name in sb.gallery.loops():
         found = sb.load(name)
         bar = four_bar_of(found, found.drive.joint, found.drive.output)
         assert (bar is not None) == (name in FOUR_BARS), name

@@ -20,8 +20,8 @@ import sevenbar as sb
 from evidence.fuzz import batches, checks, files, loops, messages, page, rssrs, summary, watch, ways, wild
 from evidence.fuzz.tally import Finding, Tally
 from evidence.fuzz.toml import written
+from sevenbar.description import gallery
 from sevenbar.description.forms import from_description
-from sevenbar.description.gallery import names
 from sevenbar.errors import RequestError
 
 #: Cases of each way: of loops five of each family, of their edges eight, of RSSRs twenty.
@@ -72,7 +72,7 @@ def test_a_description_is_written_without_losing_a_digit() -> None:
         np.testing.assert_array_equal(sb.loads(written(description)).transforms, want)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", gallery.loops())
 def test_the_gallery_holds_what_must_hold(name: str) -> None:
     assert (
         checks.judged(sb.load(name), np.random.default_rng(1), Counter())

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 from sevenbar.drawing.joint_shapes import shape_of
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.poses import joint_frames, poses
@@ -48,7 +48,7 @@ def test_a_link_that_is_not_at_a_joint_is_refused():
         loop_graph("RRRR").side(0, 3)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_a_joint_s_frames_on_both_links_are_apart_by_its_own_motion(name):
     linkage = sb.load(name)
     q = linkage.motion(12).circuits[0].q

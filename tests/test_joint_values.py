@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.simulation.joint_values import BodyStates, joint_values
 
@@ -148,7 +148,7 @@ def test_a_link_turned_aside_tilts_its_joint_by_as_much_unless_the_joint_lets_it
     assert tilt == pytest.approx(1e-4 if shows else 0.0, abs=1e-8)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_sevenbar_s_own_links_give_sevenbar_s_own_joint_values(name):
     linkage = sb.load(name)
     circuit = linkage.motion(90).circuits[0]

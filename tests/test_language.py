@@ -119,7 +119,7 @@ def english(motion, text):
     return [word for word in re.findall(r"[A-Za-z]+", text) if word not in {*LEFT, linkage.length_unit}]
 
 
-@pytest.mark.parametrize("name", gallery.names())
+@pytest.mark.parametrize("name", gallery.loops())
 def test_no_english_is_left_in_a_chinese_report_of_the_gallery(name):
     motion, text = report_of(name)
     assert english(motion, text) == []

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 import sevenbar as sb
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 from sevenbar.drawing import animate as animation
 from sevenbar.drawing import plot
 from sevenbar.drawing.figure import new_figure
@@ -106,7 +106,7 @@ def motions() -> dict[str, sb.Motion]:
 
 def cases() -> list[Any]:
     """Every linkage with every kind of figure."""
-    return [(name, kind) for name in (*names(), *DRAWN) for kind in KINDS]
+    return [(name, kind) for name in (*loops(), *DRAWN) for kind in KINDS]
 
 
 @pytest.mark.usefixtures("fonts_of_matplotlib")

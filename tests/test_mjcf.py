@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 from sevenbar.simulation.mjcf import mjcf
 from sevenbar.simulation.prototype import prototype
 from sevenbar.simulation.run import prepared
@@ -26,7 +26,7 @@ def loaded(name, row=5, time_step=1e-3):
     return linkage, number, way.circuit, built, model, data
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_the_loop_is_closed_at_the_start_and_its_sides_move_together(name):
     linkage, _, _, _, model, data = loaded(name)
     equality = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
@@ -39,7 +39,7 @@ def test_the_loop_is_closed_at_the_start_and_its_sides_move_together(name):
     assert model.nv == len(linkage.columns) - held + linkage.kind.count("H")
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_coordinates_are_sevenbar_s_columns_in_metres_and_radians(name):
     linkage, row, circuit, _, model, data = loaded(name)
     metre = {"mm": 1e-3, "in": 0.0254}[linkage.length_unit]

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import copy
 import tomllib
-from pathlib import Path
 
 import pytest
 
 import sevenbar as sb
+from sevenbar.description import gallery
 from sevenbar.description.forms import from_description
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError, TableError
 
-ROOT = Path(__file__).parents[1]
-
 #: A planar net of seven pins.
-WATT = tomllib.loads((ROOT / "examples" / "watt.toml").read_text(encoding="utf-8")) | {
-    "drive": {"joint": "crank"}
-}
+WATT = tomllib.loads(gallery.text("watt")) | {"drive": {"joint": "crank"}}
 
 #: A double wishbone with a track rod: two hinges, two balls, a rod.
 HUB = tomllib.loads("""

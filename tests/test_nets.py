@@ -497,7 +497,7 @@ def test_a_slide_may_drive_and_values_count_from_the_drawing():
 def test_what_a_net_does_not_answer_yet_says_what_it_does():
     linkage = net(WATT)
     for asked in (lambda: Numbers(linkage), lambda: expanded(linkage)):
-        with pytest.raises(NotCoveredError, match="net: its freedoms"):
+        with pytest.raises(NotCoveredError, match="net: this linkage has several loops; its freedoms"):
             asked()
     assert linkage.plane.normal.tolist() == [0, 0, 1]
     assert linkage.as_four_bar() is None

@@ -1,75 +1,72 @@
-"""The nets of the examples: each has its source, closes as drawn with one freedom, and has the modes of circles by hand."""
+"""The nets of the gallery: each has its source, closes as drawn with one freedom, and has the modes of circles by hand."""
 
 from __future__ import annotations
 
 import cmath
 import math
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import sevenbar as sb
+from commands import mistake
+from sevenbar.description import gallery
 from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.reporting.drawn import drawn_of
-
-FOLDER = Path(__file__).parents[1] / "examples"
 
 #: How many blocks each is solved in, and whether all are dyads.
 NETS = {
     "watt": (2, True),
-    "nets/stephenson": (2, True),
-    "nets/klann": (2, True),
-    "nets/jansen": (3, True),
-    "nets/peaucellier": (3, True),
-    "nets/tandem_wiper": (2, True),
-    "nets/double_wishbone": (1, False),
-    "nets/five_rod": (1, False),
-    "nets/rssr_ss": (1, False),
-    "nets/platform": (1, False),
+    "stephenson": (2, True),
+    "klann": (2, True),
+    "jansen": (3, True),
+    "peaucellier": (3, True),
+    "tandem_wiper": (2, True),
+    "double_wishbone": (1, False),
+    "five_rod": (1, False),
+    "rssr_ss": (1, False),
+    "platform": (1, False),
 }
 
 #: The steps of a pose by hand, where `crank pin` is known: a place that circles about two others give, or one
 #: of a link, carried with two others of it.
 BY_CIRCLES = {
-    "nets/stephenson": [
+    "stephenson": [
         ("circles", "knee", "crank pin", "rocker"), ("carried", "coupler point", "crank pin", "knee"),
         ("circles", "elbow", "coupler point", "lever"),
     ],
-    "nets/klann": [
+    "klann": [
         ("circles", "elbow", "crank pin", "short rocker"), ("carried", "knee", "crank pin", "elbow"),
         ("circles", "hip", "knee", "long rocker"),
     ],
-    "nets/jansen": [
+    "jansen": [
         ("circles", "shoulder", "crank pin", "axle"), ("circles", "knee", "crank pin", "axle"),
         ("carried", "hip", "axle", "shoulder"), ("circles", "ankle", "hip", "knee"),
     ],
-    "nets/peaucellier": [
+    "peaucellier": [
         ("circles", "left corner", "pivot O", "corner P"), ("circles", "right corner", "pivot O", "corner P"),
         ("circles", "corner Q", "left corner", "right corner"),
     ],
-    "nets/tandem_wiper": [
+    "tandem_wiper": [
         ("circles", "driver's pin", "crank pin", "driver's arm"), ("carried", "driver's second pin", "driver's arm", "driver's pin"),
         ("circles", "passenger's pin", "driver's second pin", "passenger's arm"),
     ],
 }  # fmt: skip
 
 
-def loaded(name):
-    return sb.load(FOLDER / f"{name}.toml")
-
-
-def test_the_ten_nets_are_all_that_there_are():
-    written = {file.relative_to(FOLDER).with_suffix("").as_posix() for file in FOLDER.glob("nets/*.toml")}
-    assert written | {"watt"} == set(NETS)
+def test_the_ten_nets_are_all_that_there_are_and_no_loop_is_among_them():
+    assert sorted(NETS) == list(gallery.nets())
     assert len(NETS) == 10
+    assert all(sb.load(name).net is not None for name in gallery.nets())
+    assert all(sb.load(name).net is None for name in gallery.loops())
+    assert gallery.names() == (*gallery.loops(), *gallery.nets())
 
 
 @pytest.mark.parametrize("name", NETS)
 def test_a_net_names_its_source_closes_as_drawn_and_has_one_freedom(name):
-    linkage = loaded(name)
-    remarks = re.match(r"(?:#.*\n)+", (FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
+    linkage = sb.load(name)
+    remarks = re.match(r"(?:#.*\n)+", gallery.text(name))
     assert re.search(r"\((?:17|18|19|20)\d\d\)", remarks[0]), "a source with its year"
     mobility = linkage.mobility()
     assert (mobility.finite, drawn_of(linkage, linkage.input_column(), mobility).word) == (1, "regular")
@@ -119,7 +116,7 @@ def linkage_ground(linkage):
 @pytest.mark.parametrize("name", BY_CIRCLES)
 @pytest.mark.parametrize("angle", [-2.1, -0.3, 0.0, 0.7, 1.9])
 def test_modes_are_those_of_circles_by_hand(name, angle):
-    linkage = loaded(name)
+    linkage = sb.load(name)
     modes = linkage.assembly_modes(angle)
     frames = poses(linkage, modes.q)
     drawn = drawn_places(linkage)
@@ -138,8 +135,8 @@ def test_modes_are_those_of_circles_by_hand(name, angle):
 
 
 def test_jansens_leg_has_his_numbers():
-    p = drawn_places(loaded("nets/jansen"))
-    foot = complex(*loaded("nets/jansen").points[0].at[:2])
+    p = drawn_places(sb.load("jansen"))
+    foot = complex(*sb.load("jansen").points[0].at[:2])
     lengths = {
         ("axle", "shoulder"): 41.5, ("axle", "knee"): 39.3, ("axle", "hip"): 40.1, ("shoulder", "hip"): 55.8,
         ("hip", "ankle"): 39.4, ("knee", "ankle"): 36.7, ("crank pin", "shoulder"): 50, ("crank pin", "knee"): 61.9,
@@ -153,7 +150,7 @@ def test_jansens_leg_has_his_numbers():
 
 
 def test_klanns_leg_has_the_numbers_of_the_patent():
-    linkage = loaded("nets/klann")
+    linkage = sb.load("klann")
     p = drawn_places(linkage) | {"foot": complex(*linkage.points[0].at[:2])}
     lengths = {
         ("crank", "crank pin"): 26.8, ("crank pin", "elbow"): 59, ("elbow", "knee"): 52.2, ("crank pin", "knee"): 110.5,
@@ -165,7 +162,7 @@ def test_klanns_leg_has_the_numbers_of_the_patent():
 
 
 def test_peaucelliers_corner_goes_on_a_straight_line():
-    linkage = loaded("nets/peaucellier")
+    linkage = sb.load("peaucellier")
     link = linkage.link_names.index("left outer side")
     for angle in (-1.2, -0.5, 0.4, 1.1):
         frames = poses(linkage, linkage.assembly_modes(angle).q)
@@ -175,3 +172,32 @@ def test_peaucelliers_corner_goes_on_a_straight_line():
         folded = np.abs(ends - corner).max(axis=1) < 1e-9
         assert np.abs(ends[~folded, 0] - 80).max() < 1e-9
         assert (~folded).sum() == 2
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "analyze watt --ranges",
+        "calibrate watt examples/rssr_bench.csv",
+        "design inertia watt --mass P=1",
+        "design path watt --path examples/coupler_curve.csv --link 2 --at 0,0,0",
+        "export watt --to step",
+        "forces watt",
+        "free watt --time 1s",
+        "map watt --over L1=1:2 --over L2=1:2",
+        "simulate watt --engine mujoco",
+        "sweep watt --over L1=1:2:3",
+        "tolerance watt --tolerance L1=1",
+    ],
+)
+def test_what_is_of_single_loops_refuses_a_net_in_one_line(words):
+    said = mistake(*words.split())
+    assert said.startswith("net: this linkage has several loops; ")
+    assert said.endswith(" are of single loops")
+
+
+def test_a_name_nearly_right_is_offered():
+    offer = "give the path of a TOML file, or a name that 'sevenbar gallery' lists"
+    for near, name in {"jansn": "jansen", "Watts": "watt", "double-wishbone": "double_wishbone"}.items():
+        assert mistake("analyze", near) == f"{near}: no such file; did you mean '{name}'? {offer}"
+    assert mistake("watt") == "watt: is a linkage, where a command should stand; give: sevenbar analyze watt"

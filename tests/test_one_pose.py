@@ -29,9 +29,9 @@ load = [{{ link = 2, at = [100, 30, 0], force = [0, -100, 0] }}]
 
 
 def gallery(*without):
-    from sevenbar.description.gallery import names
+    from sevenbar.description.gallery import loops
 
-    return [name for name in names() if name not in without]
+    return [name for name in loops() if name not in without]
 
 
 def value_of(linkage, column=None):

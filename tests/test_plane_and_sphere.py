@@ -218,7 +218,7 @@ def test_a_sphere_that_grows_becomes_a_plane_and_is_never_both(exponent):
 
 def test_of_the_gallery_two_are_planar_and_two_are_spherical():
     kinds = {}
-    for name in sb.gallery.names():
+    for name in sb.gallery.loops():
         found = sb.load(name)
         kinds[name] = (found.plane is not None, found.sphere is not None)
     assert [name for name, (flat, _) in kinds.items() if flat] == ["engine", "planar_4r"]

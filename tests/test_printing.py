@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import WIDTH, Printed, brief
 
@@ -145,7 +145,7 @@ def test_a_trace_and_the_closed_form_print_their_extent(motion):
     ]
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_every_result_of_the_gallery_prints_short_lines_without_solving(name, monkeypatch):
     linkage = sb.load(name)
     motion = linkage.motion(36)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 from sevenbar.drawing import output_curves
 from sevenbar.drawing.quantities import MOTION, Over, Row, quantities
 from sevenbar.drawing.style import CIRCUIT_COLOURS
@@ -139,7 +139,7 @@ def test_a_points_speed_is_its_way_over_the_time(name: str) -> None:
             )
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_every_angle_starts_within_half_a_turn_and_runs_on_without_a_leap(name: str) -> None:
     motion = sb.load(name).motion(samples=90)
     for circuit in motion:

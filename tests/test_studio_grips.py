@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sevenbar.description.gallery import names, text
+from sevenbar.description.gallery import loops, text
 from sevenbar.errors import DescriptionError
 from sevenbar.studio.state.grips import grips
 from sevenbar.studio.state.session import Session
@@ -83,7 +83,7 @@ def test_a_place_that_is_refused_changes_nothing():
     assert session.past == []
 
 
-@pytest.mark.parametrize("name", [name for name in names() if "[[joint]]" in text(name)])
+@pytest.mark.parametrize("name", [name for name in loops() if "[[joint]]" in text(name)])
 def test_a_drawn_linkage_is_found_as_it_is_drawn(name):
     session = opened(name)
     assert session.view is not None

@@ -43,7 +43,7 @@ def ends(found: tuple[Floats, Floats, Floats]) -> tuple[Floats, Floats]:
     return middle - half, middle + half
 
 
-@pytest.mark.parametrize("name", gallery.names())
+@pytest.mark.parametrize("name", gallery.loops())
 def test_each_link_has_tubes_from_joint_to_joint_in_every_pose(name: str) -> None:
     _, frame, made = planned(name)
     start, end = ends(poses(made, frame.places)["cylinder"])
@@ -57,7 +57,7 @@ def test_each_link_has_tubes_from_joint_to_joint_in_every_pose(name: str) -> Non
         assert off.max(axis=0).min() < 1e-12 * max(frame.span, np.abs(frame.places).max())
 
 
-@pytest.mark.parametrize("name", gallery.names())
+@pytest.mark.parametrize("name", gallery.loops())
 def test_no_solid_of_a_rigid_link_changes_its_size_along_the_motion(name: str) -> None:
     motion, frame, made = planned(name)
     for _, _, scale in poses(made, frame.places).values():
@@ -66,7 +66,7 @@ def test_no_solid_of_a_rigid_link_changes_its_size_along_the_motion(name: str) -
     assert motion.circuits
 
 
-@pytest.mark.parametrize("name", gallery.names())
+@pytest.mark.parametrize("name", gallery.loops())
 def test_orientations_are_unit_quaternions_and_blocks_and_nuts_turn_little_from_row_to_row(name: str) -> None:
     _, frame, made = planned(name)
     for shape, (turn, middle, scale) in poses(made, frame.places).items():
@@ -94,7 +94,7 @@ def test_turns_lead_z_onto_the_way_and_x_towards_the_roll_straight_down_too() ->
     assert (np.sum(rotated(turn, (1, 0, 0)) * across, axis=1)[:200] > 0).all()
 
 
-@pytest.mark.parametrize("name", gallery.names())
+@pytest.mark.parametrize("name", gallery.loops())
 def test_a_pose_that_is_not_known_hides_what_stands_on_it_and_raises_nothing(name: str) -> None:
     _, frame, made = planned(name)
     lost = np.full_like(frame.places[0], np.nan)

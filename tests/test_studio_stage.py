@@ -246,7 +246,7 @@ def test_a_state_out_of_date_is_grey_also_when_it_is_set_so(stage: Stage, server
     assert np.ptp(node(server, "/points").colors, axis=2).max() > 50
 
 
-@pytest.mark.parametrize("name", gallery.names())
+@pytest.mark.parametrize("name", gallery.loops())
 def test_the_camera_sees_every_place_of_the_motion_from_the_front(stage: Stage, name: str) -> None:
     _, frame = show(stage, name)
     eye, target = stage.look()

@@ -16,7 +16,7 @@ from evidence.accuracy.reference_loops import Loop
 from gallery_sample import sampled
 from sevenbar.description.draft import Draft
 from sevenbar.description.forms import from_description
-from sevenbar.description.gallery import names, text
+from sevenbar.description.gallery import loops, text
 from sevenbar.drawing.skeleton import places_of
 from sevenbar.drawing.view import upright
 from sevenbar.errors import RequestError
@@ -104,7 +104,7 @@ def test_the_modes_of_every_input_are_the_assembly_modes(name: str) -> None:
         assert max(worst, default=0) < 0.1, column
 
 
-@pytest.mark.parametrize("name", [name for name in names() if name != "screw_drill"])
+@pytest.mark.parametrize("name", [name for name in loops() if name != "screw_drill"])
 def test_a_sample_is_met_exactly_and_once(name: str) -> None:
     motion = sb.load(name).motion()
     for circuit in motion:
@@ -188,7 +188,7 @@ def test_choosing_a_circuit_keeps_the_input_where_it_gets_there() -> None:
     assert (session.view.circuit.index, session.row) == (1, 0.0)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_places_worked_out_from_joint_values_are_those_of_the_frame(name: str) -> None:
     session = opened(name)
     session.add_point("far", 1, (1.0, 2.0, 3.0))

@@ -5,7 +5,6 @@ import io
 import math
 import re
 import sys
-from pathlib import Path
 
 import numpy as np
 import openpyxl
@@ -21,8 +20,6 @@ from sevenbar.description.table_writer import linkage_table, points_table
 from sevenbar.errors import DescriptionError, MissingExtraError, RequestError, TableError
 from sevenbar.export import export
 from tests.commands import mistake, sevenbar
-
-NETS = Path(__file__).parents[1] / "examples" / "nets"
 
 #: The 7R paper's rows, as they are in `seven_r`.
 ROWS = [(45, 80, 70), (15, -95, 10), (100, 0, 10), (-115, 0, 10), (10, -75, 10), (35, 80, 10), (35, 150, -60)]
@@ -262,7 +259,7 @@ def test_a_damaged_workbook_is_refused(tmp_path, content):
         sb.load(path)
 
 
-@pytest.mark.parametrize("name", gallery.names())
+@pytest.mark.parametrize("name", gallery.loops())
 def test_the_gallery_goes_to_tables_and_back(tmp_path, name):
     linkage = sb.load(name)
     head, rows = linkage_table(linkage)
@@ -462,7 +459,7 @@ wheel,point,0,400,90,,,,,,,,upright,
 def test_a_table_of_pins_is_the_net_of_a_file(tmp_path):
     path = tmp_path / "pins.csv"
     path.write_text(PINS)
-    linkage, drawn = sb.load(path), sb.load("examples/watt.toml")
+    linkage, drawn = sb.load(path), sb.load("watt")
     assert note_of(path) == "read as 7 pins of a planar linkage, lengths in mm; frame stands still"
     assert (linkage.name, linkage.drive.joint) == ("Watt's six-bar", "crank")
     assert linkage.drive.speed == pytest.approx(2 * math.pi)
@@ -481,7 +478,7 @@ def test_a_table_of_pins_is_the_net_of_a_file(tmp_path):
 
 def test_a_data_frame_of_pins_is_taken_where_pins_are():
     frame = pd.read_csv(io.StringIO(PINS), skiprows=1)
-    plain = sb.load("examples/watt.toml")
+    plain = sb.load("watt")
     without = frame.drop(columns="input")
     links = [tuple(re.split(r"[;, ]+", cell)) for cell in frame["links"]]
     for linkage in (
@@ -563,9 +560,9 @@ def test_each_mistake_of_a_table_of_links_has_its_line_and_column(tmp_path, cont
     assert [line.removeprefix(f"{path}: ") for line in str(refused.value).splitlines()] == messages
 
 
-@pytest.mark.parametrize("name", ["watt", *(f"nets/{file.stem}" for file in sorted(NETS.glob("*.toml")))])
+@pytest.mark.parametrize("name", gallery.nets())
 def test_nets_go_to_tables_and_back(tmp_path, name):
-    linkage = sb.load(f"examples/{name}.toml")
+    linkage = sb.load(name)
     head, rows = linkage_table(linkage)
     path = tmp_path / "t.csv"
     with path.open("w", newline="", encoding="utf-8") as file:

@@ -11,7 +11,7 @@ import sevenbar as sb
 from evidence.accuracy import reference_rssr
 from evidence.fuzz.random_linkages import Dimensions
 from evidence.fuzz.random_loops import general, prismatic
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 from sevenbar.design.tolerance.sensitivities import sensitivities
 from sevenbar.errors import RequestError
 
@@ -107,7 +107,7 @@ def test_all_derivatives_are_those_of_differences_of_the_analysis(name):
 
 
 @pytest.mark.parametrize("every", [3, pytest.param(1, marks=pytest.mark.proof)])
-@pytest.mark.parametrize("name", [name for name in names() if name not in (*QUICK, *RIGID)])
+@pytest.mark.parametrize("name", [name for name in loops() if name not in (*QUICK, *RIGID)])
 def test_all_derivatives_are_those_of_differences_in_the_whole_gallery(name, every):
     # a drawn joint that lies on the axis before it has a frame with rounding of 1e-10 when it is moved a little
     _, compared = compare_all(sb.load(name), 1e-3 if name == "five_bar" else 3e-5, every)

@@ -9,7 +9,7 @@ import sevenbar as sb
 from evidence.fuzz.random_loops import step
 from sevenbar.description.draft import Draft
 from sevenbar.description.forms import from_description
-from sevenbar.description.gallery import names
+from sevenbar.description.gallery import loops
 from sevenbar.errors import DescriptionError
 from sevenbar.kinematics.loop.rigid import inverse, pose, unit
 from sevenbar.kinematics.numbers.sensitivity import Numbers
@@ -142,7 +142,7 @@ def checked(form, count):
     return seen
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", loops())
 def test_the_word_of_each_linkage_of_the_gallery_is_what_its_form_means(name):
     linkage = sb.load(name)
     if linkage.description.get("angle_unit", "deg") == "deg" and linkage.form == "rows":
@@ -167,7 +167,7 @@ def test_the_words_of_hundreds_of_random_descriptions_are_what_their_form_means(
 
 
 def test_numbers_stand_in_the_order_of_the_file_without_the_speed():
-    for name in names():
+    for name in loops():
         linkage = sb.load(name)
         every = [d.name for d in Draft.of_linkage(linkage).dimensions]
         assert [*Numbers(linkage).names, "speed"] == every

@@ -1,6 +1,7 @@
-"""The gallery: each linkage drawn and analysed when the site is built."""
+"""The gallery: each linkage drawn and analysed when the site is built; its tables, which the pages have."""
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import sevenbar as sb
@@ -23,14 +24,33 @@ def all_entries(pages: Path, _: str) -> str:
     return "\n".join(_section(name, sb.load(name).motion(), pages) for name in gallery.names())
 
 
-def table_of_all(_pages: Path, _: str) -> str:
-    """A table of all linkages."""
+def table_of_loops(_pages: Path, _: str) -> str:
+    """A table of all single loops."""
     rows = []
-    for name in gallery.names():
+    for name in gallery.loops():
         motion = sb.load(name).motion(36)
         loop, count = " ".join(motion.linkage.kind), str(len(motion.circuits))
         rows.append((motion.linkage.name, code(name), loop, motion.motion_type, count))
     return table(("linkage", "name", "loop", "motion type", "circuits"), rows)
+
+
+def table_of_nets(_pages: Path, _: str) -> str:
+    """A table of all linkages of several loops, without a motion, which takes seconds of some."""
+    rows = []
+    for name in gallery.nets():
+        linkage = sb.load(name)
+        counts = [str(len(part)) for part in (linkage.link_names, linkage.joints, linkage.rods)]
+        rows.append((linkage.name, code(name), *counts, _solved(linkage)))
+    return table(("linkage", "name", "links", "joints", "rods", "solved, the input held"), rows)
+
+
+def _solved(linkage: sb.Linkage) -> str:
+    """How many blocks there are of each kind, as in `3 dyads`."""
+    kinds = [
+        "dyad" if block.solver == "dyad" else f"block of {len(block.links)} links"
+        for block in linkage.order.blocks
+    ]
+    return ", ".join(f"{count} {kind}{'s' * (count > 1)}" for kind, count in Counter(kinds).items())
 
 
 def _section(name: str, motion: sb.Motion, pages: Path) -> str:

@@ -19,7 +19,8 @@ PAGES = Path(__file__).resolve().parents[1]
 #: What makes each part, from the folder of the pages; the rest of the mark is passed on.
 PARTS: dict[str, Callable[[Path, str], str]] = {
     "commands": command_tables.all_commands,
-    "gallery_table": gallery_entries.table_of_all,
+    "gallery_loops": gallery_entries.table_of_loops,
+    "gallery_nets": gallery_entries.table_of_nets,
     "keys": key_tables.keys_of,
     "modules": module_map.module_map,
     "task_keys": key_tables.task_keys_of,

@@ -71,7 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--page", type=Path, metavar="JSON", help="measure nothing: the page of kept results")
     given = parser.parse_args(arguments)
-    known = gallery.names()
+    known = gallery.loops()
     for name in given.only or ():
         if name not in known:
             parser.error(f"--only: no linkage '{name}' in the gallery; give one of {', '.join(known)}")

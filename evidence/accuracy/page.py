@@ -54,7 +54,7 @@ def _head(results: Results) -> Iterator[str]:
     made, settings = results["made"], results["settings"]
     yield "# Accuracy"
     yield (
-        "How far Sevenbar's numbers are from the truth, for every linkage of `sevenbar gallery`: beside "
+        "How far Sevenbar's numbers are from the truth, for every loop of `sevenbar gallery`: beside "
         "references of forty digits and more, the closed forms of textbooks, two simulators, and printed "
         "numbers. `make accuracy` measures all of it and writes this page, its figures and "
         "`evidence/accuracy/results.json`; no number here was typed by hand."

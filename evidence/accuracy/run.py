@@ -121,7 +121,7 @@ def framed(
             "steps": budget.steps,
             "near": gallery_rows.NEAR,
             "distances": [budget.distances[0], budget.distances[-1]],
-            "whole": budget == FULL and list(names) == list(gallery.names()),
+            "whole": budget == FULL and list(names) == list(gallery.loops()),
             "seconds": round(spent),
         },
         **found,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from evidence.fuzz import random_loops
-from sevenbar.description.gallery import names, text
+from sevenbar.description.gallery import loops, text
 from sevenbar.kinematics.loop.joints import KINDS
 
 Description = dict[str, Any]
@@ -86,7 +86,7 @@ def worn(rng: np.random.Generator) -> Description:
     import tomllib
 
     off = 10 ** rng.uniform(*WORN)
-    chosen = str(rng.choice([name for name in names() if not name.startswith("screw")]))
+    chosen = str(rng.choice([name for name in loops() if not name.startswith("screw")]))
 
     def changed(value: Any) -> Any:
         if isinstance(value, Mapping):

@@ -6,7 +6,7 @@ import random
 import re
 from collections.abc import Callable
 
-from sevenbar.description.gallery import names, text
+from sevenbar.description.gallery import loops, text
 
 #: A token: a comment, a text, a number, a word, a line's end, blanks, or any other character.
 _TOKEN = re.compile(
@@ -64,7 +64,7 @@ Edit = Callable[[random.Random, list[str]], None]
 
 def seeds() -> list[list[str]]:
     """The tokens of each file to begin with: the gallery without comments, the least of each form."""
-    texts = [re.sub(r"^#.*\n", "", text(name), flags=re.MULTILINE) for name in names()]
+    texts = [re.sub(r"^#.*\n", "", text(name), flags=re.MULTILINE) for name in loops()]
     return [_TOKEN.findall(content) for content in (*texts, *LEAST * LEAST_TIMES)]
 
 

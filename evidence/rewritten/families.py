@@ -13,7 +13,7 @@ import sevenbar as sb
 from evidence.rewritten.drawing import Drawing, drawing, redrawn
 from evidence.rewritten.spatial import SPATIAL
 from sevenbar.arrays import Floats
-from sevenbar.description.gallery import names as gallery_names
+from sevenbar.description.gallery import loops
 from sevenbar.errors import DescriptionError
 
 X, Z = np.eye(3)[[0, 2]]
@@ -89,7 +89,7 @@ def families() -> Families:
         if name in ("crank-rocker 30 80 60 70", "right angles 90 90 90 60"):
             found[f"spherical R R R R in one point, {name}"] = partial(_spherical, arcs, angle, together=True)
     found |= SPATIAL
-    for name in gallery_names():
+    for name in loops():
         if name not in LEFT_OUT and "U" not in sb.load(name).kind:
             for row in (0, 7):
                 found[f"gallery {name}, row {row}"] = partial(_of_gallery, name, row)

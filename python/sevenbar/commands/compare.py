@@ -14,6 +14,7 @@ from sevenbar.commands.given import opened
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.loop.joint_text import joint_value
+from sevenbar.kinematics.loop.single import check_single
 
 if TYPE_CHECKING:
     from sevenbar.measuring.measured import Ends, Measured, MeasuredExtremes
@@ -150,6 +151,7 @@ def calibrate(
     formats = options.figure_formats(figures, out)
     text = toml_text(linkage)
     loaded = opened(linkage, agree)
+    check_single(loaded)
     check_out(calibration_report(lambda _: "", formats), out, force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
     if isinstance(measured, MeasuredExtremes):

@@ -13,6 +13,7 @@ from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import agreed, input_value
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.motion import chosen_circuit
+from sevenbar.kinematics.loop.single import check_single
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.amounts import amount_in
 
@@ -73,6 +74,7 @@ def free(
     if film is not None:
         check_targets([film], force=force)
     loaded = sb.load(linkage, agree=agreed(agree))
+    check_single(loaded)
     if loaded.loading.is_empty:
         raise RequestError(f"{linkage}: {NOTHING_ACTS.format(place='it')}")
     chosen = chosen_circuit(loaded.motion(input=input_joint), circuit)

@@ -18,6 +18,7 @@ from sevenbar.description.toml_text import is_tables
 from sevenbar.errors import RequestError, of_extra, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Loop, Place
+from sevenbar.kinematics.loop.single import check_single
 from sevenbar.kinematics.numbers.dimensions import (
     Dimension,
     description_of,
@@ -104,11 +105,12 @@ class Draft:
     def dimension(self, name: str) -> Dimension:
         """The dimension of a name, or of a place as in a file (`link[2].twist`).
 
-        Raises `RequestError` where there is none.
+        Raises `RequestError` where there is none, `NotCoveredError` for one of a net.
         """
         for dimension in (*self.dimensions, *self.lengths, *self.masses):
             if name in (dimension.name, dimension.key) or (dimension.drawn and name == dimension.label):
                 return dimension
+        check_single(self.linkage)
         known = [dimension.name for dimension in (*self.lengths, *self.dimensions)]
         if why := self._no_length(name):
             raise RequestError(f"dimension: {shown(name)} {why}; give one of {', '.join(known)}")
@@ -137,7 +139,8 @@ class Draft:
         """The draft whose dimensions stay as they are while others change, except those that `follow`.
 
         A file that leaves L2 out means the rod that closes its pose, and a rod does not grow with the crank:
-        its length is written. Raises `RequestError` for a name in `follow` that the file gives.
+        its length is written. Raises `RequestError` for a name in `follow` that the file gives, and
+        `NotCoveredError` for a net.
 
             >>> import sevenbar as sb
             >>> draft = Draft.of_linkage(sb.load("rssr"))
@@ -146,6 +149,7 @@ class Draft:
             997.497
             986.471
         """
+        check_single(self.linkage)
         left_out = {dimension.name: dimension for dimension in self.dimensions if dimension.follows}
         for name in follow:
             if name not in left_out:

@@ -1,4 +1,4 @@
-"""Linkages that come with Sevenbar, each a TOML file that names its source."""
+"""Linkages that come with Sevenbar, single loops and nets, each a TOML file that names its source."""
 
 from __future__ import annotations
 
@@ -14,14 +14,37 @@ MOST_OFFERED = 3
 _FOLDER = Path(__file__).with_name("gallery")
 
 
-@cache
-def names() -> tuple[str, ...]:
-    """The names of all linkages of the gallery, in alphabetic order.
+#: Of `_FOLDER`: linkages of several loops; all others are single loops.
+_NETS = "nets"
 
-    >>> len(names()), names()[0]
+
+@cache
+def loops() -> tuple[str, ...]:
+    """The names of the single loops of the gallery, in alphabetic order.
+
+    >>> len(loops()), loops()[0]
     (23, 'bennett')
     """
-    return tuple(sorted(file.stem for file in _FOLDER.glob("*.toml")))
+    return _stems(_FOLDER)
+
+
+@cache
+def nets() -> tuple[str, ...]:
+    """The names of the linkages of several loops in the gallery, in alphabetic order.
+
+    >>> len(nets()), nets()[-1]
+    (10, 'watt')
+    """
+    return _stems(_FOLDER / _NETS)
+
+
+def names() -> tuple[str, ...]:
+    """The names of all linkages of the gallery: the loops, then the nets."""
+    return (*loops(), *nets())
+
+
+def _stems(folder: Path) -> tuple[str, ...]:
+    return tuple(sorted(file.stem for file in folder.glob("*.toml")))
 
 
 def title(name: str) -> str:
@@ -68,4 +91,5 @@ def _plain(name: str) -> str:
 
 def text(name: str) -> str:
     """The TOML text of a linkage of the gallery."""
-    return (_FOLDER / f"{name}.toml").read_text(encoding="utf-8")
+    folder = _FOLDER / _NETS if name in nets() else _FOLDER
+    return (folder / f"{name}.toml").read_text(encoding="utf-8")

@@ -20,6 +20,7 @@ from sevenbar.design.points.cycle import Cycle, cycle_of, driven
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.bodies import Body
 from sevenbar.kinematics.circuits.motion import Motion
+from sevenbar.kinematics.loop.single import check_single
 from sevenbar.text.printing import Printed
 from sevenbar.text.units import LENGTHS
 
@@ -100,6 +101,7 @@ def inertia(
         >>> bool(abs(found.mean) < 1e-12 * abs(found.torque).max())
         True
     """
+    check_single(motion.linkage)
     checked = _masses(motion, masses)
     pull = np.zeros(3) if gravity is None else finite_array("gravity", gravity)
     if pull.size != 3:

@@ -10,6 +10,7 @@ def check_single(linkage: Loop) -> None:
     """Raises `NotCoveredError` for a net of several loops."""
     if linkage.net is not None:
         raise NotCoveredError(
-            "net: its freedoms, modes and motion with rates, points and links are found; forces, ranges of "
-            "joints, sensitivities, bodies, engines and design are of single loops"
+            "net: this linkage has several loops; its freedoms, modes and motion with rates, points and "
+            "links are found; forces, ranges of joints, changes of dimensions, bodies, engines and design "
+            "are of single loops"
         )

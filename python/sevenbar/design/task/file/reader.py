@@ -32,6 +32,7 @@ from sevenbar.errors import (
     suggestion,
 )
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.loop.single import check_single
 from sevenbar.kinematics.numbers.dimensions import check_apart
 from sevenbar.text.paths import is_file, is_folder, is_there
 
@@ -74,6 +75,7 @@ def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskF
     raw = toml_tables(text, source)
     folder = Path(source).parent
     draft = _draft(raw, source, folder, agree)
+    check_single(draft.linkage)
     form = check_form(raw, draft.linkage.length_unit, source)
     mistakes = _Mistakes()
     with mistakes.of("follow"):
