@@ -32,6 +32,9 @@ PICTURES = {
     "tutorial_path.png": "point/path_hose.png",
     "tutorial_tolerance.png": "tolerance/shares.png",
     "tutorial_guard.png": "guard/path_guard.png",
+    "tutorial_flap.png": "flap/configuration.png",
+    "tutorial_flap_modes.png": "flap/modes.png",
+    "tutorial_wishbone.png": "wishbone/skeleton.png",
 }
 #: Width [pixels] and colours of a picture, so that a page stays light.
 WIDTH, COLOURS = 1200, 220
