@@ -67,7 +67,7 @@ lint: $(VENV)/.installed-dev $(VENV)/.stub-checked  ## Formatting, lints, types,
 
 .PHONY: rust-test
 rust-test: have-cargo
-	cargo test $(LOCKED) --quiet --workspace --release
+	cargo test $(LOCKED) --quiet --workspace --profile quick
 
 .PHONY: format
 format: $(VENV)/.installed-dev  ## Write the formatting and the safe repairs into the sources
