@@ -174,6 +174,8 @@ def test_it_asks_only_before_much():
         ("sevenbar export rssr --to ad", {"adams"}),
         # the shell goes on with its files
         ("sevenbar analyze mine.to", set()),
+        ("sevenbar gallery jan", {"jansen"}),
+        ("sevenbar studio wat", {"watt"}),
     ],
 )
 def test_the_shell_completes_commands_options_and_names(line, words):

@@ -385,9 +385,7 @@ def _points(linkage: sb.Linkage, asked: str | tuple[int, Place] | None) -> Place
 
 @app.command(cls=Command)
 def gallery(
-    name: Annotated[
-        str | None, typer.Argument(metavar="[NAME]", help="The one whose file is printed.")
-    ] = None,
+    name: options.GalleryName = None,
 ) -> None:
     """List the linkages that come with Sevenbar, or print the file of one to begin with."""
     from sevenbar.description.gallery import names, nearest, text

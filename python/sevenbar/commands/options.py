@@ -52,6 +52,16 @@ Source = Annotated[
         autocompletion=_known,
     ),
 ]
+GalleryName = Annotated[
+    str | None,
+    typer.Argument(metavar="[NAME]", help="The one whose file is printed.", autocompletion=_known),
+]
+Opened = Annotated[
+    str,
+    typer.Argument(
+        metavar="[FILE|NAME]", help="A TOML file, or a name of the gallery.", autocompletion=_known
+    ),
+]
 Mixed = Annotated[bool, typer.Option("--mixed", help="Also with parts of another version or vector unit.")]
 Threads = Annotated[
     int | None, typer.Option(help="Threads of this machine; one for each processor by default.")

@@ -21,9 +21,7 @@ HOST, PORT = "127.0.0.1", 8077
 
 
 def studio(
-    linkage: Annotated[
-        str, typer.Argument(metavar="[FILE|NAME]", help="A TOML file, or a name of the gallery.")
-    ] = "rssr",
+    linkage: options.Opened = "rssr",
     host: Annotated[
         str, typer.Option(help="Address to serve at; another than 127.0.0.1 lets other machines in.")
     ] = HOST,
