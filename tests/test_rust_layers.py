@@ -19,7 +19,7 @@ rssr: linkage pair free_side rates domain extremes frames motion circuits batch 
 
 survey: draw figures kind swing transmission cone wish readings pose tally judge cascade
 
-loops::equation: dense rotations flat screws closed chain kinds lanes complex_frame closure
+loops::equation: dense rotations flat screws closed free_direction chain kinds lanes complex_frame closure
 loops::rates: velocities turns points
 loops::mobility: rank idle singular_place at_rest
 loops::numbers: twists factors word numbered_loop slopes
@@ -31,7 +31,7 @@ loops::circuits: curve follow walked_again on_curve turnings join meetings spher
 loops::motions: row row_lanes passes extremes rows circuit met_twice motion measures
 loops
 
-nets: order series square steps rows net freedoms joints dyads monodromy planar_family planar_block modes described sized search motion
+nets: order series square steps rows net freedoms joints dyads monodromy planar_family planar_block modes net_rows described in_plane dyad_sides dyad_rows dyad_quads sized search motion
 """
 
 

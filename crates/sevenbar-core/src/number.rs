@@ -25,6 +25,11 @@ pub(crate) trait Number:
     fn if_greater(self, b: Self, yes: Self, no: Self) -> Self;
     /// Sine and cosine of an angle [rad].
     fn sin_cos(self) -> (Self, Self);
+    /// The product with a plain number.
+    #[inline(always)]
+    fn scaled(self, by: f64) -> Self {
+        self * Self::splat(by)
+    }
     /// The lesser of two.
     #[inline(always)]
     fn lesser(self, b: Self) -> Self {

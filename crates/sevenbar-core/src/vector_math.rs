@@ -136,6 +136,27 @@ pub(crate) fn atan2<const FUSED: bool>(y: f64, x: f64) -> f64 {
     angle.copysign(y)
 }
 
+/// The same for numbers side by side.
+#[inline(always)]
+pub(crate) fn atan2_side_by_side<N: Number>(y: N, x: N) -> N {
+    let (zero, one) = (N::splat(0.0), N::splat(1.0));
+    let (ax, ay) = (x.size(), y.size());
+    let (small, large) = (ay.if_greater(ax, ax, ay), ay.if_greater(ax, ay, ax));
+    let edge = large.scaled(TAN_EIGHTH);
+    let top = small.if_greater(edge, small - large, small);
+    let bottom = small.if_greater(edge, small + large, large);
+    let z = top / bottom.if_greater(zero, bottom, one);
+    let w = z * z;
+    let mut sum = N::splat(ARCTANGENT[10]);
+    for k in (0..10).rev() {
+        sum = N::splat(ARCTANGENT[k]).plus_product(sum, w);
+    }
+    let angle = z.plus_product(z * w, sum) + small.if_greater(edge, N::splat(FRAC_PI_4), zero);
+    let angle = ay.if_greater(ax, N::splat(FRAC_PI_2) - angle, angle);
+    let angle = zero.if_greater(x, N::splat(PI) - angle, angle);
+    zero.if_greater(y, -angle, angle)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -156,7 +177,11 @@ mod tests {
             for j in -300..=300 {
                 let (y, x) = (f64::from(i) * 0.11, f64::from(j) * 0.13);
                 let want = y.atan2(x);
-                for got in [atan2::<true>(y, x), atan2::<false>(y, x)] {
+                for got in [
+                    atan2::<true>(y, x),
+                    atan2::<false>(y, x),
+                    atan2_side_by_side(y, x),
+                ] {
                     assert!((got - want).abs() < 1e-15, "{y} {x} {got} {want}");
                 }
             }

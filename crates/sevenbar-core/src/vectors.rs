@@ -265,6 +265,102 @@ impl Vector for Middle {
     }
 }
 
+/// How many numbers stand side by side in a quad.
+pub(crate) const QUAD: usize = 4;
+
+/// Four numbers on which one instruction works.
+pub(crate) trait Four: Number {
+    /// A number for each lane.
+    fn load(x: &[f64; QUAD]) -> Self;
+    /// The numbers of the lanes.
+    fn store(self) -> [f64; QUAD];
+}
+
+/// Code to be compiled for registers of four numbers. Implementations are `#[inline(always)]`.
+pub(crate) trait QuadKernel {
+    /// Runs it.
+    fn run<F: Four>(self);
+}
+
+/// One register of AVX2: half the instructions of eight lanes, for code that is long and not run through often.
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy, Debug)]
+struct Quad(__m256d);
+
+#[cfg(target_arch = "x86_64")]
+operators!(
+    Quad,
+    a,
+    b,
+    Add add Self(unsafe { _mm256_add_pd(a.0, b.0) }),
+    Sub sub Self(unsafe { _mm256_sub_pd(a.0, b.0) }),
+    Mul mul Self(unsafe { _mm256_mul_pd(a.0, b.0) }),
+    Div div Self(unsafe { _mm256_div_pd(a.0, b.0) })
+);
+
+#[cfg(target_arch = "x86_64")]
+impl Number for Quad {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self(unsafe { _mm256_set1_pd(x) })
+    }
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        Self(unsafe { _mm256_fmadd_pd(a.0, b.0, self.0) })
+    }
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        Self(unsafe { _mm256_fnmadd_pd(a.0, b.0, self.0) })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(unsafe { _mm256_sqrt_pd(self.0) })
+    }
+    #[inline(always)]
+    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
+        Self(unsafe { _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, b.0)) })
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        sin_cos_side_by_side(self)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Four for Quad {
+    #[inline(always)]
+    fn load(x: &[f64; QUAD]) -> Self {
+        Self(unsafe { _mm256_loadu_pd(x.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self) -> [f64; QUAD] {
+        let mut x = [0.0; QUAD];
+        unsafe { _mm256_storeu_pd(x.as_mut_ptr(), self.0) };
+        x
+    }
+}
+
+/// Runs a kernel on registers of four numbers, and says whether the machine has them.
+#[cfg(target_arch = "x86_64")]
+pub(crate) fn dispatch_quads<K: QuadKernel>(kernel: K) -> bool {
+    #[target_feature(enable = "avx2,fma")]
+    fn quads<K: QuadKernel>(kernel: K) {
+        kernel.run::<Quad>();
+    }
+    let has_quads = matches!(crate::simd::level(), "avx512" | "avx2");
+    if has_quads {
+        // SAFETY: the unit was seen on this machine just now
+        unsafe { quads(kernel) };
+    }
+    has_quads
+}
+
+/// Says that the machine has no registers of four numbers.
+#[cfg(not(target_arch = "x86_64"))]
+pub(crate) fn dispatch_quads<K: QuadKernel>(_kernel: K) -> bool {
+    false
+}
+
 /// Runs a kernel on the best vector unit at hand.
 #[cfg(target_arch = "x86_64")]
 pub(crate) fn dispatch<K: LaneKernel>(kernel: K) {

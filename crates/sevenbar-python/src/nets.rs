@@ -424,7 +424,7 @@ impl Net {
             return Err(CoreError::new_err("a point is on a step that is not there"));
         }
         let out = working(py, || self.described.point(&rows.0, link, at))?;
-        PyArray1::from_vec(py, out).reshape([4, rows.0.rows.len(), 3])
+        PyArray1::from_vec(py, out).reshape([4, rows.0.len(), 3])
     }
 }
 
@@ -448,17 +448,17 @@ impl Net {
     fn circuit(&self, py: Python<'_>, circuit: NetCircuit) -> PyResult<(RawCircuit, NetRows)> {
         let NetCircuit { rows, measures } = circuit;
         let table = working(py, || self.described.joint_table(&rows))?;
-        let each = |number: fn(&nets::NetRow) -> f64| rows.rows.iter().map(number).collect::<Vec<f64>>();
-        let whole = |number: fn(&nets::NetRow) -> i64| rows.rows.iter().map(number).collect::<Vec<i64>>();
+        let each = |number: fn(nets::NetRow) -> f64| rows.rows().map(number).collect::<Vec<f64>>();
+        let whole = |number: fn(nets::NetRow) -> i64| rows.rows().map(number).collect::<Vec<i64>>();
         let arrays = RowArrays {
             joints: PyArray1::from_vec(py, table)
-                .reshape([4, rows.rows.len(), self.described.column_count()])?
+                .reshape([4, rows.len(), self.described.column_count()])?
                 .unbind(),
-            status: whole(|r| r.status as i64).into_pyarray(py).unbind(),
-            branch: whole(|r| r.pass as i64).into_pyarray(py).unbind(),
+            status: whole(|r| r.status() as i64).into_pyarray(py).unbind(),
+            branch: whole(|r| r.pass() as i64).into_pyarray(py).unbind(),
             mode: None,
-            residual: each(|r| r.residual).into_pyarray(py).unbind(),
-            condition: each(|r| r.condition).into_pyarray(py).unbind(),
+            residual: each(|r| r.residual()).into_pyarray(py).unbind(),
+            condition: each(|r| r.condition()).into_pyarray(py).unbind(),
         };
         Ok((RawCircuit::new(arrays, &measures, None, None), NetRows(rows)))
     }

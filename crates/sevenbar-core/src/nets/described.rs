@@ -2,18 +2,22 @@
 //!
 //! Source: docs/theory_nets.md, (9).
 
-use super::joints::{NetJoint, TERMS};
+use super::joints::{NetJoint, Reading, TERMS};
 use super::net::{Net, on};
+use super::net_rows::{NetRow, NetRows};
 use super::rows::On;
 use super::series::{Series, rotating};
-use super::steps::{Placement, Screw};
+use super::steps::{Move, Placement, Screw};
 use crate::loops::description::described_loop::{Column, Described};
 use crate::loops::equation::chain::AGREE;
 use crate::loops::equation::rotations::{Rotation, short_way};
 use crate::outcome::RowStatus;
-use crate::rigid::Vec3;
+use crate::rigid::{Vec3, cross, dot, norm, sub};
 use crate::stopping;
 use crate::taylor::Taylor;
+
+/// Directions whose sine is less are parallel: rounding.
+const PARALLEL: f64 = 1e-12;
 
 /// A column of the description.
 #[derive(Clone, Copy, Debug)]
@@ -38,32 +42,15 @@ pub struct DescribedNet {
     relative: Net,
     joints: Vec<NetJoint>,
     columns: Vec<Outer>,
+    /// What all columns of the description are the sums of, where all are: hinges that turn about one direction with all between their links.
+    sums: Option<Vec<Sum>>,
 }
 
-/// A row of a circuit: columns and their rates as they are followed, at unit speed of the input or by a law.
+/// The sum of columns times numbers, and what it reads where these are zero.
 #[derive(Clone, Debug)]
-pub struct NetRow {
-    pub(super) values: Vec<f64>,
-    pub(super) balls: Vec<Rotation>,
-    pub(super) rates: [Vec<f64>; TERMS - 1],
-    /// What it holds.
-    pub status: RowStatus,
-    /// Its pass between dead centres of the input.
-    pub pass: usize,
-    /// The closure error [rad, or relative to the size].
-    pub residual: f64,
-    /// The condition number of its Jacobian.
-    pub condition: f64,
-}
-
-/// The rows of a circuit.
-#[derive(Clone, Debug)]
-pub struct NetRows {
-    /// The rows.
-    pub rows: Vec<NetRow>,
-    /// Whole turns to be added to each column of the description.
-    pub(super) offsets: Vec<f64>,
-    pub(super) speed: f64,
+struct Sum {
+    of: Vec<(usize, f64)>,
+    rest: f64,
 }
 
 impl Described for DescribedNet {
@@ -94,8 +81,14 @@ impl DescribedNet {
                 columns.push(Outer { joint, slides, followed });
             }
         }
-        let joints = joints.into_iter().map(|(joint, _)| joint).collect();
-        Self { relative: net.relative(), net, joints, columns }
+        let joints: Vec<NetJoint> = joints.into_iter().map(|(joint, _)| joint).collect();
+        let sum = |column: &Outer| match (column.followed, &joints[column.joint]) {
+            (_, joint) if joint.reading.slides().len() == 3 => None,
+            (Some(inner), _) => Some(Sum { of: vec![(inner, 1.0)], rest: 0.0 }),
+            (None, joint) => turned_by(&net, joint),
+        };
+        let sums = columns.iter().map(sum).collect();
+        Self { relative: net.relative(), net, joints, columns, sums }
     }
 
     /// A column as it is followed; `None` of a joint that is not in the tree.
@@ -157,8 +150,7 @@ impl DescribedNet {
             let read = described.values(self.net.size, [&links[0], &links[1]]);
             let own = self.columns.iter().filter(|c| c.joint == joint);
             for (column, read) in own.zip(read) {
-                // of a ball it is read off, since a tree's three turns have two ways to one pose
-                let value = match column.followed.filter(|_| described.reading.slides().len() < 3) {
+                let value = match column.followed.filter(|_| !self.is_read_off(*column)) {
                     Some(inner) => Taylor(columns.values[inner].0),
                     None => read.unwrap_or(undetermined),
                 };
@@ -170,22 +162,30 @@ impl DescribedNet {
 
     /// Values and three derivatives of every column of the description, order by order: `4 x rows x columns`; turns go on along the rows.
     pub fn joint_table(&self, rows: &NetRows) -> Vec<f64> {
-        let (count, columns) = (rows.rows.len(), self.columns.len());
+        let (count, columns) = (rows.len(), self.columns.len());
         let mut out = vec![f64::NAN; TERMS * count * columns];
         let mut before: Vec<Option<f64>> = vec![None; columns];
-        for (n, row) in rows.rows.iter().enumerate() {
+        let is_read = |c: usize| {
+            let column = self.columns[c];
+            column.followed.is_none() || self.is_read_off(column)
+        };
+        let read: Vec<bool> = (0..columns).map(is_read).collect();
+        let mut table = vec![Taylor([f64::NAN; TERMS]); columns];
+        for (n, row) in rows.rows().enumerate() {
             stopping::piece();
-            if row.status == RowStatus::NoSolution {
+            if row.status() == RowStatus::NoSolution {
                 continue;
             }
-            for (c, series) in self.table(&row.series(&self.net, rows.speed)).iter().enumerate() {
+            match &self.sums {
+                Some(sums) => self.add_up(sums, row, rows.speed, &mut table),
+                None => table = self.table(&series(row, &self.net, rows.speed)),
+            }
+            for (c, series) in table.iter().enumerate() {
                 for order in 1..TERMS {
                     out[(order * count + n) * columns + c] = series.derivative(order);
                 }
                 let mut value = series.value() + rows.offsets[c];
-                let column = self.columns[c];
-                let read = column.followed.is_none() || self.joints[column.joint].reading.slides().len() == 3;
-                if read && !column.slides && value.is_finite() {
+                if read[c] && !self.columns[c].slides && value.is_finite() {
                     if let Some(b) = before[c] {
                         value = b + short_way(value - b);
                     }
@@ -197,18 +197,43 @@ impl DescribedNet {
         out
     }
 
+    /// Whether a column is read off the links even where it is followed: of a ball it is, since a tree's three turns have two ways to one pose.
+    fn is_read_off(&self, column: Outer) -> bool {
+        self.joints[column.joint].reading.slides().len() == 3
+    }
+
+    /// Each column of the description as the sum of columns of a row.
+    fn add_up(&self, sums: &[Sum], row: NetRow<'_>, speed: f64, table: &mut [Taylor<TERMS>]) {
+        let values = row.values();
+        let mut factors = [1.0; TERMS];
+        for order in 1..TERMS {
+            factors[order] = factors[order - 1] * speed;
+        }
+        for ((series, sum), column) in table.iter_mut().zip(sums).zip(&self.columns) {
+            let unit = if column.slides { self.net.size } else { 1.0 };
+            let add = |from: &[f64]| sum.of.iter().map(|&(c, part)| from[c] * part).sum::<f64>();
+            series.0[0] = (add(values) + sum.rest) * unit;
+            if column.followed.is_none() {
+                series.0[0] = short_way(series.0[0]);
+            }
+            for order in 1..TERMS {
+                series.0[order] = add(row.rates(order - 1)) * (factors[order] * unit / order as f64);
+            }
+        }
+    }
+
     /// Position, velocity, acceleration and jerk of a point of a link, `4 x rows x 3`, in the report frame; `at` is where it is drawn.
     /// Rows without a pose are NaN; at dead centres only the position is given.
     pub fn point(&self, rows: &NetRows, link: On, at: Vec3) -> Vec<f64> {
-        let count = rows.rows.len();
+        let count = rows.len();
         let mut out = vec![f64::NAN; TERMS * count * 3];
         let small = at.map(|x| x / self.net.size);
-        for (n, row) in rows.rows.iter().enumerate() {
+        for (n, row) in rows.rows().enumerate() {
             stopping::piece();
-            if row.status == RowStatus::NoSolution {
+            if row.status() == RowStatus::NoSolution {
                 continue;
             }
-            let poses = self.poses(&row.series(&self.net, rows.speed));
+            let poses = self.poses(&series(row, &self.net, rows.speed));
             let place = on(&poses, link).carry(&small);
             for k in 0..3 {
                 let series = Taylor(place[k].0);
@@ -221,78 +246,50 @@ impl DescribedNet {
     }
 }
 
-impl NetRows {
-    /// Every row as numbers, from which `from_numbers` makes it again to the last bit; how many columns and balls are followed, turns to be
-    /// added to each column of the description, and the speed.
-    pub fn numbers(&self) -> (Vec<f64>, [usize; 2], Vec<f64>, f64) {
-        let sizes = self
-            .rows
-            .first()
-            .map_or([0; 2], |row| [row.values.len(), row.balls.len()]);
-        let mut numbers = Vec::with_capacity(self.rows.len() * Self::count(sizes));
-        for row in &self.rows {
-            numbers.extend(&row.values);
-            numbers.extend(row.balls.as_flattened().as_flattened());
-            numbers.extend(row.rates.iter().flatten());
-            numbers.extend([
-                f64::from(row.status as u8),
-                row.pass as f64,
-                row.residual,
-                row.condition,
-            ]);
+/// What a hinge off the tree reads as a sum of columns, if all that turn its links against each other turn about its direction, which then
+/// stays.
+fn turned_by(net: &Net, joint: &NetJoint) -> Option<Sum> {
+    let [before, after] = joint.frames;
+    let axis = before.column(2);
+    if joint.reading != Reading::Turn || norm(sub(axis, after.column(2))) > PARALLEL {
+        return None;
+    }
+    let mut of = Vec::new();
+    let mut rest = dot(before.column(1), after.column(0)).atan2(dot(before.column(0), after.column(0)));
+    for (columns, side) in net.moving(joint.on).into_iter().zip([-1.0, 1.0]) {
+        for c in columns {
+            let step = &net.steps[c];
+            let along = dot(axis, step.axis);
+            match step.moves {
+                Move::Slide => {}
+                Move::Turn if norm(cross(axis, step.axis)) < PARALLEL => {
+                    of.push((c, side * along.signum()));
+                    rest -= side * along.signum() * step.reads;
+                }
+                _ => return None,
+            }
         }
-        (numbers, sizes, self.offsets.clone(), self.speed)
     }
-
-    /// How many numbers a row is.
-    fn count([columns, balls]: [usize; 2]) -> usize {
-        TERMS * columns + 9 * balls + 4
-    }
-
-    /// Rows of what `numbers` gave; `None` where these are no such numbers.
-    pub fn from_numbers(numbers: &[f64], sizes: [usize; 2], offsets: Vec<f64>, speed: f64) -> Option<Self> {
-        let [columns, balls] = sizes;
-        let rows = numbers.chunks(Self::count(sizes)).map(|row| {
-            let (values, rest) = row.split_at_checked(columns)?;
-            let (turned, rest) = rest.split_at_checked(9 * balls)?;
-            let (rates, rest) = rest.split_at_checked((TERMS - 1) * columns)?;
-            let &[status, pass, residual, condition] = rest else {
-                return None;
-            };
-            let ball = |b: usize| std::array::from_fn(|i| std::array::from_fn(|j| turned[9 * b + 3 * i + j]));
-            Some(NetRow {
-                values: values.to_vec(),
-                balls: (0..balls).map(ball).collect(),
-                rates: std::array::from_fn(|order| rates[order * columns..][..columns].to_vec()),
-                status: RowStatus::numbered(status)?,
-                pass: pass as usize,
-                residual,
-                condition,
-            })
-        });
-        Some(Self { rows: rows.collect::<Option<_>>()?, offsets, speed })
-    }
+    Some(Sum { of, rest })
 }
 
-impl NetRow {
-    /// Its columns as series by time, the input at a speed.
-    fn series(&self, net: &Net, speed: f64) -> Columns {
-        let one = |(c, &value): (usize, &f64)| {
-            let mut series = [value; TERMS];
-            let mut factor = 1.0;
-            for order in 1..TERMS {
-                factor *= speed;
-                series[order] = self.rates[order - 1][c] * factor / order as f64;
-            }
-            Series(series)
-        };
-        let values: Vec<Series<f64, TERMS>> = self.values.iter().enumerate().map(one).collect();
-        let balls = net.balls.iter().zip(&self.balls).map(|(&first, ball)| {
-            let spin: [[f64; 3]; TERMS - 1] =
-                std::array::from_fn(|n| std::array::from_fn(|k| values[first + k].0[n + 1] * (n + 1) as f64));
-            rotating(ball, &spin)
-        });
-        let balls = balls.collect();
-        Columns { values, balls }
-    }
+/// The columns of a row as series by time, the input at a speed.
+fn series(row: NetRow<'_>, net: &Net, speed: f64) -> Columns {
+    let one = |(c, &value): (usize, &f64)| {
+        let mut series = [value; TERMS];
+        let mut factor = 1.0;
+        for order in 1..TERMS {
+            factor *= speed;
+            series[order] = row.rates(order - 1)[c] * factor / order as f64;
+        }
+        Series(series)
+    };
+    let values: Vec<Series<f64, TERMS>> = row.values().iter().enumerate().map(one).collect();
+    let balls = net.balls.iter().zip(row.balls()).map(|(&first, ball)| {
+        let spin: [[f64; 3]; TERMS - 1] =
+            std::array::from_fn(|n| std::array::from_fn(|k| values[first + k].0[n + 1] * (n + 1) as f64));
+        rotating(&ball, &spin)
+    });
+    let balls = balls.collect();
+    Columns { values, balls }
 }

@@ -1,18 +1,23 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `modes`, `described`, `sized`, `search`, `motion`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `modes`, `net_rows`, `described`, `in_plane`, `dyad_sides`, `dyad_rows`, `dyad_quads`, `sized`, `search`, `motion`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
 
 mod described;
+mod dyad_quads;
+mod dyad_rows;
+mod dyad_sides;
 mod dyads;
 mod freedoms;
+mod in_plane;
 mod joints;
 mod modes;
 mod monodromy;
 mod motion;
 mod net;
+mod net_rows;
 mod order;
 mod planar_block;
 mod planar_family;
@@ -22,8 +27,10 @@ mod series;
 mod sized;
 mod square;
 mod steps;
+#[cfg(test)]
+mod tests;
 
-pub use described::{DescribedNet, NetRow, NetRows};
+pub use described::DescribedNet;
 pub use dyads::{Dyad, Pair};
 pub use freedoms::{Freedoms, freedoms};
 pub use joints::{NetJoint, Reading};
@@ -33,6 +40,7 @@ pub use motion::{
     net_motion, ratio_at_rest, searched_modes,
 };
 pub use net::{Facing, Net};
+pub use net_rows::{NetRow, NetRows};
 pub use order::{Block, Edge, Unbalanced, biconnected_parts, blocks};
 pub use planar_block::{BlockJoint, PlanarBlock};
 pub use rows::Row;

@@ -4,9 +4,10 @@
 //!
 //! Source: docs/theory_nets.md, (8).
 
-use super::described::{DescribedNet, NetRow, NetRows};
+use super::described::DescribedNet;
 use super::freedoms::{Freedoms, freedoms};
 use super::modes::{Part, modes};
+use super::net_rows::NetRows;
 use super::search::{STARTS, STARTS_OF_MANY, is_isolated, searched, settled};
 use super::sized::SizedNet;
 use crate::loops::circuits::change_points as curve_points;
@@ -104,6 +105,10 @@ pub enum NetThrough {
 /// Work on a net whose size the compiler knows.
 trait Sized {
     type Out;
+    /// What the net is made of over an input, where that is known.
+    fn parts(&self) -> Option<(&[Part], usize)> {
+        None
+    }
     fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> Self::Out;
 }
 
@@ -117,7 +122,11 @@ fn sized<W: Sized>(described: &DescribedNet, work: W) -> Result<W::Out, NotFollo
     let net = &described.net;
     // one size for all: each costs as much code as the chain's
     if count <= MOST_COLUMNS {
-        Ok(work.run(&SizedNet::<MOST_COLUMNS, 16, 5>::new(net, &independent)))
+        let mut sized = SizedNet::<MOST_COLUMNS, 16, 5>::new(net, &independent);
+        if let Some((parts, input)) = work.parts() {
+            sized = sized.made_of(parts, input, net.size);
+        }
+        Ok(work.run(&sized))
     } else {
         Err(NotFollowed::Columns(count))
     }
@@ -161,6 +170,9 @@ pub fn net_motion(
     struct Motion<'a>(Asked<'a>, Option<&'a [Part]>);
     impl Sized for Motion<'_> {
         type Out = NetMotion;
+        fn parts(&self) -> Option<(&[Part], usize)> {
+            Some((self.1?, self.0.ends.0.inner))
+        }
         fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> NetMotion {
             self.0.motion(net, self.1)
         }
@@ -363,16 +375,13 @@ fn circuit_of<const C: usize, const R: usize, const B: usize>(
     circuit: OverInput<SizedNet<C, R, B>>,
 ) -> (NetCircuit, Reach) {
     let used = net.used();
-    let rows = circuit.rows.iter().map(|row| NetRow {
-        values: net.values(&row.at).to_vec(),
-        balls: net.balls(&row.at).to_vec(),
-        rates: row.rates.map(|rates| rates[..used].to_vec()),
-        status: row.status,
-        pass: row.pass,
-        residual: row.residual,
-        condition: row.condition,
-    });
-    let rows = NetRows { rows: rows.collect(), offsets: circuit.offsets, speed: circuit.speed };
+    let sizes = [used, net.net.balls.len()];
+    let mut rows = NetRows::new(sizes, circuit.rows.len(), circuit.offsets, circuit.speed);
+    for row in &circuit.rows {
+        let rates = row.rates.iter().map(|rates| &rates[..used]);
+        let besides = (row.status, row.pass, row.residual, row.condition);
+        rows.push(net.values(&row.at), net.balls(&row.at), rates, besides);
+    }
     (NetCircuit { rows, measures: circuit.measures }, circuit.reach)
 }
 

@@ -152,7 +152,11 @@ impl Net {
 
     /// The columns that move the one link of a row and not the other, for each of its two.
     pub(super) fn sides(&self, row: &Row) -> [Vec<usize>; 2] {
-        let on = row.on();
+        self.moving(row.on())
+    }
+
+    /// The columns that move the one of two links and not the other, for each of the two.
+    pub(super) fn moving(&self, on: [On; 2]) -> [Vec<usize>; 2] {
         let carries = |c: usize, side: usize| on[side].is_some_and(|step| self.carries(c, step));
         [0, 1].map(|side| {
             let columns = 0..self.steps.len();

@@ -11,7 +11,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub(super) struct Series<N, const TERMS: usize>(pub [N; TERMS]);
 
 /// A rotation with the series of its angular velocity, in the frame before it, by `B' = w x B`.
-#[inline]
+#[inline(always)]
 pub(super) fn rotating<N: Number, const TERMS: usize>(
     now: &Rotation<N>,
     spin: &[[N; 3]],
@@ -40,7 +40,7 @@ macro_rules! termwise {
     ($($operator:ident $name:ident $sign:tt),*) => { $(
         impl<N: Number, const TERMS: usize> $operator for Series<N, TERMS> {
             type Output = Self;
-            #[inline]
+            #[inline(always)]
             fn $name(self, other: Self) -> Self {
                 let mut out = self.0;
                 for k in 0..TERMS {
@@ -56,7 +56,7 @@ termwise!(Add add +, Sub sub -);
 
 impl<N: Number, const TERMS: usize> Neg for Series<N, TERMS> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Self::splat(0.0) - self
     }
@@ -64,7 +64,7 @@ impl<N: Number, const TERMS: usize> Neg for Series<N, TERMS> {
 
 impl<N: Number, const TERMS: usize> Mul for Series<N, TERMS> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self::splat(0.0).plus_product(self, other)
     }
@@ -72,7 +72,7 @@ impl<N: Number, const TERMS: usize> Mul for Series<N, TERMS> {
 
 impl<N: Number, const TERMS: usize> Div for Series<N, TERMS> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
         // q d = n, order by order
         let inverse = N::splat(1.0) / other.0[0];
@@ -88,14 +88,14 @@ impl<N: Number, const TERMS: usize> Div for Series<N, TERMS> {
 }
 
 impl<N: Number, const TERMS: usize> Number for Series<N, TERMS> {
-    #[inline]
+    #[inline(always)]
     fn splat(x: f64) -> Self {
         let mut out = [N::splat(0.0); TERMS];
         out[0] = N::splat(x);
         Self(out)
     }
 
-    #[inline]
+    #[inline(always)]
     fn plus_product(self, a: Self, b: Self) -> Self {
         let mut out = self.0;
         for k in 0..TERMS {
@@ -106,7 +106,7 @@ impl<N: Number, const TERMS: usize> Number for Series<N, TERMS> {
         Self(out)
     }
 
-    #[inline]
+    #[inline(always)]
     fn minus_product(self, a: Self, b: Self) -> Self {
         let mut out = self.0;
         for k in 0..TERMS {
@@ -117,7 +117,7 @@ impl<N: Number, const TERMS: usize> Number for Series<N, TERMS> {
         Self(out)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         // r r = x, order by order
         let mut out = self.0;
@@ -132,7 +132,7 @@ impl<N: Number, const TERMS: usize> Number for Series<N, TERMS> {
         Self(out)
     }
 
-    #[inline]
+    #[inline(always)]
     fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
         let mut out = no.0;
         for k in 0..TERMS {
@@ -141,7 +141,7 @@ impl<N: Number, const TERMS: usize> Number for Series<N, TERMS> {
         Self(out)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let zero = N::splat(0.0);
         let (mut sine, mut cosine) = ([zero; TERMS], [zero; TERMS]);
@@ -154,6 +154,15 @@ impl<N: Number, const TERMS: usize> Number for Series<N, TERMS> {
             }
         }
         (Self(sine), Self(cosine))
+    }
+
+    #[inline(always)]
+    fn scaled(self, by: f64) -> Self {
+        let mut out = self.0;
+        for k in 0..TERMS {
+            out[k] = out[k] * N::splat(by);
+        }
+        Self(out)
     }
 }
 

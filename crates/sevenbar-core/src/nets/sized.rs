@@ -5,16 +5,20 @@
 //!
 //! Source: docs/theory_nets.md, (8).
 
+use super::dyad_quads::made;
+use super::dyad_rows::DyadRows;
+use super::modes::Part;
 use super::net::{Net, on};
 use super::rows::Row;
 use super::series::{Series, rotating};
 use super::square::Square;
 use super::steps::{Move, Placement, Screw};
 use crate::loops::equation::chain::AGREE;
-use crate::loops::equation::closed::{At, Closed, Inverse, Joint, Placed, Screws};
+use crate::loops::equation::closed::{At, Closed, Explicits, Inverse, Joint, Placed, Screws, Stretch};
 use crate::loops::equation::rotations::{Rotation, dot3, product};
 use crate::number::Number;
 use crate::rigid::{Vec3, dot, norm, sub};
+use crate::vectors::QUAD;
 use std::fmt::Debug;
 
 /// A net of one freedom with at most so many columns and one row less; lengths relative to the size.
@@ -23,6 +27,8 @@ pub(super) struct SizedNet<const C: usize, const R: usize, const B: usize> {
     joints: Vec<Joint>,
     first: Vec<usize>,
     cycles: Vec<Cycle>,
+    /// Its rows in closed form, if it is made of dyads.
+    explicit: Option<DyadRows>,
 }
 
 /// What a row says of the cycle that it closes.
@@ -136,7 +142,14 @@ impl<const C: usize, const R: usize, const B: usize> SizedNet<C, R, B> {
             column += joint.columns();
         }
         let cycles = (0..net.rows.len()).map(|r| Cycle::of(&net, r)).collect();
-        Self { joints, first, cycles, net }
+        Self { joints, first, cycles, net, explicit: None }
+    }
+
+    /// The same with rows in closed form over an input, if its parts, as long as its size says, are all dyads.
+    pub fn made_of(mut self, parts: &[Part], input: usize, size: f64) -> Self {
+        let besides = (C - self.used()) as f64;
+        self.explicit = DyadRows::of(&self.net, parts, input, size, besides);
+        self
     }
 
     /// The place of columns, a ball's three turns as its rotation.
@@ -202,6 +215,8 @@ impl<const C: usize, const R: usize, const B: usize> SizedNet<C, R, B> {
 
 impl<const C: usize, const R: usize, const B: usize> Closed for SizedNet<C, R, B> {
     const SIDE_BY_SIDE: bool = false;
+
+    const EXPLICIT: bool = true;
 
     type Columns<T: Copy + Debug> = [T; C];
     type Rows<T: Copy + Debug> = [T; R];
@@ -325,6 +340,24 @@ impl<const C: usize, const R: usize, const B: usize> Closed for SizedNet<C, R, B
             fifth = fifth.plus_product(one, one);
         }
         [inverse_norm * third.sqrt(), inverse_norm * fifth.sqrt()]
+    }
+
+    fn stretch(&self, input: usize, ends: [&At<Self>; 2]) -> Option<Stretch<Self>> {
+        let explicit = self.explicit.as_ref().filter(|e| e.driven() == input)?;
+        let signs = explicit.sides(ends.map(|at| self.values(at)))?;
+        Some(Stretch { signs, from: ends[0].values })
+    }
+
+    fn explicit(
+        &self,
+        on: &Stretch<Self>,
+        values: &[f64; QUAD],
+        given: &[f64; 3],
+        rows: &mut Explicits<Self>,
+    ) {
+        if let Some(dyads) = &self.explicit {
+            made(dyads, on, values, given, rows);
+        }
     }
 
     fn across<N: Number>(&self, far: &[N; R], _square: N) -> N {

@@ -17,7 +17,7 @@ pub(super) struct Square<N, const C: usize> {
 }
 
 impl<N: Number, const C: usize> Square<N, C> {
-    #[inline]
+    #[inline(always)]
     pub fn new(mut columns: [[N; C]; C], count: usize) -> Self {
         let (zero, one) = (N::splat(0.0), N::splat(1.0));
         let (mut inverses, mut diagonal) = ([zero; C], [zero; C]);
@@ -43,7 +43,7 @@ impl<N: Number, const C: usize> Square<N, C> {
     }
 
     /// The solution of `A x = b`.
-    #[inline]
+    #[inline(always)]
     pub fn solve(&self, mut b: [N; C]) -> [N; C] {
         for c in 0..self.count {
             reflect(&self.columns[c], self.inverses[c], &mut b, c..self.count);
@@ -59,7 +59,7 @@ impl<N: Number, const C: usize> Square<N, C> {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn reflect<N: Number, const C: usize>(v: &[N; C], inverse: N, x: &mut [N; C], rows: std::ops::Range<usize>) {
     let mut sum = N::splat(0.0);
     for k in rows.clone() {

@@ -7,8 +7,9 @@
 
 use super::curve::{Curve, End};
 use super::follow::{self, Start};
-use crate::loops::equation::closed::{At, Closed, free_direction};
+use crate::loops::equation::closed::{At, Closed};
 use crate::loops::equation::dense::Array;
+use crate::loops::equation::free_direction::free_direction;
 use crate::loops::modes::many_starts::same;
 
 /// A pivot of the screws below this part of the greatest may be zero: such places are left to the ordinary way.

@@ -12,7 +12,7 @@ use super::dense::Array;
 use super::rotations::{Rotation, product, rotation, rotation_vector, short_way, squared_up, transposed};
 use crate::number::Number;
 use crate::rigid::Pose;
-use crate::vectors::{LANES, Vector};
+use crate::vectors::{LANES, QUAD, Vector};
 use std::fmt::Debug;
 
 /// A joint with its columns; a ball has three, the others one.
@@ -34,6 +34,30 @@ impl Joint {
     }
 }
 
+/// Most signs by which a stretch of a pass is told from others at the same inputs.
+pub(crate) const MOST_SIGNS: usize = 4;
+
+/// The signs of a stretch of a pass, and the columns at its first end.
+#[derive(Debug)]
+pub(crate) struct Stretch<S: Closed> {
+    pub signs: [f64; MOST_SIGNS],
+    pub from: S::Columns<f64>,
+}
+
+/// A row in closed form: series of the rates, the closure error, the condition number of `A` with the input's row.
+#[derive(Debug)]
+pub(crate) struct Explicit<S: Closed> {
+    pub at: At<S>,
+    pub rates: [S::Columns<f64>; 3],
+    pub residual: f64,
+    pub condition: f64,
+    /// Whether its closed form is sure.
+    pub is_sure: bool,
+}
+
+/// Rows in closed form that are made at once.
+pub(crate) type Explicits<S> = [Explicit<S>; QUAD];
+
 /// What closes.
 pub(crate) trait Closed: Sized {
     /// One for each column.
@@ -49,6 +73,9 @@ pub(crate) trait Closed: Sized {
 
     /// Whether curves and rows are followed eight side by side in vector lanes; else one after the other, by code of a fourth of the size.
     const SIDE_BY_SIDE: bool = true;
+
+    /// Whether some have rows in closed form.
+    const EXPLICIT: bool = false;
 
     /// How many columns.
     const COLUMNS: usize = <Self::Columns<f64> as Array<f64>>::COUNT;
@@ -109,6 +136,21 @@ pub(crate) trait Closed: Sized {
     ///
     /// Source: docs/theory.md, (8).
     fn across<N: Number>(&self, far: &Self::Cycles<N>, square: N) -> N;
+
+    /// The stretch of a pass between two places, if its rows over an input have a closed form.
+    fn stretch(&self, _input: usize, _ends: [&At<Self>; 2]) -> Option<Stretch<Self>> {
+        None
+    }
+
+    /// The rows of a stretch at inputs, of which derivatives by time are given; those of no net are not sure.
+    fn explicit(
+        &self,
+        _on: &Stretch<Self>,
+        _values: &[f64; QUAD],
+        _given: &[f64; 3],
+        _rows: &mut Explicits<Self>,
+    ) {
+    }
 
     /// Whether joints that move with one freedom leave constraints that say what others say: as many columns as there can be do not.
     fn is_redundant(&self) -> bool {
@@ -217,7 +259,7 @@ pub(crate) struct Placed<S: Closed, N: Number = f64> {
 #[derive(Debug)]
 pub(crate) struct Inverse<S: Closed, N: Number = f64>(pub S::Bordered<S::Columns<N>>);
 
-copied!(At<S, N>, Placed<S, N>, Inverse<S, N>);
+copied!(At<S, N>, Placed<S, N>, Inverse<S, N>, Explicit<S>);
 
 impl<S: Closed> At<S> {
     /// All joints at zero.
@@ -227,6 +269,15 @@ impl<S: Closed> At<S> {
             values: S::Columns::filled(0.0),
             balls: S::Balls::filled(Pose::STILL.rotation),
         }
+    }
+}
+
+impl<S: Closed> Explicit<S> {
+    /// Room for rows.
+    pub fn none() -> Explicits<S> {
+        let rates = [S::Columns::filled(0.0); 3];
+        let (residual, condition) = (f64::NAN, f64::NAN);
+        [Self { at: At::zero(), rates, residual, condition, is_sure: false }; QUAD]
     }
 }
 
@@ -366,118 +417,4 @@ pub(crate) fn input_row<N: Number, C: Array<N>>(input: usize) -> C {
     let mut row = C::filled(N::splat(0.0));
     row[input] = N::splat(1.0);
     row
-}
-
-/// The direction that rows leave free of one column more, oriented so that it makes the determinant positive as one more row; none where
-/// a pivot is below this part of the greatest number. It changes continuously with the matrix.
-///
-/// Source: docs/theory_many.md, (9).
-pub(crate) fn free_direction<S: Closed>(columns: &Screws<S>, least_pivot: f64) -> Option<S::Columns<f64>> {
-    let mut a: S::Rows<S::Columns<f64>> = Array::from_fn(|r| Array::from_fn(|c| columns[c][r]));
-    let mut order: S::Columns<usize> = Array::from_fn(|c| c);
-    let mut positive = true;
-    let mut greatest = 0.0;
-    for n in 0..S::ROWS {
-        let (mut row, mut column, mut size) = (n, n, -1.0);
-        for r in n..S::ROWS {
-            for c in n..S::COLUMNS {
-                if a[r][c].abs() > size {
-                    (row, column, size) = (r, c, a[r][c].abs());
-                }
-            }
-        }
-        greatest = f64::max(greatest, size);
-        if size <= least_pivot * greatest {
-            return None;
-        }
-        a.as_mut().swap(n, row);
-        order.as_mut().swap(n, column);
-        for r in a.as_mut() {
-            r.as_mut().swap(n, column);
-        }
-        positive ^= (row != n) ^ (column != n) ^ (a[n][n] < 0.0);
-        for r in n + 1..S::ROWS {
-            let factor = a[r][n] / a[n][n];
-            for c in n..S::COLUMNS {
-                let pivot = a[n][c];
-                a[r][c] -= factor * pivot;
-            }
-        }
-    }
-    let mut free = S::Columns::filled(0.0);
-    free[S::ROWS] = if positive { 1.0 } else { -1.0 };
-    for n in (0..S::ROWS).rev() {
-        let sum: f64 = (n + 1..S::COLUMNS).map(|c| a[n][c] * free[c]).sum();
-        free[n] = -sum / a[n][n];
-    }
-    let length = free.as_ref().iter().map(|x| x * x).sum::<f64>().sqrt();
-    let mut out = S::Columns::filled(0.0);
-    for (place, x) in order.as_ref().iter().zip(free.as_ref()) {
-        out[*place] = x / length;
-    }
-    Some(out)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::loops::equation::chain::Chain;
-    use crate::loops::equation::dense::{COLUMNS, Columns};
-
-    #[test]
-    fn the_free_direction_is_the_oriented_one_of_the_minors() {
-        for seed in 0..50 {
-            let columns: [[f64; 6]; COLUMNS] = std::array::from_fn(|c| {
-                std::array::from_fn(|r| {
-                    ((1 + seed) as f64 * (3 * c + 7 * r * r + c * c * r + 1) as f64).sin()
-                })
-            });
-            let free = free_direction::<Chain>(&columns, 1e-9).unwrap();
-            // by Laplace along the seventh row
-            let minor = |left_out: usize| {
-                let kept: Vec<[f64; 6]> = (0..COLUMNS)
-                    .filter(|&c| c != left_out)
-                    .map(|c| columns[c])
-                    .collect();
-                determinant(kept)
-            };
-            let minors: Columns = std::array::from_fn(|c| if c % 2 == 0 { minor(c) } else { -minor(c) });
-            let length = minors.iter().map(|x| x * x).sum::<f64>().sqrt();
-            for c in 0..COLUMNS {
-                assert!(
-                    (free[c] - minors[c] / length).abs() < 1e-9,
-                    "{seed} {free:?} {minors:?}"
-                );
-            }
-        }
-        let mut repeated: [[f64; 6]; COLUMNS] = std::array::from_fn(|c| {
-            std::array::from_fn(|r| ((3 * c + 7 * r * r + c * c * r + 1) as f64).sin())
-        });
-        for row in 0..COLUMNS {
-            repeated[row][5] = 2.0 * repeated[row][3];
-        }
-        assert!(free_direction::<Chain>(&repeated, 1e-9).is_none());
-    }
-
-    fn determinant(a: Vec<[f64; 6]>) -> f64 {
-        fn of(a: &[Vec<f64>]) -> f64 {
-            if a.is_empty() {
-                return 1.0;
-            }
-            (0..a.len())
-                .map(|k| {
-                    let rest: Vec<Vec<f64>> = (0..a.len())
-                        .filter(|&c| c != k)
-                        .map(|c| a[c][1..].to_vec())
-                        .collect();
-                    if k % 2 == 0 {
-                        a[k][0] * of(&rest)
-                    } else {
-                        -a[k][0] * of(&rest)
-                    }
-                })
-                .sum()
-        }
-        of(&a.iter().map(|c| c.to_vec()).collect::<Vec<_>>())
-    }
 }

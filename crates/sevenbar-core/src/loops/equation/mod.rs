@@ -6,6 +6,7 @@ pub(crate) mod closure;
 pub(crate) mod complex_frame;
 pub(crate) mod dense;
 pub(crate) mod flat;
+pub(crate) mod free_direction;
 pub(crate) mod kinds;
 pub(crate) mod lanes;
 pub(crate) mod rotations;

@@ -6,11 +6,12 @@ use crate::loops::circuits::curve::{self, Curve, Node};
 use crate::loops::circuits::turnings::{self, begun_at, insert, turns_at};
 use crate::loops::circuits::walked_again;
 use crate::loops::equation::chain::Chain;
-use crate::loops::equation::closed::{At, Closed};
+use crate::loops::equation::closed::{At, Closed, Explicit, Stretch};
 use crate::loops::equation::dense::{Array, combined, dot, length};
 use crate::loops::rates::velocities::ORDERS;
 use crate::outcome::RowStatus;
-use crate::vectors::LANES;
+use crate::stopping;
+use crate::vectors::{LANES, QUAD};
 use std::f64::consts::TAU;
 
 /// A row nearer than this part of a grid step to a dead centre is that dead centre's.
@@ -120,6 +121,18 @@ impl<'a, S: Closed> Passes<'a, S> {
         if let Some(row) = self.crossing_row(pass, segment, value) {
             return Some(row);
         }
+        if let Some(on) = self.stretch(segment) {
+            let mut made = Explicit::none();
+            self.chain.explicit(&on, &[value; QUAD], rates, &mut made);
+            if made[0].is_sure {
+                return Some(Row::explicit(pass, &made[0]));
+            }
+        }
+        self.newton_row(pass, segment, value, rates)
+    }
+
+    /// The row of a segment at an input by Newton's method.
+    fn newton_row(&self, pass: usize, segment: usize, value: f64, rates: &[f64; ORDERS]) -> Option<Row<S>> {
         let rough = self.rough_in(segment, value);
         let node = &self.curve.nodes[rough.node];
         row::solved(self.chain, self.input, &self.start(&rough), value, rates)
@@ -167,6 +180,15 @@ impl<'a, S: Closed> Passes<'a, S> {
             residual: solved.residual,
             condition: solved.condition,
         })
+    }
+
+    /// What tells a segment from others at the same inputs, if its rows have a closed form.
+    fn stretch(&self, segment: usize) -> Option<Stretch<S>> {
+        let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
+        let smooth = S::EXPLICIT && !a.is_crossing() && !b.is_crossing();
+        smooth
+            .then(|| self.chain.stretch(self.input, [&a.at, &b.at]))
+            .flatten()
     }
 
     /// The row beside or at a change point, between the nodes where curves are cut: the pose, and no rates.
@@ -383,6 +405,48 @@ impl<S: Closed> Passes<'_, S> {
         let rising = p.end > p.start;
         let mut segment = p.from;
         rows.reserve_exact(values.size_hint().0);
+        if S::EXPLICIT {
+            let mut values = values.peekable();
+            let mut made = Explicit::none();
+            while let Some(&first) = values.peek() {
+                stopping::piece();
+                while segment + 1 < p.to && (value_at(segment + 1) <= first) == rising {
+                    segment += 1;
+                }
+                let is_own = |value: f64| segment + 1 >= p.to || (value_at(segment + 1) <= value) != rising;
+                let stretch = self.stretch(segment);
+                // those of one segment, four by four
+                while values.peek().is_some_and(|&value| is_own(value)) {
+                    let mut four = [0.0; QUAD];
+                    let mut count = 0;
+                    while count < QUAD
+                        && let Some(value) = values.next_if(|&value| is_own(value))
+                    {
+                        four[count..].fill(value);
+                        count += 1;
+                    }
+                    if let Some(on) = &stretch {
+                        self.chain.explicit(on, &four, &UNIT, &mut made);
+                    }
+                    let own = &made[..count];
+                    if stretch.is_some() && own.iter().all(|row| row.is_sure) {
+                        rows.extend(own.iter().map(|row| Row::explicit(pass, row)));
+                        continue;
+                    }
+                    for (value, explicit) in four.iter().zip(own) {
+                        if stretch.is_some() && explicit.is_sure {
+                            rows.push(Row::explicit(pass, explicit));
+                        } else {
+                            let row = self
+                                .crossing_row(pass, segment, *value)
+                                .or_else(|| self.newton_row(pass, segment, *value, &UNIT));
+                            rows.push(row.unwrap_or_else(|| Row::missing(pass)));
+                        }
+                    }
+                }
+            }
+            return;
+        }
         let mut values = values.peekable();
         while values.peek().is_some() {
             let starts: Vec<Near<S>> = values

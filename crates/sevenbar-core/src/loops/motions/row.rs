@@ -1,7 +1,7 @@
 //! A row of a circuit as the chain has it.
 
 use crate::loops::equation::chain::Chain;
-use crate::loops::equation::closed::{At, Closed, Inverse, Placed, copied, input_row};
+use crate::loops::equation::closed::{At, Closed, Explicit, Inverse, Placed, copied, input_row};
 use crate::loops::equation::dense::{Array, length};
 use crate::loops::rates::velocities::{self, ORDERS, Rates};
 use crate::number::Number;
@@ -34,6 +34,13 @@ impl<S: Closed> Row<S> {
             }
         }
         rates
+    }
+
+    /// One in closed form.
+    #[inline(always)]
+    pub fn explicit(pass: usize, own: &Explicit<S>) -> Self {
+        let Explicit { at, rates, residual, condition, .. } = *own;
+        Self { at, rates, status: RowStatus::Ok, pass, residual, condition }
     }
 
     /// The row at an input beyond a limit.
