@@ -1,4 +1,4 @@
-//! Rows of dyads four at once in vector lanes, or one by one where the machine has no such registers.
+//! Rows of dyads four at once in vector lanes, or one by one on processors of another kind.
 
 use super::dyad_rows::{DyadRows, Found};
 use super::joints::TERMS;
@@ -18,7 +18,8 @@ pub(super) fn made<S: Closed>(
     rows: &mut Explicits<S>,
 ) {
     let has_quads = dispatch_quads(Made { dyads, on, values, given, rows: &mut *rows });
-    if !has_quads {
+    // an x86 processor without the registers is older than 2014: it leaves rows to Newton's method, and the code is not twice as long
+    if cfg!(not(target_arch = "x86_64")) && !has_quads {
         for k in 0..QUAD {
             Made { dyads, on, values, given, rows: &mut *rows }.one(k);
         }
