@@ -313,7 +313,7 @@ impl DyadRows {
     /// How well all rows close where links are, and the condition number of `A` with the driven column as one more row.
     #[inline(always)]
     fn close<M: Number>(&self, poses: &Poses<M>, found: &mut Found<M>) {
-        let (zero, one) = (M::splat(0.0), M::splat(1.0));
+        let zero = M::splat(0.0);
         let count = self.columns.len() - 1;
         let mut a = [[zero; MOST - 1]; MOST - 1];
         let mut driven = [zero; MOST - 1];
@@ -351,17 +351,10 @@ impl DyadRows {
         }
         // the inverse of the bordered matrix: that of the block without the driven column, and the free motion
         let block = Square::new(a, count);
-        let mut inverse = one;
-        for r in 0..=count {
-            let mut right = driven;
-            if r < count {
-                right = [zero; MOST - 1];
-                right[r] = one;
-            }
-            let solved = block.solve(right);
-            for x in &solved[..count] {
-                inverse = inverse.plus_product(*x, *x);
-            }
+        let mut inverse = block.inverse_square() + M::splat(1.0);
+        let free = block.solve(driven);
+        for x in &free[..count] {
+            inverse = inverse.plus_product(*x, *x);
         }
         found.residual = residual.sqrt();
         found.condition = (squares * inverse).sqrt();

@@ -57,6 +57,26 @@ impl<N: Number, const C: usize> Square<N, C> {
         }
         x
     }
+
+    /// The sum of the squares of all entries of the inverse: those of `R^-1`, since `Q` turns only.
+    #[inline(always)]
+    pub fn inverse_square(&self) -> N {
+        let mut sum = N::splat(0.0);
+        for c in 0..self.count {
+            let mut x = [N::splat(0.0); C];
+            x[c] = self.diagonal[c];
+            sum = sum.plus_product(x[c], x[c]);
+            for r in (0..c).rev() {
+                let mut right = N::splat(0.0);
+                for k in r + 1..=c {
+                    right = right.minus_product(self.columns[k][r], x[k]);
+                }
+                x[r] = right * self.diagonal[r];
+                sum = sum.plus_product(x[r], x[r]);
+            }
+        }
+        sum
+    }
 }
 
 #[inline(always)]
