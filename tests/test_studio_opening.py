@@ -38,11 +38,11 @@ def opened(chromium, studio, file, monkeypatch):
         made.append(pages)
         page = pages(one.url)
         page.wait_for_timeout(PUT_TOGETHER)
-        # on a machine with other work it takes longer until the panels are beside the canvas and something is on it
+        # on a machine with other work it takes longer until the panels lie to its left and right and something is on it
         end, canvas = time.monotonic() + PATIENCE, page.locator("canvas[data-engine]")
         while canvas.bounding_box()["width"] > width - 1 or tinted(settled(page), OUTPUT) < 60:
             assert time.monotonic() < end, "it is not put together"
-        # the camera moves back only once the studio was told the canvas's size
+        # the camera moves back only once the studio knows the canvas's size
         end = time.monotonic() + CAMERA
         while any(at_edges(settled(page))) and time.monotonic() < end:
             pass

@@ -1,8 +1,8 @@
 //! Rows of a planar net whose blocks are all dyads, in closed form: each dyad lies on one side all along a pass.
 //!
 //! The two ways to put a dyad together differ by the sign of its sine, which is zero only at a dead centre of the input. So the signs are read
-//! at the ends of a stretch of a pass, and all orders of the motion between follow dyad by dyad in power series. No equations are solved but
-//! for the condition number.
+//! at the ends of a stretch of a pass, and all orders of the motion between follow dyad by dyad in power series. Equations
+//! are solved for the condition number alone.
 //!
 //! Source: docs/theory_nets.md, (14) to (17).
 
@@ -80,7 +80,7 @@ pub(super) struct Found<M> {
     pub residual: M,
     /// The condition number of `A` with the input's row.
     pub condition: M,
-    /// The least sine of a dyad, to the side that was asked for.
+    /// The least sine of a dyad, to the side of its sign.
     pub sine: M,
 }
 
@@ -251,7 +251,7 @@ impl DyadRows {
         for order in 1..TERMS {
             found.rates[order - 1][self.driven] = input[order].scaled(order as f64);
         }
-        // links put where the columns say, so that the rows tell how well all closes
+        // links put where the columns say, so that the rows show how well all closes
         let mut placed: Poses<M> = [InPlane::still(); MOST];
         for (c, column) in self.columns.iter().enumerate() {
             let before = on(&placed, column.parent);

@@ -34,7 +34,7 @@ impl Joint {
     }
 }
 
-/// Most signs by which a stretch of a pass is told from others at the same inputs.
+/// Most signs by which a stretch of a pass is distinguished from others at the same inputs.
 pub(crate) const MOST_SIGNS: usize = 4;
 
 /// The signs of a stretch of a pass, and the columns at its first end.

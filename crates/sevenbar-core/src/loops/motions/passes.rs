@@ -182,7 +182,7 @@ impl<'a, S: Closed> Passes<'a, S> {
         })
     }
 
-    /// What tells a segment from others at the same inputs, if its rows have a closed form.
+    /// What distinguishes a segment from others at the same inputs, if its rows have a closed form.
     fn stretch(&self, segment: usize) -> Option<Stretch<S>> {
         let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
         let smooth = S::EXPLICIT && !a.is_crossing() && !b.is_crossing();
