@@ -145,10 +145,13 @@ def _breaks_off(way: Way, drawn: Answers, written: Answers) -> bool:
 
 
 def _stops_for_a_moment(_: Way, drawn: Answers, written: Answers) -> bool:
-    """Whether one has one dead centre more than the other, and both the same number of circuits."""
-    centres = [one.words.get("dead centres") for one in (drawn, written)]
-    counts = [sum(one) if isinstance(one, list) else 0 for one in centres]
-    return abs(counts[0] - counts[1]) == 1 and drawn.words["circuits"] == written.words["circuits"]
+    """Whether one has one dead centre more; on circuits that close, as all do, they come in pairs."""
+    both = drawn, written
+    counts = [
+        sum(centres) if isinstance(centres := one.words.get("dead centres"), list) else 0 for one in both
+    ]
+    closed = all(circuit["closes"] for one in both for circuit in one.circuits)
+    return closed and abs(counts[0] - counts[1]) == 1 and len(drawn.circuits) == len(written.circuits)
 
 
 #: In the order in which they are asked.

@@ -70,6 +70,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if linkage.net is None:
         facts = [("loop", joints_text(linkage))]
     else:
+        # a single loop needs nothing of nets
         from sevenbar.reporting.net_facts import net_facts
 
         facts = net_facts(motion)

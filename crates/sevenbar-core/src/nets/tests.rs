@@ -153,9 +153,9 @@ fn compared(net: &Net, parts: &[Part], name: &str) -> f64 {
                     for c in 0..general.used() {
                         let apart = (w[c] - g[c]).abs() / size;
                         // where Newton's method stops a little short, rates are those of the place next to it
-                        let near_it = 10.0 * (most + unsure) * want.condition;
+                        let short = 10.0 * (most + unsure) * want.condition;
                         assert!(
-                            apart < 1e-9 + near_it,
+                            apart < 1e-9 + short,
                             "{name} {c} {order} {apart:e} {}",
                             want.condition
                         );

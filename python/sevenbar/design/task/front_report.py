@@ -76,8 +76,8 @@ def _text(found: FrontFound) -> RenderableType:
         f"of wants {both}: {points} point{'s' * (points != 1)} of {searches} search{'es' * (searches != 1)}, "
         f"seed {found.seed}",
     )
-    if points == 1 and not front.unfinished:
-        facts.add("", "one design is best in both")
+    if points == 1 and not front.unfinished and not front.missing:
+        facts.add("", "no design that was met is better in either")
     if front.missing:
         facts.add("", f"{front.missing} bound{'s' * (front.missing != 1)} had no design")
     if front.unfinished:

@@ -70,11 +70,11 @@ mod tests {
             let free = free_direction::<Chain>(&columns, 1e-9).unwrap();
             // by Laplace along the seventh row
             let minor = |left_out: usize| {
-                let kept: Vec<[f64; 6]> = (0..COLUMNS)
+                let others: Vec<[f64; 6]> = (0..COLUMNS)
                     .filter(|&c| c != left_out)
                     .map(|c| columns[c])
                     .collect();
-                determinant(kept)
+                determinant(others)
             };
             let minors: Columns = std::array::from_fn(|c| if c % 2 == 0 { minor(c) } else { -minor(c) });
             let length = minors.iter().map(|x| x * x).sum::<f64>().sqrt();
