@@ -88,9 +88,11 @@ class Sweep(Printed):
         for part in range(self.description["parts"]):
             there = self.folder
             content = self.contents[part] if there is None else read_part(there, part, self.description)
-            # not as a data set, which would guess columns from the path
-            with pq.ParquetFile(BytesIO(content)) as file:
-                yield file.read([name for name in file.schema_arrow.names if name not in without])
+            # not as a data set, which would guess columns from the path; nor by threads of pyarrow, which may
+            # still let go of the content when Python ends, and then abort it
+            with pq.ParquetFile(BytesIO(content), pre_buffer=False) as file:
+                names = [name for name in file.schema_arrow.names if name not in without]
+                yield file.read(names, use_threads=False)
 
     def table(self) -> pa.Table:
         """All rows in one pyarrow Table; raises `RequestError` for more than memory should hold."""
