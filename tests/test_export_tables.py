@@ -16,7 +16,7 @@ from commands import sevenbar
 from sevenbar.description.table_writer import linkage_table
 from sevenbar.errors import MissingExtraError, OutputError, RequestError
 from sevenbar.export import export
-from sevenbar.reporting.folder import write_columns, write_csv
+from sevenbar.reporting.csv_tables import write_columns, write_csv
 from sevenbar.text.csv_cells import NUMBER
 from sevenbar.text.table import read_table
 

@@ -24,7 +24,7 @@ CORE_IMPORTERS = {
         for name in (
             "circuits/from_core",
             "dynamics/forces",
-            "loop/reason",
+            "loop/no_length",
             "numbers/sensitivity",
             "numbers/word",
             "nets/order",

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 import sevenbar as sb
 from commands import mistake, sevenbar
 from sevenbar.errors import NotCoveredError, OutputError, RequestError
-from sevenbar.reporting.folder import write_columns
+from sevenbar.reporting.csv_tables import write_columns
 from sevenbar.simulation import report as simulation_report
 from sevenbar.simulation.figures import joints_figure, output_figure, points_figure
 from sevenbar.simulation.prototype import prototype

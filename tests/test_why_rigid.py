@@ -14,7 +14,7 @@ from rich.console import Console
 
 import sevenbar as sb
 from commands import sevenbar
-from sevenbar.kinematics.loop.reason import no_length
+from sevenbar.kinematics.loop.no_length import no_length
 from sevenbar.reporting.report import as_dict, text
 from sevenbar.text.words import language
 from textbook_loops import four_bar_joints, linkage, rewritten, slider_crank_joints, spherical_joints

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 from sevenbar.commands.signals import heed_signals, leave
 
 # as typing has it, which is large itself
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
 def main() -> NoReturn:
     """Runs the command line; see `sevenbar.commands.cli`."""
     heed_signals()
+    # commands have no use for plugins of pydantic, and to look for them takes longer than to read a file
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     from sevenbar.commands import cli
 
     try:

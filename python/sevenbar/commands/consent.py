@@ -14,7 +14,6 @@ from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.long_circuit import LONG
 from sevenbar.kinematics.linkage import sample_count
-from sevenbar.reporting.folder import write_csv
 
 #: Output [bytes] and work [s] above which a command asks first.
 MUCH, MINUTE = 200e6, 60.0
@@ -88,6 +87,9 @@ def table_ahead(moved: Callable[[int], sb.Motion], samples: int, what: str, *, t
     numbers = rows * len(columns) * times
     size = BYTES * numbers
     if text:
+        # only what writes tables needs it
+        from sevenbar.reporting.csv_tables import write_csv
+
         lines = StringIO()
         write_csv(lines, list(columns), zip(*(column.tolist() for column in columns.values()), strict=True))
         size = len(lines.getvalue()) * times

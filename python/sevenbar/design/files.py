@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from sevenbar.description.files import loads
 from sevenbar.design.candidates import Drafted
+from sevenbar.reporting.csv_tables import write_csv
 from sevenbar.reporting.files import Write, figure_files, json_file
-from sevenbar.reporting.folder import write_csv
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

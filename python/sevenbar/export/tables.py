@@ -17,7 +17,7 @@ import numpy as np
 from sevenbar.errors import of_extra
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.reporting.folder import write_parts
+from sevenbar.reporting.csv_tables import write_parts
 from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS
 

@@ -324,7 +324,7 @@ class Linkage(Solvable):
 
     def reason_of(self, motion: Motion) -> Reason | None:
         """Why a motion of it has no circuit, or which link has no length; see `Motion.reason`."""
-        from sevenbar.kinematics.loop.reason import no_length
+        from sevenbar.kinematics.loop.no_length import no_length
 
         check_kind("motion", motion, Motion, "a motion of it; give one, as motion() has it")
         reason = no_length(self)

@@ -16,8 +16,8 @@ from sevenbar.measuring.compare import Comparison, alike, name_of, per_cent
 from sevenbar.measuring.extremes import Extent, ExtremesComparison
 from sevenbar.measuring.measured import Ends
 from sevenbar.measuring.passes import PassFit
+from sevenbar.reporting.csv_tables import write_columns, write_csv
 from sevenbar.reporting.files import Report, columns_file, figure_files, text_file
-from sevenbar.reporting.folder import write_columns, write_csv
 from sevenbar.reporting.page import Facts, Page, number_table, page, page_report, prints_its_page
 from sevenbar.reporting.shown import drive_text
 from sevenbar.text.words import retold, say

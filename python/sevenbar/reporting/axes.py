@@ -12,8 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.description.step_axes import PartAxis
+from sevenbar.reporting.csv_tables import write_csv
 from sevenbar.reporting.files import Report
-from sevenbar.reporting.folder import write_csv
 
 #: The head of the table: `order` and `kind` are for a person to fill in.
 HEAD = (

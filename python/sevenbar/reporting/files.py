@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy.typing as npt
 
-from sevenbar.reporting.folder import check_targets, fill_folder, write_columns, write_parts
+from sevenbar.reporting.folder import check_targets, fill_folder
 from sevenbar.text.progress import Progress, silent
 from sevenbar.text.words import language
 
@@ -47,6 +47,9 @@ class LongTable(Generic[T]):
     ) -> None:
         """Writes it as CSV; `progress(share)` is called with the share that is written, 0 to 1."""
         total = max(1, self.rows(found))
+        # only what writes tables needs it
+        from sevenbar.reporting.csv_tables import write_parts
+
         write_parts(path, self.parts(found), lambda done: progress(done / total))
 
 
@@ -140,6 +143,8 @@ def columns_file(columns: Callable[[T], Mapping[str, npt.ArrayLike]]) -> Write[T
     """Writes columns of one length (n,) as CSV."""
 
     def write(found: T, path: Path) -> None:
+        from sevenbar.reporting.csv_tables import write_columns
+
         with language("en"):
             write_columns(path, columns(found))
 

@@ -24,7 +24,6 @@ from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures
 from sevenbar.reporting.files import Files, LongTable, Report, head_of, json_file, json_text, without_nan
 from sevenbar.reporting.force_peaks import peaks_dict
 from sevenbar.reporting.how_found import how_found
-from sevenbar.reporting.summary import summary
 from sevenbar.text.markdown import escaped, table
 
 if TYPE_CHECKING:
@@ -173,6 +172,9 @@ def markdown(motion: Motion, pictures: Sequence[str] = (), *, ranges: bool = Fal
     >>> markdown(sb.load("rssr").motion()).splitlines()[0]
     '# RSSR of Sun and Zhou'
     """
+    # only text needs it
+    from sevenbar.reporting.summary import summary
+
     page = summary(motion, ranges=ranges)
     parts = [f"# {escaped(page.title)}"]
     parts.append(

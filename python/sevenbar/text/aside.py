@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import re
 import shutil
-import socket
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -69,6 +67,10 @@ def _started(process: int) -> int:
 @cache
 def _machine() -> str:
     """A mark of the machine, or of the container on it, that numbers processes."""
+    # slow to import, and only what writes needs them
+    import hashlib
+    import socket
+
     space = ""
     with suppress(OSError):
         space = str(Path("/proc/self/ns/pid").readlink())

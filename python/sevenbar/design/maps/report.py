@@ -15,8 +15,8 @@ from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map, NearestChange
 from sevenbar.design.maps.figures import draw
 from sevenbar.design.maps.heights import Heights
+from sevenbar.reporting.csv_tables import write_csv
 from sevenbar.reporting.files import Report, Write, figure_files
-from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, Page, number_table, page, page_report, prints_its_page
 from sevenbar.text.words import say
 

@@ -19,8 +19,8 @@ from sevenbar.design.task.words import task_facts
 from sevenbar.drawing.figure import headline, page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, styled
+from sevenbar.reporting.csv_tables import write_csv
 from sevenbar.reporting.files import Report, figure_files
-from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, page
 from sevenbar.text.words import say
 

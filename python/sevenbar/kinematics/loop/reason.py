@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Literal
-
-from sevenbar._core import AGREE
-from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.rigid import inverse
 
 #: What the others have in common: a plane in which they move, a point through which their axes go; or two
 #: joints turn about one axis, so that the link between them has no length.
@@ -44,21 +38,3 @@ class Reason:
     joints: tuple[str, ...]
     off: tuple[OffJoint, ...] = ()
     motion_type: str | None = None
-
-
-def no_length(loop: Loop) -> Reason | None:
-    """The first two joints of a link that turn about one axis and are all that it has, where there are any.
-
-    A link of a net with more joints may have two in one pin.
-    """
-    for link in loop.graph.links:
-        rods = sum(link in rod.between for rod in loop.rods)
-        if len(loop.graph.joints_of(link)) + rods > 2:
-            continue
-        for one, other in combinations(loop.graph.joints_of(link), 2):
-            way = inverse(loop.joint_on(one, link)) @ loop.joint_on(other, link)
-            same = math.hypot(*way[:2, 2]) <= AGREE and math.hypot(*way[:2, 3]) <= AGREE * loop.size
-            first, second = loop.joints[one], loop.joints[other]
-            if first.kind == second.kind == "R" and same:
-                return Reason("one-axis", (first.name, second.name))
-    return None
