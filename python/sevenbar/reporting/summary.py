@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from textwrap import wrap
 
 import numpy as np
 from rich.cells import cell_len
@@ -111,8 +112,7 @@ def wide_sheets(first: Sequence[Column], columns: Sequence[Column], room: int) -
     """Columns in as many tables as lines of `room` characters ask, each with the `first` ones."""
 
     def width(column: Column) -> int:
-        head, cells = column
-        return GAP + max(cell_len(text) for text in [*head.split("\n"), *cells])
+        return GAP + max(cell_len(line) for text in (column[0], *column[1]) for line in text.split("\n"))
 
     sheets = []
     columns = list(columns)[::-1]
@@ -196,7 +196,7 @@ def _side_by_side(motion: Motion) -> list[Sheet]:
     return [_list(motion, heads, part, width) for heads, part in parts if part]
 
 
-def _compared(motion: Motion, room: int) -> list[Sheet]:
+def _compared(motion: Motion, width: int) -> list[Sheet]:
     """What all circuits share, then one table: a row for each circuit, those that agree in one row."""
     reported = cells_of(motion, "table")
     shared = [
@@ -206,13 +206,36 @@ def _compared(motion: Motion, room: int) -> list[Sheet]:
     sheets = [_list(motion, [say("every circuit")], shared)] if shared else []
     if own:
         table = _comparison(motion, own)
-        if width_of(table) > room:
+        if width_of(table) > width:
             table = _comparison(motion, [part for part in own if not part[0].spare])
-        if width_of(table) > room:
+        if width_of(table) > width:
             rows = tuple(tuple(cell.replace(" @ ", "\n@ ") for cell in row) for row in table.rows)
             table = replace(table, rows=rows)
-        sheets.append(table)
+        sheets += _parted(table, width)
     return sheets
+
+
+def _parted(table: Sheet, width: int) -> list[Sheet]:
+    """A table, or several with its first column each where lines of `width` characters would break words."""
+
+    def in_lines(head: str, cells: Sequence[str]) -> Column:
+        widest = max(cell_len(part) for text in (*head.split(), *cells) for part in text.split("\n"))
+        return "\n".join(wrap(head, widest, break_long_words=False)), list(cells)
+
+    first, *columns = zip(table.heads, zip(*table.rows, strict=True), strict=True)
+    words = [
+        [*head.split(), *(part for cell in cells for part in _unbroken(cell))] for head, cells in columns
+    ]
+    if cell_len(first[0]) + sum(GAP + max(map(cell_len, parts)) for parts in words) <= width:
+        return [table]
+    sheets = wide_sheets([in_lines(*first)], [in_lines(*column) for column in columns], width)
+    parts = [replace(sheet, right=table.right) for sheet in sheets]
+    return [*parts[:-1], replace(parts[-1], note=table.note)]
+
+
+def _unbroken(cell: str) -> list[str]:
+    """What of a cell stays in one line: its words, and each place with the sign before it."""
+    return cell.replace("@ ", "@_").split()
 
 
 def _comparison(motion: Motion, reported: Sequence[Reported]) -> Sheet:

@@ -332,6 +332,30 @@ def _named(links: range) -> str:
     return f"links {', '.join(others)} and {last} together" if others else f"link {last}"
 
 
+class Steps(NamedTuple):
+    """The freedoms of all joints as the core takes them: screws and balls whole, any other step by step.
+
+    `letters` R P H S, `advances` [length for a radian] and `columns` of each, a ball's first.
+    """
+
+    letters: str
+    advances: list[float]
+    columns: list[int]
+
+
+@once_for(0)
+def steps_of(linkage: Loop) -> Steps:
+    """The freedoms of the joints of a loop or a net, in order."""
+    letters, advances, columns = "", list[float](), list[int]()
+    for joint, own in zip(linkage.joints, linkage.places, strict=True):
+        whole = joint.row.is_screw or joint.row.is_ball
+        for number, step in enumerate(joint.row.steps[:1] if whole else joint.row.steps):
+            letters += joint.kind if whole else step.letter
+            advances.append(joint.advance)
+            columns.append(own.start + number)
+    return Steps(letters, advances, columns)
+
+
 class Expanded(NamedTuple):
     """The joints as the core takes them, each about or along z of its frame.
 
@@ -364,21 +388,18 @@ class Expanded(NamedTuple):
 def expanded(linkage: Loop) -> Expanded:
     """The joints of a loop as the core takes them: screws and balls whole, any other step by step."""
     check_single(linkage)
-    letters, advances, fixed = "", [], []
+    letters, advances, columns = steps_of(linkage)
+    fixed: list[Floats] = []
     last: list[int] = []
     behind: list[Floats] = []
-    columns: list[int] = []
     ahead = linkage.base
-    for i, (joint, own) in enumerate(zip(linkage.joints, linkage.places, strict=True)):
+    for i, joint in enumerate(linkage.joints):
         whole = joint.row.is_screw or joint.row.is_ball
         for step in joint.row.steps[:1] if whole else joint.row.steps:
-            letters += joint.kind if whole else step.letter
-            columns.append(own.start + len(letters) - 1 - (last[-1] + 1 if last else 0))
-            advances.append(joint.advance)
             ahead = ahead @ joint.before(step) if step.tilted else ahead
             fixed.append(ahead if step.axis == Z else ahead @ axis_to_z(step.axis))
             ahead = STILL if step.axis == Z else inverse(axis_to_z(step.axis))
-        last.append(len(letters) - 1)
+        last.append(len(fixed) - 1)
         behind.append(ahead)
         if i < len(linkage.links):
             ahead = linkage.links[i] if ahead is STILL else ahead @ linkage.links[i]

@@ -5,8 +5,9 @@ output moves it another way, along w. What the coupler transmits does no work al
 
     sin(mu) = |u x w| / (|u| |w|)                                                                          (4)
 
-for the pin of a planar loop (u and w in its plane), and for the axis of a spherical loop as a point of the
-sphere. A ball can move in a plane with the input held, and the force f is square to that plane,
+for the pin of a planar loop, or of a dyad of a net (u and w in its plane), and for the axis of a spherical
+loop as a point of the sphere. A ball can move in a plane with the input held, and the force f is square to
+that plane,
 
     sin(mu) = |f . w| / (|f| |w|),                                                                         (5)
 
@@ -26,10 +27,11 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Booleans, Floats
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.solvers.general import expanded
+from sevenbar.kinematics.nets.order import order_of
+from sevenbar.kinematics.solvers.general import expanded, steps_of
 from sevenbar.kinematics.solvers.plane_and_sphere import InPlane, in_plane, sphere_of
 from sevenbar.kinematics.transmission.axes import COMPLEX_STEP, Axes, axes_along
 
@@ -38,6 +40,9 @@ ALIKE = 4e-15
 
 #: A direction whose size is below this part of what it could be vanishes: rounding has half of its digits.
 VANISHES = 1e-8
+
+#: An angle [rad] below this is that of a dead centre of the input, known to the root of rounding.
+AT_DEAD_CENTRE = 1e-7
 
 #: A loop with so many joints that move, in the plane or on the sphere.
 FOUR = 4
@@ -57,14 +62,16 @@ class Coupling:
     free: tuple[int, ...]
     output: int
     input: int
-    #: Of the plane (3,).
+    #: Of the plane (3,); that of a dyad is the axis of its pins.
     normal: Floats | None = None
+    #: Of a dyad of a net, next to which other loops may make the input turn back.
+    is_dyad: bool = False
 
 
 def coupling_of(loop: Loop, input: int, output: int) -> Coupling | None:
     """How a loop driven by one column moves another; `None` where no transmission angle is defined."""
     if loop.net is not None:
-        return None
+        return _of_dyad(loop, input, output)
     parts = expanded(loop)
     first, second = parts.columns.index(input), parts.columns.index(output)
     if "S" in (parts.letters[first], parts.letters[second]):
@@ -94,14 +101,40 @@ def _between(moves: tuple[int, ...], first: int, second: int) -> tuple[int, int]
 
 def _in_plane(letters: str, found: InPlane, first: int, second: int) -> Coupling | None:
     passive = _between(found.moves, first, second)
-    if passive is None:
-        return None
-    near_input, near_output = passive
-    # a force acts at a pin: where the output is driven by a slide, at that before it
+    pin = None if passive is None else _driving_pin(letters, *passive)
+    return None if pin is None else Coupling("planar", *pin, second, first, found.plane.normal)
+
+
+def _driving_pin(letters: str, near_input: int, near_output: int) -> tuple[int, tuple[int]] | None:
+    """The pin through which a coupler drives, and what moves it; `None` between two slides.
+
+    A force acts at a pin: where the output is driven by a slide, at that before it.
+    """
     if letters[near_output] != "P":
-        return Coupling("planar", near_output, (near_input,), second, first, found.plane.normal)
+        return near_output, (near_input,)
     if letters[near_input] != "P":
-        return Coupling("planar", near_input, (near_output,), second, first, found.plane.normal)
+        return near_input, (near_output,)
+    return None
+
+
+def _of_dyad(net: Loop, input: int, output: int) -> Coupling | None:
+    """The dyad of a net that has the output between it and a link that is known before it is solved."""
+    held, driven = net.column_of(input).joint, net.column_of(output).joint
+    between, steps = net.graph.between, steps_of(net)
+    for block in order_of(net, input).blocks:
+        # of a dyad with the input between two of its links, either would be the coupler
+        if block.solver != "dyad" or driven not in block.joints or set(between[held]) & set(block.links):
+            continue
+        outer = [joint for joint in block.joints if set(between[joint]) != set(block.links)]
+        if driven not in outer:
+            return None
+        (middle,) = set(block.joints) - set(outer)
+        (other,) = set(outer) - {driven}
+        first, *parts = (
+            steps.columns.index(net.places[joint].start) for joint in (held, other, middle, driven)
+        )
+        pin = _driving_pin(steps.letters, *parts[:2])
+        return None if pin is None else Coupling("planar", *pin, parts[2], first, is_dyad=True)
     return None
 
 
@@ -135,7 +168,8 @@ def ways(coupling: Coupling, axes: Axes, normal: Floats | None = None) -> tuple[
         return u, w, here
     here = axes.places[at]
     w = axes.velocity(output, here)
-    normal = coupling.normal if normal is None else normal
+    if normal is None:
+        normal = axes.directions[at] if coupling.is_dyad else coupling.normal
     if normal is not None:
         free = coupling.free[0]
         # a ball is a pin there
@@ -197,16 +231,25 @@ def _sizes(coupling: Coupling, axes: Axes, size: float) -> tuple[float, float]:
 def angles_along(loop: Loop, coupling: Coupling, circuit: Circuit) -> tuple[Floats, Angles]:
     """The angle [rad] on each row of a circuit (n,), up to a right angle, and what it is made of.
 
-    At a dead centre of the input it is 0, but where u or w vanishes it is its limit.
+    At a dead centre of the input it is 0, but where u or w vanishes it is its limit; that of a dyad is not
+    known there.
     """
     axes = axes_along(loop, circuit)
     result = Angles.of(coupling, axes, circuit.size)
     angle = np.arctan2(np.abs(result.sine), np.abs(result.cosine))
     vanishing = result.share < VANISHES
-    angle[(circuit.status == "dead-centre") & ~vanishing] = 0.0
+    angle[(circuit.status == "dead-centre") & ~vanishing & is_zero(coupling, angle)] = 0.0
+    if coupling.is_dyad:
+        angle[vanishing] = math.nan
+        return angle, result
     for row in np.flatnonzero(vanishing):
         angle[row] = _limit(coupling, axes.at(int(row)), circuit.size)
     return angle, result
+
+
+def is_zero(coupling: Coupling, angles: Floats) -> Booleans:
+    """Which angles [rad] (n,) of dead centres of the input are 0: all but those of a dyad not in line."""
+    return np.asarray(angles < AT_DEAD_CENTRE) if coupling.is_dyad else np.ones(angles.shape, dtype=bool)
 
 
 def _limit(coupling: Coupling, axes: Axes, size: float) -> float:

@@ -22,7 +22,7 @@ from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.circuits.poses import joint_frames, poses_along
 from sevenbar.kinematics.loop.geometry import Loop, moved_by
-from sevenbar.kinematics.solvers.general import Expanded, expanded
+from sevenbar.kinematics.solvers.general import Steps, steps_of
 
 #: The complex step: its square is nothing next to 1.
 COMPLEX_STEP = 1e-30
@@ -36,12 +36,12 @@ STILL = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Axes:
-    """The joints of one freedom, screws and balls of a loop, as `parts` has them, with their axes on n rows.
+    """The joints of one freedom, screws and balls, as `parts` has them, with their axes on n rows.
 
     `directions` and `places` (parts, n, 3); a ball has no direction that means anything.
     """
 
-    parts: Expanded
+    parts: Steps
     directions: Floats
     places: Floats
 
@@ -60,7 +60,10 @@ class Axes:
         )
 
     def moving(self, size: float) -> Axes | None:
-        """A pose's axes a complex step along the circuit; `None` where no one direction leads on."""
+        """A pose's axes of a single loop a complex step along the circuit.
+
+        `None` where no one direction leads on.
+        """
         screws, owners = self._screws(size)
         rates = _tangent(screws)
         if rates is None:
@@ -139,7 +142,7 @@ def axes_along(loop: Loop, circuit: Circuit, rows: Integers | None = None) -> Ax
             directions.append(now[:, :3, step.axis])
             places.append(now[:, :3, 3])
             now = now @ moved_by(step, values)
-    return Axes(expanded(loop), np.stack(directions), np.stack(places))
+    return Axes(steps_of(loop), np.stack(directions), np.stack(places))
 
 
 def ratios_at_rest(loop: Solvable, circuit: Circuit) -> dict[int, float]:
@@ -149,7 +152,7 @@ def ratios_at_rest(loop: Solvable, circuit: Circuit) -> dict[int, float]:
     if loop.net is not None:
         result = {int(row): loop._net_ratio_at_rest(circuit.q[row], first, second) for row in rows}
     else:
-        parts = expanded(loop)
+        parts = steps_of(loop)
         ends = [parts.columns.index(column) for column in (first, second)]
         axes = axes_along(loop, circuit, rows)
         result = {int(row): axes.at(i).ratio(ends[0], ends[1], circuit.size) for i, row in enumerate(rows)}

@@ -26,7 +26,14 @@ from sevenbar.kinematics.circuits.circuit_values import Extremes
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.circuits.poses import Walk, walk
 from sevenbar.kinematics.loop.law import Law
-from sevenbar.kinematics.transmission.angle import ALIKE, Angles, Coupling, angles_along, coupling_of
+from sevenbar.kinematics.transmission.angle import (
+    ALIKE,
+    AT_DEAD_CENTRE,
+    Angles,
+    Coupling,
+    angles_along,
+    coupling_of,
+)
 from sevenbar.kinematics.transmission.axes import axes_along, best_row, ratios_at_rest
 from sevenbar.kinematics.transmission.closed import closed_extremes
 
@@ -46,9 +53,6 @@ SAME_PLACE, LOSES_DIGITS, MOST_LOST = 1e-12, 1e-4, 4
 
 #: The last coefficients of a series that has a limit are smaller than this part of the greatest.
 BOUNDED = 1e-5
-
-#: An angle [rad] below this is that of a dead centre of the input, known to the root of rounding.
-AT_DEAD_CENTRE = 1e-7
 
 #: Where u or w is a smaller part of what it could be an angle is left to the limit near by: it is known to
 #: 1e-11, and differs from the limit by 1e-10.
@@ -74,8 +78,11 @@ def transmission_extremes(linkage: Solvable, circuit: Circuit) -> Extremes | Non
     row = best_row(circuit)
     if row is None:
         return None
-    result = closed_extremes(coupling, axes_along(linkage, circuit, np.array([row])), circuit, row)
-    return result or _AngleSearch(linkage, circuit, circuit.q[row], coupling).extremes()
+    if not coupling.is_dyad:
+        axes = axes_along(linkage, circuit, np.array([row]))
+        if result := closed_extremes(coupling, axes, circuit, row):
+            return result
+    return _AngleSearch(linkage, circuit, circuit.q[row], coupling).extremes()
 
 
 def velocity_extremes(linkage: Solvable, circuit: Circuit) -> Extremes | None:
@@ -202,7 +209,7 @@ class _AngleSearch(_Search):
         exact = [
             (angle, x) for angle, x in zip(angle[limits], rows.input[limits], strict=True) if angle == 0.0
         ]
-        if exact or (dead and not limits.any()):
+        if exact or (dead and not limits.any() and not self.coupling.is_dyad):
             # near them rounding leaves a little
             ends = exact or [(0.0, x) for x in dead]
             result = [one for one in result if one[0] > AT_DEAD_CENTRE] + ends

@@ -20,7 +20,7 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.numbers.gradients import MeasureSlopes, nearest, poses_at
 from sevenbar.kinematics.numbers.sensitivity import Numbers
 from sevenbar.kinematics.numbers.word import Carried
-from sevenbar.kinematics.solvers.general import expanded
+from sevenbar.kinematics.solvers.general import steps_of
 from sevenbar.kinematics.transmission.angle import Coupling, coupling_of, sine_and_cosine, ways
 from sevenbar.kinematics.transmission.axes import COMPLEX_STEP, Axes
 from sevenbar.kinematics.transmission.closed import turning_cosines, turns_in_line
@@ -49,7 +49,7 @@ class AxisPoints:
         coupling = coupling_of(linkage, input, output)
         if coupling is None:
             return None
-        parts = expanded(linkage)
+        parts = steps_of(linkage)
         # the last turns give the plane its normal
         own = tuple(dict.fromkeys((coupling.at, *coupling.free, coupling.output, coupling.input)))
         if "H" in {parts.letters[part] for part in own}:
