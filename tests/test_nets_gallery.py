@@ -201,3 +201,11 @@ def test_a_name_nearly_right_is_offered():
     for near, name in {"jansn": "jansen", "Watts": "watt", "double-wishbone": "double_wishbone"}.items():
         assert mistake("analyze", near) == f"{near}: no such file; did you mean '{name}'? {offer}"
     assert mistake("watt") == "watt: is a linkage, where a command should stand; give: sevenbar analyze watt"
+
+
+def test_a_pin_of_three_links_has_one_name_and_one_path_in_a_figure():
+    figure = sb.plot.configuration(sb.load("jansen").motion())
+    labels = [text.get_text() for text in figure.axes[0].texts]
+    entries = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert {"crank pin", "axle", "knee"} <= set(labels)
+    assert [entry for entry in entries if "pin" in entry] == ["path of crank pin"]

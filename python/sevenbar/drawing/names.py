@@ -43,11 +43,18 @@ def shown_name(name: str, width: int = 40) -> str:
 
 
 def joint_label(linkage: Loop, joint: int) -> str:
-    """What a joint is called in a picture: A, B in an RSSR of the paper; else its name, or its number."""
+    """What a joint is called in a picture: A, B in an RSSR of the paper; else its name, pin or number."""
     name = linkage.joints[joint].name
     if linkage.form == "rssr" and joint in RSSR_LETTERS:
         return RSSR_LETTERS[joint]
-    return str(joint + 1) if _UNNAMED.fullmatch(name) else short(name, 24)
+    return str(joint + 1) if _UNNAMED.fullmatch(name) else short(_pin_of(linkage, name), 24)
+
+
+def _pin_of(linkage: Loop, name: str) -> str:
+    """The pin of more than two links that a joint of this name is a hinge of, or the name itself."""
+    pin, _, number = name.rpartition(".")
+    hinges = {joint.name for joint in linkage.joints} if number.isdecimal() else set()
+    return pin if {f"{pin}.1", f"{pin}.2"} <= hinges else name
 
 
 def named_together(

@@ -200,14 +200,15 @@ def _draw_sphere(space: ViewAxes, sphere: DrawnSphere) -> None:
 def paths(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[int, str]]:
     """The places whose paths are drawn, and the colour of each: named points, then joints that carry none.
 
-    The far ends of links on the ground have their link's colour where it is that of input or output, all
-    other joints a pale one.
+    The hinges of one pin have one path. The far ends of links on the ground have their link's colour where it
+    is that of input or output, all other joints a pale one.
     """
     colours, graph = link_colours(frame.linkage, ends)[0], frame.graph
     result = [(place, POINT_COLOURS[i % len(POINT_COLOURS)]) for i, place in enumerate(frame.points)]
     grounded = graph.neighbours(graph.ground)
     for joint, place in frame.inner.items():
-        apart = np.abs(frame.places[:, list(frame.points)] - frame.places[:, [place]])
+        pin = [other for other, _ in result if frame.names[other] == frame.names[place]]
+        apart = np.abs(frame.places[:, [*frame.points, *pin]] - frame.places[:, [place]])
         if not (np.nanmax(apart, axis=(0, 2)) < SAME * frame.span).any():
             runs = [colours[link - 1] for link in graph.between[joint] if link in grounded]
             result.append((place, runs[-1] if runs and runs[-1] != COUPLER else PATH))
