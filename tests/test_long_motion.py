@@ -15,7 +15,7 @@ from sevenbar.export import export
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.long_circuit import BY_ROW, LONG, LongCircuit
 from sevenbar.kinematics.solvers import general
-from sevenbar.reporting import folder, report
+from sevenbar.reporting import csv_tables, report
 
 #: Loops of each way to a row: round, to and fro, backwards, with balls, on slides, over dead centres.
 CASES = [
@@ -73,7 +73,7 @@ def test_reports_and_tables_are_the_same_to_the_last_digit(name, chosen, monkeyp
     assert report.as_json(kept) == report.as_json(long)
     assert report.markdown(kept) == report.markdown(long)
     # several pieces, the last of them shorter
-    monkeypatch.setattr(folder, "ROWS_AT_ONCE", 7)
+    monkeypatch.setattr(csv_tables, "ROWS_AT_ONCE", 7)
     export(long, "csv", tmp_path / "long.csv")
     columns = kept.columns()
     head, *lines = csv.reader((tmp_path / "long.csv").read_text(encoding="utf-8").splitlines())
