@@ -7,37 +7,26 @@ import pytest
 
 import sevenbar as sb
 
-
-def watt():
-    """Watt's six-bar of the gallery, as pins with names."""
-    pins = {
-        "crank": ([0, 0], ["frame", "crank"]),
-        "pin_2": ([10, 40], ["crank", "coupler"]),
-        "pin_3": ([110, 80], ["coupler", "rocker"]),
-        "rocker": ([100, 0], ["frame", "rocker"]),
-        "pin_5": ([150, 60], ["rocker", "link"]),
-        "pin_6": ([220, 70], ["link", "lever"]),
-        "lever": ([200, 0], ["frame", "lever"]),
-    }
-    return sb.from_pins(
-        [{"name": name, "at": at, "links": links} for name, (at, links) in pins.items()], ground="frame"
-    )
+#: Watt's six-bar of the gallery: each pin's place as drawn, and its links.
+WATT = {
+    "crank": ([0, 0], ["frame", "crank"]),
+    "pin_2": ([10, 40], ["crank", "coupler"]),
+    "pin_3": ([110, 80], ["coupler", "rocker"]),
+    "rocker": ([100, 0], ["frame", "rocker"]),
+    "pin_5": ([150, 60], ["rocker", "link"]),
+    "pin_6": ([220, 70], ["link", "lever"]),
+    "lever": ([200, 0], ["frame", "lever"]),
+}
 
 
-def first_loop():
-    return sb.from_pins(
-        [
-            {"name": "crank", "at": [0, 0], "links": ["frame", "crank"]},
-            {"name": "pin_2", "at": [10, 40], "links": ["crank", "coupler"]},
-            {"name": "pin_3", "at": [110, 80], "links": ["coupler", "rocker"]},
-            {"name": "rocker", "at": [100, 0], "links": ["frame", "rocker"]},
-        ],
-        ground="frame",
-    )
+def watt(first=7):
+    """Watt's six-bar by its `first` pins; four of them are its first loop."""
+    pins = [{"name": name, "at": at, "links": links} for name, (at, links) in WATT.items()]
+    return sb.from_pins(pins[:first], ground="frame")
 
 
 def test_of_the_first_dyad_it_is_that_of_the_four_bar_alone():
-    alone = first_loop().motion(output="rocker").circuits
+    alone = watt(4).motion(output="rocker").circuits
     circuits = watt().motion(output="rocker").circuits
     assert [one.motion_type for one in circuits].count("crank-rocker") == 2
     for circuit in circuits[:2]:
@@ -68,7 +57,7 @@ def at_the_pin(first, pin, last, moving):
 
 def test_where_another_dyad_turns_the_input_back_it_is_not_zero():
     circuit = watt().motion(output="rocker").circuits[2]
-    whole = first_loop().motion(output="rocker").circuits[0].transmission
+    whole = watt(4).motion(output="rocker").circuits[0].transmission
     pins = turned((10, 40), (0, 0), np.array(circuit.input_range))
     ends = at_the_pin((10, 40), (110, 80), (100, 0), pins)
     result = circuit.transmission
