@@ -244,6 +244,15 @@ REASONS = (
         lambda _, drawn, written: drawn.runs_off and written.runs_off,
     ),
     Reason(
+        "slides run to infinity, and a mode out there is beyond that distance in some ways",
+        frozenset((UNFOLLOWED,)),
+        lambda way, drawn, written: (
+            drawn.runs_off
+            and written.runs_off
+            and differs(way, drawn, written) - OF_OPEN - EXTREMES_OF_OPEN == {UNFOLLOWED}
+        ),
+    ),
+    Reason(
         "of a structure that shakes, rank and redundant constraints are known to the root of rounding",
         frozenset(("redundant", "finite", "change points", COMPLETENESS)),
         lambda _, drawn, written: not drawn.circuits and not written.circuits,

@@ -44,7 +44,7 @@ pub(crate) struct Settled {
 /// Newton's method with the input held; `None` where it does not close, redundant constraints aside, or goes farther than `reach`.
 pub(crate) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: f64) -> Option<Settled> {
     let mut at = *rough;
-    let mut best = f64::INFINITY;
+    let (mut best, mut closed) = (f64::INFINITY, None);
     for step in 0..MOST_STEPS {
         stopping::piece();
         let placed = chain.place(&at);
@@ -52,7 +52,13 @@ pub(crate) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
         if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
             break;
         }
+        if let Some(before) = closed.filter(|_| residual >= CLOSED) {
+            // rounding leads anywhere out of a pose that closes by a square
+            at = before;
+            break;
+        }
         best = best.min(residual);
+        closed = (residual < CLOSED).then_some(at);
         let mut columns = [[0.0; ROWS]; COLUMNS];
         for (c, column) in columns.iter_mut().enumerate().take(chain.columns) {
             if c == input {
