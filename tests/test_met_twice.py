@@ -152,9 +152,10 @@ def test_a_joint_that_rests_along_one_motion_is_not_held_where_another_moves_it(
     assert [point.circuits for point in motion.change_points] == [(0, 1), (0, 1)]
 
 
-def test_a_joint_that_rests_is_held_where_it_rests():
-    # a pose that closes by a square: a step out of it comes back to where it closes to rounding only, 5e-6 off
-    (way,) = (way for way in ways(lattice(667, seed=1), np.random.default_rng(1)) if way.name == "mirrored")
+@pytest.mark.parametrize("index", [667, 1698])
+def test_a_joint_that_rests_is_held_where_it_rests(index):
+    # poses that close by a square: a step out of one comes back to where it closes to rounding only, 1e-6 off
+    (way,) = (way for way in ways(lattice(index, seed=1), np.random.default_rng(1)) if way.name == "mirrored")
     motion = way.linkage.motion(36, input=way.input, output=way.output)
     assert [circuit.motion_type for circuit in motion] == ["change-point", "change-point"]
     assert all(abs(circuit["j3"]).max() < 1e-12 for circuit in motion)

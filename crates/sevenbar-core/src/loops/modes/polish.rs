@@ -21,6 +21,9 @@ const NEARLY: f64 = 1e-4;
 /// A move [rad, or relative to the size] after which the next would be rounding.
 const SETTLED: f64 = 1e-12;
 
+/// A closed pose is left for no other that closes worse by this.
+const WORSE: f64 = 10.0;
+
 /// Most steps; a pose that is still so far from closing [rad, or relative to the size] after so many of them will not close.
 const MOST_STEPS: usize = 60;
 const HOPELESS_AFTER: usize = 25;
@@ -49,12 +52,12 @@ pub(crate) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
         stopping::piece();
         let placed = chain.place(&at);
         let residual = chain.residual(&placed);
-        if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
+        if let Some(before) = closed.filter(|_| residual > WORSE * best) {
+            // rounding leads out of a pose that closes by a square
+            at = before;
             break;
         }
-        if let Some(before) = closed.filter(|_| residual >= CLOSED) {
-            // rounding leads anywhere out of a pose that closes by a square
-            at = before;
+        if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
             break;
         }
         best = best.min(residual);
