@@ -208,6 +208,20 @@ def test_ctrl_c_leaves_whole_files_and_says_which(tmp_path):
     assert (tmp_path / "out" / "motion.csv").read_text().count("\n") == 25
 
 
+@pytest.mark.parametrize("film", ["move.gif", "out/move.gif"])
+def test_ctrl_c_while_a_film_is_drawn_keeps_the_folder_and_says_so(tmp_path, film):
+    before = INTERRUPTED.replace("plot", "animate").replace("configuration", "animate")
+    arguments = ("analyze", "rssr", "--samples", 12, "-o", "out", "--animate", film)
+    run = sevenbar(*arguments, cwd=tmp_path, before=before)
+    assert run.returncode == 130
+    names = [path.name for path in (tmp_path / "out").iterdir()]
+    assert {"motion.csv", "report.json", "configuration.png"} <= set(names)
+    last = run.stderr.splitlines()[-1]
+    assert last.startswith("sevenbar: stopped; these files are whole and kept: ")
+    assert all(f"out/{name}" in last for name in names)
+    assert not list(tmp_path.rglob("move*"))
+
+
 def test_ctrl_c_before_the_first_file_leaves_nothing(tmp_path):
     before = INTERRUPTED.replace("configuration", "curves")
     run = sevenbar(

@@ -257,7 +257,10 @@ def test_what_moves_with_two_freedoms_says_what_to_do():
     )
     motion = linkage(follower).motion(24)
     assert motion.motion_type == "two-inputs"
-    assert "a loop that another one moves by two of its joints is not covered" in told(motion)
+    assert (
+        "where another loop moves it by two of its joints, write both as one linkage with links by name"
+        in told(motion)
+    )
 
 
 #: An arm of six turning joints: lengths, twists, offsets.

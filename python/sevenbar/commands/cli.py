@@ -39,7 +39,7 @@ from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.kinematics.linkage import sample_count
 from sevenbar.reporting.facts import idle_note
 from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
-from sevenbar.reporting.folder import check_targets
+from sevenbar.reporting.folder import Stopped, check_targets
 from sevenbar.text.ranges import Place
 
 #: Samples a turn of a motion that is drawn: two for each dot of a wide figure.
@@ -82,14 +82,15 @@ class _Commands(typer.core.TyperGroup):
         return typer.main.get_command(alone)
 
     def invoke(self, ctx: Any) -> Any:
-        """Runs the command; Ctrl+C outside of what has a bar of its own has written nothing."""
+        """Runs the command; Ctrl+C outside of what has a bar of its own names whole files, if any."""
         try:
             with at_work():
                 return super().invoke(ctx)
         except (KeyboardInterrupt, Exception) as error:
             # a signal in the import of a library may come out as that it is missing
             if isinstance(error, KeyboardInterrupt) or (_is_error(error) and has_just_come()):
-                typer.echo(f"sevenbar: {NOTHING}", err=True)
+                words = f"stopped; {error.kept}" if isinstance(error, Stopped) else NOTHING
+                typer.echo(f"sevenbar: {words}", err=True)
                 raise typer.Exit(stopped()) from None
             raise
 
@@ -243,7 +244,7 @@ def _film(
     drawn = chosen_circuit(motion, posed).index
 
     def draw(path: Path) -> None:
-        with progress_bar(f"drawing {path.name}") as progress:
+        with progress_bar(f"drawing {path.name}", kept=None) as progress:
             animate(motion, path, circuit=drawn, progress=progress, **look.of_pictures, **film)
 
     return draw

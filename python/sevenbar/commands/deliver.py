@@ -14,7 +14,7 @@ import typer
 from sevenbar.commands.progress import progress_bar
 from sevenbar.commands.signals import stopped
 from sevenbar.reporting.files import Report
-from sevenbar.reporting.folder import check_targets
+from sevenbar.reporting.folder import Stopped, check_targets
 
 T = TypeVar("T")
 
@@ -50,7 +50,12 @@ def deliver(
     if out is not None:
         written += write_files(report, found, out, force=force)
     for path, write in also.items():
-        write(path)
+        try:
+            write(path)
+        except KeyboardInterrupt:
+            if written:
+                raise Stopped(written) from None
+            raise
         written.append(path)
     if json:
         typer.echo(report.json(found))

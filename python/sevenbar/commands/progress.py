@@ -75,16 +75,21 @@ class WorkBar:
 
 
 @contextmanager
-def progress_bar(title: str, *, rate: bool = False, kept: str = "nothing is written") -> Iterator[WorkBar]:
+def progress_bar(
+    title: str, *, rate: bool = False, kept: str | None = "nothing is written"
+) -> Iterator[WorkBar]:
     """Shows how far work is; with `rate` how many steps a second.
 
-    Ctrl+C, as any signal that ends a program, ends the command with "stopped; " and what is `kept`.
+    Ctrl+C, as any signal that ends a program, ends the command with "stopped; " and what is `kept`; where
+    that is `None` the caller knows what is kept, and `KeyboardInterrupt` goes on to it.
     """
     shown = WorkBar(title, rate=rate)
     try:
         yield shown
     except KeyboardInterrupt as stop:
         shown.end(erase=False)
+        if kept is None:
+            raise
         typer.echo(f"sevenbar: stopped; {stop.kept if isinstance(stop, Stopped) else kept}", err=True)
         raise typer.Exit(stopped()) from None
     except BaseException:

@@ -55,7 +55,7 @@ _KEYS |= {spelling.replace(" ", ""): key for spelling, key in _KEYS.items() if s
 
 #: Indices of the row before: Craig's convention.
 _MODIFIED = re.compile(
-    r"(?:a|alpha|\u03b1|length|twist)[\s_{(]*(?:i|n|j)\s*[-\u2212]\s*1[\s})]*", re.IGNORECASE
+    r"(?:a|alpha|\u03b1|length|twist)[\s_{(\[]*(?:i|n|j)\s*[-\u2212]\s*1[\s})\]]*", re.IGNORECASE
 )
 
 #: A spelling this near to a known one is a slip of it; shorter words are too near to others.

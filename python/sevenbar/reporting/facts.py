@@ -242,7 +242,8 @@ def meaning(motion: Motion) -> str:
         case "two-inputs":
             return say(
                 "the loop moves with {count} freedoms, so one input does not determine it: lock a joint "
-                "(leave it out); a loop that another one moves by two of its joints is not covered",
+                "(leave it out), or, where another loop moves it by two of its joints, write both as one "
+                "linkage with links by name",
                 count=motion.mobility.finite,
             )
         case "not-followed":
