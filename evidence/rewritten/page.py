@@ -92,7 +92,7 @@ def written(rows: Mapping[str, Sequence[Compared]], made: Mapping[str, Any]) -> 
         f"places and axes in whole numbers{_left(rows.get('lattice', ()))}; "
         f"{sum(one.ways for one in every):,} ways, at least {least} each, "
         f"{sum(one.seconds for one in every) / 60:.0f} min of processor time. "
-        f"{sum(bool(one.differences) for one in every)} linkages differ without a known reason.",
+        f"Linkages that differ without a known reason: {sum(bool(one.differences) for one in every)}.",
         "",
         table(
             ["family", "linkages", "move", "ways", "differ", "differ with a reason"],

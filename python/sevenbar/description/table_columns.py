@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 
-from sevenbar.text.table import plain_name
+from sevenbar.text.table import INDEX_BEFORE, plain_name
 
 #: Letters of coordinates, and how the columns of a place or a direction begin.
 _PLACES = ("", "at ", "point ", "p ", "position ", "pos ", "location ", "coordinate ")
@@ -53,9 +53,9 @@ _KEYS = {spelling: key for key, spellings in SPELLINGS.items() for spelling in s
 #: With the letters of coordinates written together, as in `pointx`, `ux`, `axisx`.
 _KEYS |= {spelling.replace(" ", ""): key for spelling, key in _KEYS.items() if spelling[-2:-1] == " "} | _KEYS
 
-#: Indices of the row before: Craig's convention.
+#: Lengths and twists of the row before: Craig's convention.
 _MODIFIED = re.compile(
-    r"(?:a|alpha|\u03b1|length|twist)[\s_{(\[]*(?:i|n|j)\s*[-\u2212]\s*1[\s})\]]*", re.IGNORECASE
+    rf"(?:a|alpha|\u03b1|length|twist)[\s_{{(\[]*{INDEX_BEFORE.pattern}[\s}})\]]*", re.IGNORECASE
 )
 
 #: A spelling this near to a known one is a slip of it; shorter words are too near to others.

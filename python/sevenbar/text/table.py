@@ -47,8 +47,8 @@ NO_NUMBER = frozenset(
 NOTHING = " \t\r\f\x1a,;"
 
 COMMA_NUMBER = re.compile(r"[-+]?\d+,\d+(?:[eEdD][-+]?\d+)?")
-#: In brackets behind a name no unit but the index of a row before: `a_(i-1)`.
-INDEX = re.compile(r"\s*[ijn]\s*[-\u2212]\s*1\s*", re.IGNORECASE)
+#: The index of the row before, in Craig's convention; in brackets behind a name it is no unit: `a_(i-1)`.
+INDEX_BEFORE = re.compile(r"\s*[ijn]\s*[-\u2212]\s*1\s*", re.IGNORECASE)
 NAME_AND_UNIT = re.compile(r'"[^"]*"|\S+(?:[ \t]?(?:\[[^\]]*\]|\([^)]*\)))?')
 
 
@@ -223,7 +223,7 @@ def name_and_unit(text: str) -> tuple[str, str]:
     """
     bracket = re.fullmatch(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*", text)
     # Craig's a_(i-1) and a [i-1] have an index there
-    if bracket is not None and not INDEX.fullmatch(bracket[2]):
+    if bracket is not None and not INDEX_BEFORE.fullmatch(bracket[2]):
         return bracket[1].strip(), bracket[2].strip()
     comma = re.fullmatch(r"(.+?)\s*[,/]\s*(\S+)", text)
     if comma is not None and is_unit(comma[2]):
