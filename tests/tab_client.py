@@ -17,6 +17,8 @@ class TabClient:
         self.gui, self.scene, self.values, self.told = {}, {}, {}, []
         self.owners, self.places = {}, {}
         self.received, self.last = 0, 0.0
+        #: The thread of the studio that serves this tab, where a test has it: `until` waits for it.
+        self.worker = None
         self._socket = opened(address)
         self._lock = threading.Lock()
         self._reader = threading.Thread(target=self._read, daemon=True)
@@ -76,11 +78,13 @@ class TabClient:
         raise AssertionError("the studio does not come to rest")
 
     def until(self, holds, limit=600.0):
-        """Waits until something holds of what was sent, and then until nothing more comes."""
+        """Waits until something holds of what was sent, the studio has drawn it, and nothing more comes."""
         end = time.perf_counter() + limit
         while not holds():
             assert time.perf_counter() < end, "it does not come to this"
             time.sleep(0.02)
+        if self.worker is not None:
+            done(self.worker, lambda: None)
         return self.settled()
 
     def find(self, label, kind=""):
@@ -127,6 +131,24 @@ class TabClient:
         """Leaves, as a tab that is closed."""
         self._socket.close()
         self._reader.join(timeout=60)
+
+
+def done(worker, action):
+    """What an action gives that is done by a tab's own thread, after all that was asked of it before."""
+    found, ready = [], threading.Event()
+
+    def act():
+        try:
+            found.append(action())
+        except Exception as error:
+            found.append(error)
+        ready.set()
+
+    worker.ask(object(), act)
+    assert ready.wait(600)
+    if isinstance(found[0], Exception):
+        raise found[0]
+    return found[0]
 
 
 def _whole(value, buffers):

@@ -2,7 +2,6 @@
 
 import random
 import re
-import threading
 import time
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import pytest
 from sevenbar.description.files import toml_text
 from sevenbar.drawing.skeleton import places_of
 from sevenbar.studio.server import StudioServer
-from tab_client import TabClient
+from tab_client import TabClient, done
 
 #: Growth of the process that is no leak [MB]: caches of sizes and fonts that come with what is drawn first.
 GROWTH = 40.0
@@ -37,25 +36,8 @@ def visited(server):
         time.sleep(0.05)
     client.settled(1.2)
     (tab,) = set(server.tabs) - set(known)
+    client.worker = tab.worker
     return client, tab
-
-
-def done(tab, action):
-    """What an action gives that is done by the tab's own thread."""
-    found, ready = [], threading.Event()
-
-    def act():
-        try:
-            found.append(action())
-        except Exception as error:
-            found.append(error)
-        ready.set()
-
-    tab.worker.ask(object(), act)
-    assert ready.wait(600)
-    if isinstance(found[0], Exception):
-        raise found[0]
-    return found[0]
 
 
 def looked_at(session):
@@ -134,7 +116,7 @@ def test_random_dragging_never_fails_nor_grows_nor_shows_a_wrong_mode(name, acts
             begun = memory()
         restless(client, dice)
         time.sleep(0.05)
-        done(tab, lambda: looked_at(tab.session))
+        done(tab.worker, lambda: looked_at(tab.session))
         moved += not tab.session.problem
     grown = memory() - begun
     assert [told for told in client.told if "fault" in str(told).lower()] == []
@@ -199,7 +181,7 @@ def test_what_never_moved_is_not_drawn_and_can_be_mended():
     client.put("L2 [mm]", "997")
     client.until(lambda: "crank-rocker" in client.html() and bodies(client))
     # another file that does not move is not shown as the one before
-    done(tab, lambda: tab.session.open(far, "far"))
+    done(tab.worker, lambda: tab.session.open(far, "far"))
     client.until(lambda: not bodies(client))
     client.put("history", "undo")
     client.until(lambda: "crank-rocker" in client.html() and bodies(client))

@@ -10,8 +10,8 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.files import toml_text
 from sevenbar.studio.server import StudioServer
 from sevenbar.studio.state.sketch import beginning, drawn, kinds_of
-from tab_client import TabClient
-from test_studio_dragging import done, visited
+from tab_client import TabClient, done
+from test_studio_dragging import visited
 from test_why_rigid import DOUBLE, linkage
 
 #: Each waits for seconds as a person does.
@@ -76,7 +76,7 @@ def test_a_planar_linkage_is_seen_square_to_its_plane_and_pulled_by_two_arrows(t
     client, tab = visited(server)
     eye, target = tab._scenery.stage.look()
     assert np.allclose((eye - target)[:2], 0.0, atol=1e-9)
-    assert np.allclose(done(tab, lambda: np.array(tab._client.camera.up_direction)), [0, 1, 0])
+    assert np.allclose(done(tab.worker, lambda: np.array(tab._client.camera.up_direction)), [0, 1, 0])
     client.put("drag points", True)
     client.until(lambda: len(handles(client)) == 4)
     arrows = {handle.active_axes for handle in tab._handles._handles.values()}
@@ -88,7 +88,7 @@ def test_a_planar_linkage_is_seen_square_to_its_plane_and_pulled_by_two_arrows(t
     client.until(lambda: tab.session.draft.linkage.kind == "RSCR")
     client.until(lambda: len(handles(client)) == 4)
     assert {handle.active_axes for handle in tab._handles._handles.values()} == {(True, True, True)}
-    assert np.allclose(done(tab, lambda: np.array(tab._client.camera.up_direction)), [0, 0, 1])
+    assert np.allclose(done(tab.worker, lambda: np.array(tab._client.camera.up_direction)), [0, 0, 1])
     assert [said for said in client.told if "fault" in str(said).lower()] == []
     client.close()
     server.stop()
@@ -138,7 +138,7 @@ def test_the_points_of_another_form_are_pulled_where_they_are(tmp_path):
     client.until(lambda: len(session.past) == 1)
     name = session.draft.raw["point"][0]["name"]
     place = session.view.frame.points[[p.name for p in session.view.linkage.added_points].index(name)]
-    shown = done(tab, lambda: session.view.frame.pose(session.row)[place])
+    shown = done(tab.worker, lambda: session.view.frame.pose(session.row)[place])
     assert (
         np.abs(shown - stage.from_scene(client.places["/handles/point_0"])).max()
         < 1e-3 * session.view.frame.span
