@@ -66,26 +66,45 @@ macro_rules! operators {
 #[derive(Clone, Copy, Debug)]
 struct Plain(Reals);
 
-operators!(
-    Plain,
-    a,
-    b,
-    Add add Self(std::array::from_fn(|k| a.0[k] + b.0[k])),
-    Sub sub Self(std::array::from_fn(|k| a.0[k] - b.0[k])),
-    Mul mul Self(std::array::from_fn(|k| a.0[k] * b.0[k])),
-    Div div Self(std::array::from_fn(|k| a.0[k] / b.0[k]))
-);
+/// Operators of [`Plain`]. On x86, where it serves machines of before 2013, each is compiled once and called: written out in every kernel
+/// they would be a fifth of the library. Elsewhere it is the only kind.
+macro_rules! plain {
+    ($($operator:ident $name:ident $by:tt),*) => {
+        $(
+            impl $operator for Plain {
+                type Output = Self;
+                #[cfg_attr(target_arch = "x86_64", inline(never))]
+                #[cfg_attr(not(target_arch = "x86_64"), inline(always))]
+                fn $name(self, b: Self) -> Self {
+                    Self(std::array::from_fn(|k| self.0[k] $by b.0[k]))
+                }
+            }
+        )*
+    };
+}
+
+plain!(Add add +, Sub sub -, Mul mul *, Div div /);
+
+impl Neg for Plain {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::splat(0.0) - self
+    }
+}
 
 impl Number for Plain {
     #[inline(always)]
     fn splat(x: f64) -> Self {
         Self([x; LANES])
     }
-    #[inline(always)]
+    #[cfg_attr(target_arch = "x86_64", inline(never))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(always))]
     fn plus_product(self, a: Self, b: Self) -> Self {
         self + a * b
     }
-    #[inline(always)]
+    #[cfg_attr(target_arch = "x86_64", inline(never))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(always))]
     fn minus_product(self, a: Self, b: Self) -> Self {
         self - a * b
     }
@@ -93,13 +112,15 @@ impl Number for Plain {
     fn sqrt(self) -> Self {
         Self(self.0.map(f64::sqrt))
     }
-    #[inline(always)]
+    #[cfg_attr(target_arch = "x86_64", inline(never))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(always))]
     fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
         Self(std::array::from_fn(|k| {
             if self.0[k] > b.0[k] { yes.0[k] } else { no.0[k] }
         }))
     }
-    #[inline(always)]
+    #[cfg_attr(target_arch = "x86_64", inline(never))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(always))]
     fn sin_cos(self) -> (Self, Self) {
         sin_cos_side_by_side(self)
     }
