@@ -224,3 +224,29 @@ def test_a_path_is_found_with_a_planar_joint(name: str) -> None:
     assert best.draft.dimension("knuckle.x").value == pytest.approx(52.0, abs=1e-4)
     assert best.draft.dimension("knuckle.z").value == pytest.approx(14.0, abs=1e-4)
     assert best.motion_type == "crank-slider"
+
+
+@pytest.mark.parametrize("kinds", ["RESP", "RESR", "RSER"])
+def test_a_ball_spins_beside_a_plate_wherever_in_it_its_turn_is_written(kinds: str) -> None:
+    # the link between turns about the plate's normal through the ball
+    last = {"P": ((60, 20, 30), (1, 0.3, 0.2)), "R": ((30, 50, 30), (1, 0.3, 0.2))}[kinds[3]]
+    found = []
+    for at in ((60, 20, 30), (30, 20, 30), (60, 0, 0), (60, 20, 10), (10, 5, 7)):
+        places = {"R": ((0, 0, 0), (0, 0, 1)), "E": (at, (1, 0, 0)), "S": ((60, 20, 30),)}
+        joints = []
+        for k, kind in enumerate(kinds):
+            place, *axis = last if k == 3 else places[kind]
+            joints.append({"name": f"j{k}", "kind": kind, "at": place, **({"axis": axis[0]} if axis else {})})
+        for order in (joints, joints[::-1]):
+            motion = sb.from_axes(order).motion(36, input="j0", output="j3")
+            (idle,) = motion.mobility.idle
+            assert idle.startswith("spin of link 2 about the ")
+            found.append((motion.motion_type, motion.circuits))
+    assert len({kind for kind, _ in found}) == 1
+    assert len({len(circuits) for _, circuits in found}) == 1
+    if kinds == "RESP":
+        # its slide runs to infinity, and is followed some way
+        return
+    ends = [np.sort([c.input_range + c.output_range for c in circuits], axis=0) for _, circuits in found]
+    for one in ends:
+        np.testing.assert_allclose(one, ends[0], atol=1e-9, rtol=1e-9)

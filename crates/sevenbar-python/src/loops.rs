@@ -133,6 +133,7 @@ impl Loop {
                 Idle::BallOnAxis(held, ball) => ("ball-on-axis", held, ball),
                 Idle::OneAxis(held, other) => ("one-axis", held, other),
                 Idle::OneDirection(held, other) => ("one-direction", held, other),
+                Idle::OnPlate(held, ball) => ("on-plate", held, ball),
             })
             .collect()
     }

@@ -85,6 +85,8 @@ class GeneralLoop:
                     return f"spin of {who} about the axis of {first}, on which {second} lies"
                 case "one-axis":
                     return f"turn of {who} about the common axis of {second} and {first}"
+                case "on-plate":
+                    return f"spin of {who} about the normal of {first} through {second}"
                 case _:
                     return f"slide of {who} along the common direction of {second} and {first}"
 

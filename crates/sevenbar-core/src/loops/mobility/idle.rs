@@ -7,6 +7,7 @@ use crate::loops::equation::kinds::Kind;
 use crate::loops::equation::rotations::ball_rotation;
 use crate::random::Random;
 use crate::rigid::Pose;
+use std::ops::Range;
 
 /// A freedom in which no joint but those of its own links takes part, joints counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,13 +22,19 @@ pub enum Idle {
     OneAxis(usize, usize),
     /// Two slides in one direction: (the joint that is held, the other).
     OneDirection(usize, usize),
+    /// The links between a ball and the turn of a plate spin about the plate's normal through the ball, wherever in the plate its turn is:
+    /// (the turn that is held, the ball).
+    OnPlate(usize, usize),
 }
 
 impl Idle {
     /// The joint that is held at its zero.
     fn held(self) -> Option<usize> {
         match self {
-            Self::BallOnAxis(held, _) | Self::OneAxis(held, _) | Self::OneDirection(held, _) => Some(held),
+            Self::BallOnAxis(held, _)
+            | Self::OneAxis(held, _)
+            | Self::OneDirection(held, _)
+            | Self::OnPlate(held, _) => Some(held),
             Self::BetweenBalls(_) | Self::ChainBetweenBalls(..) => None,
         }
     }
@@ -46,6 +53,7 @@ pub(crate) fn idle_freedoms(kinds: &[Kind], links: &[Pose]) -> (Vec<Idle>, Vec<b
     for joint in idle.iter().filter_map(|i| i.held()) {
         held[joint] = true;
     }
+    idle.extend(on_plates(kinds, links, &mut held));
     idle.extend(chains(kinds, &held, &idle));
     (idle, held)
 }
@@ -81,7 +89,7 @@ fn beside_each_other(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
         let link = links[i + 1..next]
             .iter()
             .fold(links[i], |way, link| way.then(link));
-        if !dependent(kinds[i], kinds[next], &link) {
+        if !dependent(&[kinds[i], kinds[next]], &[link]) {
             continue;
         }
         let idle = match (kinds[i], kinds[next]) {
@@ -128,18 +136,44 @@ fn pass_on(kinds: &[Kind], links: &[Pose], held: &[bool]) -> bool {
     (1..last).all(|k| kinds[k] == other || (held[k] && kinds[k] == own)) && between.iter().all(parallel)
 }
 
-/// Whether the screws of two neighbours depend on each other in every pose: looked at in a few poses at random.
-fn dependent(first: Kind, second: Kind, link: &Pose) -> bool {
+/// Spins between a ball and a plate next to it, which is a turn and two slides square to it in any order; the turns are held from now on.
+fn on_plates(kinds: &[Kind], links: &[Pose], held: &mut [bool]) -> Vec<Idle> {
+    let mut found = Vec::new();
+    if kinds.len() == 4 {
+        // the whole loop
+        return found;
+    }
+    for (first, four) in kinds.windows(4).enumerate() {
+        let (ball, plate) = match (four[0], four[3]) {
+            (Kind::Ball, _) => (first, first + 1..first + 4),
+            (_, Kind::Ball) => (first + 3, first..first + 3),
+            _ => continue,
+        };
+        let turns: Vec<usize> = plate.clone().filter(|&k| kinds[k] == Kind::Turn).collect();
+        let slides = plate.clone().filter(|&k| kinds[k] == Kind::Slide).count();
+        let (&[turn], 2) = (&turns[..], slides) else {
+            continue;
+        };
+        let depend = |row: Range<usize>| dependent(&kinds[row.clone()], &links[row.start..row.end - 1]);
+        let all = first..first + 4;
+        if !all.clone().any(|k| held[k]) && !depend(plate) && depend(all) {
+            held[turn] = true;
+            found.push(Idle::OnPlate(turn, ball));
+        }
+    }
+    found
+}
+
+/// Whether the screws of joints in a row depend on each other in every pose: looked at in a few poses at random.
+fn dependent(kinds: &[Kind], links: &[Pose]) -> bool {
     let mut random = Random(0x1d1e);
     (0..3).all(|_| {
-        let chain = Chain::new(
-            [first, second]
-                .iter()
-                .enumerate()
-                .map(|(b, kind)| kind.joint(b))
-                .collect(),
-            vec![*link, Pose::STILL],
-        );
+        let mut balls = 0..;
+        let joints = kinds.iter().map(|kind| {
+            let ball = if *kind == Kind::Ball { balls.next() } else { None };
+            kind.joint(ball.unwrap_or(0))
+        });
+        let chain = Chain::new(joints.collect(), [links, &[Pose::STILL]].concat());
         let mut at = Configuration::zero();
         for value in &mut at.values {
             *value = 2.0 * random.uniform() - 1.0;
