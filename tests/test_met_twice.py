@@ -166,3 +166,14 @@ def test_loops_that_are_overconstrained_meet_nothing_twice():
         motion = sb.load(name).motion(24)
         assert motion.circuits
         assert motion.mobility.met_twice == 0
+
+
+@pytest.mark.parametrize("name", ["as drawn", "turned 1", "from the other end"])
+def test_a_structure_that_turns_as_one_body_has_both_its_poses(name):
+    # each of them closes by a square at every input: paths to solutions that meet are lost by chance
+    (way,) = (way for way in ways(lattice(520, seed=1), np.random.default_rng(1)) if way.name == name)
+    motion = way.linkage.motion(24, input=way.input, output=way.output)
+    slides = sorted(abs(circuit["j3"]).max() for circuit in motion)
+    np.testing.assert_allclose(slides, [0.0, 4.0], atol=1e-9)
+    assert motion.completeness == "searched"
+    assert motion.search.unfollowed == 0
