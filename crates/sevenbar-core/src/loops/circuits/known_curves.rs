@@ -69,11 +69,6 @@ impl<S: Closed> Curves<S> {
         self.curves.is_empty() && self.arcs.is_empty()
     }
 
-    /// Whether there are modes from which no motion was followed when they were met.
-    pub fn leaves_poses(&self) -> bool {
-        !self.not_followed.is_empty()
-    }
-
     /// Those modes that lie on no curve yet.
     pub fn unknown(&self, chain: &S, modes: &[At<S>]) -> Vec<At<S>> {
         let mut modes = not_on_any(chain, &self.curves, modes.to_vec());

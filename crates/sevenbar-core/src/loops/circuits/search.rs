@@ -151,8 +151,6 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         if out.search.found.is_none() {
             look_for_a_structure(&mut out, chain);
         }
-    } else if !out.search.columns.is_empty() {
-        look_for_others_met_twice(&mut out, chain);
     }
     out.finish(chain);
     out.search.open_by.sort_by(f64::total_cmp);
@@ -198,20 +196,6 @@ fn look_for_a_structure(curves: &mut Curves, chain: &Chain) {
         if curves.is_empty() {
             return;
         }
-    }
-}
-
-/// Searches for poses like those from which nothing could be followed, where no curve is known: solutions that meet at every input are
-/// paths lost by chance, and each pose may lie on a motion of its own along which a constraint is met twice.
-fn look_for_others_met_twice(curves: &mut Curves, chain: &Chain) {
-    let column = curves.search.columns[0];
-    if !curves.is_empty() || !curves.leaves_poses() || !ModeFinder::new(chain, column).is_degenerate() {
-        return;
-    }
-    curves.search.completeness = Completeness::Searched;
-    curves.search.count = Err(Uncounted::Searched);
-    for pose in ALL_FREE.poses(chain, column, None) {
-        curves.take(chain, &[pose], curves.wished[0]);
     }
 }
 

@@ -9,6 +9,7 @@ use crate::loops::description::described_loop::Loop;
 use crate::loops::description::holding::{holding, without};
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::mobility::at_rest::{Still, joints_at_rest};
+use crate::loops::modes::many_starts::ALL_FREE;
 
 /// Poses from which no motion could be followed and on which no joint was found that rests, after which no others are tried:
 /// each takes as long as a search for a change point.
@@ -56,44 +57,62 @@ pub(super) struct HeldMotions {
 impl HeldMotions {
     pub fn through(linkage: &Loop, poses: &[Configuration], wished: &[usize], first_only: bool) -> Self {
         let mut found = Self::default();
-        let Some(chain) = &linkage.reduced.chain else {
-            return found;
-        };
         let mut in_vain = 0;
         for pose in poses {
             if in_vain == MOST_IN_VAIN {
                 break;
             }
-            let (at, joints) = joints_at_rest(chain, pose);
-            if found
-                .motions
-                .iter()
-                .any(|held| held.leads_over(chain, &at, &joints))
-            {
+            if found.explain(linkage, pose, wished, first_only) {
                 found.explained += 1;
-                continue;
-            }
-            let known = |still: &Still| found.motions.iter().any(|held| held.still.is_same(still));
-            let Some(mut held) = held_at(linkage, pose).filter(|held| !known(&held.still)) else {
+            } else {
                 in_vain += 1;
-                continue;
-            };
-            if let Some(own) = &held.linkage.reduced.chain {
-                let mut inner: Vec<usize> = wished
-                    .iter()
-                    .filter_map(|&c| held.linkage.chain_column(c))
-                    .collect();
-                if inner.is_empty() {
-                    inner.push(0);
-                }
-                held.curves = curves(own, &inner, first_only);
-            }
-            if !held.curves.curves.is_empty() {
-                found.explained += 1;
-                found.motions.push(held);
             }
         }
         found
+    }
+
+    /// Adds those through poses that a search finds: solutions meet there at every input, and the paths to some are lost.
+    pub fn search(&mut self, linkage: &Loop, wished: &[usize]) {
+        let Some(chain) = &linkage.reduced.chain else {
+            return;
+        };
+        for pose in ALL_FREE.poses(chain, 0, None) {
+            self.explain(linkage, &pose, wished, false);
+        }
+    }
+
+    /// Whether a pose lies on one of the motions, or on a new one.
+    fn explain(&mut self, linkage: &Loop, pose: &Configuration, wished: &[usize], first_only: bool) -> bool {
+        let Some(chain) = &linkage.reduced.chain else {
+            return false;
+        };
+        let (at, joints) = joints_at_rest(chain, pose);
+        if self
+            .motions
+            .iter()
+            .any(|held| held.leads_over(chain, &at, &joints))
+        {
+            return true;
+        }
+        let known = |still: &Still| self.motions.iter().any(|held| held.still.is_same(still));
+        let Some(mut held) = held_at(linkage, pose).filter(|held| !known(&held.still)) else {
+            return false;
+        };
+        if let Some(own) = &held.linkage.reduced.chain {
+            let mut inner: Vec<usize> = wished
+                .iter()
+                .filter_map(|&c| held.linkage.chain_column(c))
+                .collect();
+            if inner.is_empty() {
+                inner.push(0);
+            }
+            held.curves = curves(own, &inner, first_only);
+        }
+        let moves = !held.curves.curves.is_empty();
+        if moves {
+            self.motions.push(held);
+        }
+        moves
     }
 }
 

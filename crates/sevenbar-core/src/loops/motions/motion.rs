@@ -107,10 +107,14 @@ pub fn motion(
     };
     let (driver, follower) = (linkage.inner(input)?, linkage.inner(output)?);
     let curves = curves(chain, &[driver.inner, follower.inner], false);
-    let held = held_motions(linkage, &curves, &[input, output], false);
+    let mut held = held_motions(linkage, &curves, &[input, output], false);
     let asked = Asked { input, output, samples, speed, law, keep };
     let mut motion = followed(linkage, curves, &asked)?;
     motion.search.unfollowed -= held.explained;
+    if !held.motions.is_empty() {
+        held.search(linkage, &[input, output]);
+        motion.search.completeness = Completeness::Searched;
+    }
     for one in held.motions {
         motion.add(one, &asked);
     }
