@@ -230,7 +230,14 @@ class Net:
         law: _Floats | None = None,
     ) -> tuple[RawMotion, list[NetRows]]: ...
     def circuit_through(
-        self, pose: _Floats, input: int, output: int, samples: int, speed: float, law: _Floats | None = None
+        self,
+        solved: Sequence[_RawDyad | _RawBlock] | None,
+        pose: _Floats,
+        input: int,
+        output: int,
+        samples: int,
+        speed: float,
+        law: _Floats | None = None,
     ) -> tuple[RawCircuit, NetRows] | float | list[int] | None: ...
     def ratio_at_rest(self, pose: _Floats, input: int, output: int) -> float | None: ...
     def point(self, rows: NetRows, link: int | None, at: _Floats) -> _Floats: ...

@@ -49,7 +49,7 @@ const ARCTANGENT: [f64; 11] = [
 ];
 
 /// `tan(pi/8)`
-const TAN_EIGHTH: f64 = 0.41421356237309503;
+pub(crate) const TAN_EIGHTH: f64 = 0.41421356237309503;
 
 #[inline(always)]
 fn polynomial<const FUSED: bool, const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
@@ -136,7 +136,18 @@ pub(crate) fn atan2<const FUSED: bool>(y: f64, x: f64) -> f64 {
     angle.copysign(y)
 }
 
-/// The same for numbers side by side.
+/// The angle of a tangent between those of an eighth of half a turn to either side, [`TAN_EIGHTH`].
+#[inline(always)]
+pub(crate) fn arctangent<N: Number>(z: N) -> N {
+    let w = z * z;
+    let mut sum = N::splat(ARCTANGENT[10]);
+    for k in (0..10).rev() {
+        sum = N::splat(ARCTANGENT[k]).plus_product(sum, w);
+    }
+    z.plus_product(z * w, sum)
+}
+
+/// The same as [`atan2`] for numbers side by side.
 #[inline(always)]
 pub(crate) fn atan2_side_by_side<N: Number>(y: N, x: N) -> N {
     let (zero, one) = (N::splat(0.0), N::splat(1.0));
@@ -146,12 +157,7 @@ pub(crate) fn atan2_side_by_side<N: Number>(y: N, x: N) -> N {
     let top = small.if_greater(edge, small - large, small);
     let bottom = small.if_greater(edge, small + large, large);
     let z = top / bottom.if_greater(zero, bottom, one);
-    let w = z * z;
-    let mut sum = N::splat(ARCTANGENT[10]);
-    for k in (0..10).rev() {
-        sum = N::splat(ARCTANGENT[k]).plus_product(sum, w);
-    }
-    let angle = z.plus_product(z * w, sum) + small.if_greater(edge, N::splat(FRAC_PI_4), zero);
+    let angle = arctangent(z) + small.if_greater(edge, N::splat(FRAC_PI_4), zero);
     let angle = ay.if_greater(ax, N::splat(FRAC_PI_2) - angle, angle);
     let angle = zero.if_greater(x, N::splat(PI) - angle, angle);
     zero.if_greater(y, -angle, angle)

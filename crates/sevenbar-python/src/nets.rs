@@ -367,11 +367,12 @@ impl Net {
 
     /// The one circuit through a pose (columns,), and its rows; else how far the net is from closing, the columns that move with the input at
     /// rest, or nothing where no motion could be followed.
-    #[pyo3(signature = (pose, input, output, samples, speed, law=None))]
+    #[pyo3(signature = (solved, pose, input, output, samples, speed, law=None))]
     #[expect(clippy::too_many_arguments)]
     fn circuit_through<'py>(
         &self,
         py: Python<'py>,
+        solved: Option<Vec<RawPart>>,
         pose: PyReadonlyArray1<'py, f64>,
         input: usize,
         output: usize,
@@ -384,8 +385,11 @@ impl Net {
             return Err(CoreError::new_err("pose needs one value for each column"));
         }
         let over = Over { input, output, samples, speed, law: law.as_deref() };
-        let through = working(py, || nets::net_circuit_through(&self.described, &pose, &over))?
-            .map_err(not_followed)?;
+        let solved = solved.map(|raw| parts(raw, self.net.steps.len())).transpose()?;
+        let through = working(py, || {
+            nets::net_circuit_through(&self.described, solved.as_deref(), &pose, &over)
+        })?
+        .map_err(not_followed)?;
         Ok(match through {
             NetThrough::Circuit(circuit) => {
                 let (circuit, rows) = self.circuit(py, *circuit)?;
@@ -448,17 +452,23 @@ impl Net {
     fn circuit(&self, py: Python<'_>, circuit: NetCircuit) -> PyResult<(RawCircuit, NetRows)> {
         let NetCircuit { rows, measures } = circuit;
         let table = working(py, || self.described.joint_table(&rows))?;
-        let each = |number: fn(nets::NetRow) -> f64| rows.rows().map(number).collect::<Vec<f64>>();
-        let whole = |number: fn(nets::NetRow) -> i64| rows.rows().map(number).collect::<Vec<i64>>();
+        let (mut status, mut branch) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
+        let (mut residual, mut condition) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
+        for row in rows.rows() {
+            status.push(row.status() as i64);
+            branch.push(row.pass() as i64);
+            residual.push(row.residual());
+            condition.push(row.condition());
+        }
         let arrays = RowArrays {
             joints: PyArray1::from_vec(py, table)
                 .reshape([4, rows.len(), self.described.column_count()])?
                 .unbind(),
-            status: whole(|r| r.status() as i64).into_pyarray(py).unbind(),
-            branch: whole(|r| r.pass() as i64).into_pyarray(py).unbind(),
+            status: status.into_pyarray(py).unbind(),
+            branch: branch.into_pyarray(py).unbind(),
             mode: None,
-            residual: each(|r| r.residual()).into_pyarray(py).unbind(),
-            condition: each(|r| r.condition()).into_pyarray(py).unbind(),
+            residual: residual.into_pyarray(py).unbind(),
+            condition: condition.into_pyarray(py).unbind(),
         };
         Ok((RawCircuit::new(arrays, &measures, None, None), NetRows(rows)))
     }

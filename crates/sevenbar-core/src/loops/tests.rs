@@ -134,7 +134,7 @@ fn rows_side_by_side_are_the_rows_solved_singly() {
     for mode in ModeFinder::new(&chain, 0).at(0.3).modes {
         let curve = follow::follow(&chain, &[(mode, direction(&chain, &mode))], &[]).swap_remove(0);
         let passes = Passes::new(&chain, curve, 0).unwrap();
-        for row in passes.rows(0.0, 0.01) {
+        for row in passes.rows::<Vec<_>>(0.0, 0.01) {
             let single = passes.row(0, row.at.values[0], &[1.0, 0.0, 0.0]).unwrap();
             for order in 0..3 {
                 for c in 0..7 {

@@ -5,6 +5,7 @@
 use super::joints::{NetJoint, Reading, TERMS};
 use super::net::{Net, on};
 use super::net_rows::{NetRow, NetRows};
+use super::plane_points::PlanePoint;
 use super::rows::On;
 use super::series::{Series, rotating};
 use super::steps::{Move, Placement, Screw};
@@ -15,6 +16,7 @@ use crate::outcome::RowStatus;
 use crate::rigid::{Vec3, cross, dot, norm, sub};
 use crate::stopping;
 use crate::taylor::Taylor;
+use std::f64::consts::{PI, TAU};
 
 /// Directions whose sine is less are parallel: rounding.
 const PARALLEL: f64 = 1e-12;
@@ -51,6 +53,7 @@ pub struct DescribedNet {
 struct Sum {
     of: Vec<(usize, f64)>,
     rest: f64,
+    slides: bool,
 }
 
 impl Described for DescribedNet {
@@ -84,7 +87,7 @@ impl DescribedNet {
         let joints: Vec<NetJoint> = joints.into_iter().map(|(joint, _)| joint).collect();
         let sum = |column: &Outer| match (column.followed, &joints[column.joint]) {
             (_, joint) if joint.reading.slides().len() == 3 => None,
-            (Some(inner), _) => Some(Sum { of: vec![(inner, 1.0)], rest: 0.0 }),
+            (Some(inner), _) => Some(Sum { of: vec![(inner, 1.0)], rest: 0.0, slides: column.slides }),
             (None, joint) => turned_by(&net, joint),
         };
         let sums = columns.iter().map(sum).collect();
@@ -163,35 +166,56 @@ impl DescribedNet {
     /// Values and three derivatives of every column of the description, order by order: `4 x rows x columns`; turns go on along the rows.
     pub fn joint_table(&self, rows: &NetRows) -> Vec<f64> {
         let (count, columns) = (rows.len(), self.columns.len());
-        let mut out = vec![f64::NAN; TERMS * count * columns];
-        let mut before: Vec<Option<f64>> = vec![None; columns];
-        let is_read = |c: usize| {
-            let column = self.columns[c];
-            column.followed.is_none() || self.is_read_off(column)
-        };
-        let read: Vec<bool> = (0..columns).map(is_read).collect();
-        let mut table = vec![Taylor([f64::NAN; TERMS]); columns];
-        for (n, row) in rows.rows().enumerate() {
-            stopping::piece();
-            if row.status() == RowStatus::NoSolution {
-                continue;
-            }
-            match &self.sums {
-                Some(sums) => self.add_up(sums, row, rows.speed, &mut table),
-                None => table = self.table(&series(row, &self.net, rows.speed)),
-            }
-            for (c, series) in table.iter().enumerate() {
-                for order in 1..TERMS {
-                    out[(order * count + n) * columns + c] = series.derivative(order);
-                }
-                let mut value = series.value() + rows.offsets[c];
-                if read[c] && !self.columns[c].slides && value.is_finite() {
-                    if let Some(b) = before[c] {
-                        value = b + short_way(value - b);
+        let mut out = vec![0.0; TERMS * count * columns];
+        if out.is_empty() {
+            return out;
+        }
+        match &self.sums {
+            Some(sums) => {
+                let speed = rows.speed;
+                let factors = [1.0, speed, speed * speed, 2.0 * speed * speed * speed];
+                let terms = factors.map(|factor| Terms::of(sums, factor, self.net.size));
+                let orders = out.chunks_exact_mut(count * columns);
+                let mut orders: Vec<_> = orders.map(|order| order.chunks_exact_mut(columns)).collect();
+                // row by row, so that memory is gone through once
+                for row in rows.rows() {
+                    stopping::piece();
+                    for (order, (out, terms)) in orders.iter_mut().zip(&terms).enumerate() {
+                        let from = match order {
+                            0 => row.values(),
+                            _ => row.rates(order - 1),
+                        };
+                        if let Some(values) = out.next() {
+                            terms.add_up(from, values);
+                        }
                     }
-                    before[c] = Some(value);
                 }
-                out[n * columns + c] = value;
+                let mut rests = vec![0.0; columns];
+                for (rest, sum) in rests.iter_mut().zip(sums) {
+                    *rest = sum.rest;
+                }
+                add(&rests, &mut out[..count * columns]);
+            }
+            None => {
+                for (n, row) in rows.rows().enumerate() {
+                    stopping::piece();
+                    let undetermined = vec![Taylor([f64::NAN; TERMS]); columns];
+                    let table = match row.status() {
+                        RowStatus::NoSolution => undetermined,
+                        _ => self.table(&series(row, &self.net, rows.speed)),
+                    };
+                    for (c, series) in table.iter().enumerate() {
+                        for order in 0..TERMS {
+                            out[(order * count + n) * columns + c] = series.derivative(order);
+                        }
+                    }
+                }
+            }
+        }
+        add(&rows.offsets, &mut out[..count * columns]);
+        for (c, column) in self.columns.iter().enumerate() {
+            if (column.followed.is_none() || self.is_read_off(*column)) && !column.slides {
+                go_on(out[..count * columns].iter_mut().skip(c).step_by(columns));
             }
         }
         out
@@ -202,35 +226,24 @@ impl DescribedNet {
         self.joints[column.joint].reading.slides().len() == 3
     }
 
-    /// Each column of the description as the sum of columns of a row.
-    fn add_up(&self, sums: &[Sum], row: NetRow<'_>, speed: f64, table: &mut [Taylor<TERMS>]) {
-        let values = row.values();
-        let mut factors = [1.0; TERMS];
-        for order in 1..TERMS {
-            factors[order] = factors[order - 1] * speed;
-        }
-        for ((series, sum), column) in table.iter_mut().zip(sums).zip(&self.columns) {
-            let unit = if column.slides { self.net.size } else { 1.0 };
-            let add = |from: &[f64]| sum.of.iter().map(|&(c, part)| from[c] * part).sum::<f64>();
-            series.0[0] = (add(values) + sum.rest) * unit;
-            if column.followed.is_none() {
-                series.0[0] = short_way(series.0[0]);
-            }
-            for order in 1..TERMS {
-                series.0[order] = add(row.rates(order - 1)) * (factors[order] * unit / order as f64);
-            }
-        }
-    }
-
     /// Position, velocity, acceleration and jerk of a point of a link, `4 x rows x 3`, in the report frame; `at` is where it is drawn.
     /// Rows without a pose are NaN; at dead centres only the position is given.
     pub fn point(&self, rows: &NetRows, link: On, at: Vec3) -> Vec<f64> {
         let count = rows.len();
         let mut out = vec![f64::NAN; TERMS * count * 3];
         let small = at.map(|x| x / self.net.size);
+        let in_plane = PlanePoint::of(&self.relative, link, small);
         for (n, row) in rows.rows().enumerate() {
             stopping::piece();
             if row.status() == RowStatus::NoSolution {
+                continue;
+            }
+            if let Some(point) = &in_plane {
+                for (order, place) in point.on(row, rows.speed).into_iter().enumerate() {
+                    for k in 0..3 {
+                        out[(order * count + n) * 3 + k] = place[k] * self.net.size;
+                    }
+                }
                 continue;
             }
             let poses = self.poses(&series(row, &self.net, rows.speed));
@@ -243,6 +256,65 @@ impl DescribedNet {
             }
         }
         out
+    }
+}
+
+/// Sums of columns, one after the other.
+struct Terms {
+    /// Where the terms of each end.
+    ends: Vec<usize>,
+    of: Vec<(usize, f64)>,
+}
+
+impl Terms {
+    /// Sums of an order, which has such a factor; of slides in parts of the size.
+    fn of(sums: &[Sum], factor: f64, size: f64) -> Self {
+        let (mut ends, mut of) = (Vec::new(), Vec::new());
+        for sum in sums {
+            let factor = if sum.slides { factor * size } else { factor };
+            of.extend(sum.of.iter().map(|&(c, part)| (c, part * factor)));
+            ends.push(of.len());
+        }
+        Self { ends, of }
+    }
+
+    #[inline]
+    fn add_up(&self, from: &[f64], out: &mut [f64]) {
+        let mut first = 0;
+        for (value, &end) in out.iter_mut().zip(&self.ends) {
+            let mut total = 0.0;
+            for &(c, part) in &self.of[first..end] {
+                total += from[c] * part;
+            }
+            *value = total;
+            first = end;
+        }
+    }
+}
+
+/// Adds one row to each.
+fn add(row: &[f64], out: &mut [f64]) {
+    if row.iter().any(|by| *by != 0.0) {
+        for values in out.chunks_exact_mut(row.len()) {
+            for (value, by) in values.iter_mut().zip(row) {
+                *value += by;
+            }
+        }
+    }
+}
+
+/// Adds whole turns to the angles of a column, the first of which is at most half a turn, so that each is next to the one before.
+fn go_on<'a>(angles: impl Iterator<Item = &'a mut f64>) {
+    let (mut last, mut turns) = (0.0, 0.0);
+    for angle in angles {
+        let own = *angle;
+        if (own + turns - last).abs() >= PI {
+            turns = TAU * ((last + short_way(own - last) - own) / TAU).round();
+        }
+        if own.is_finite() {
+            last = own + turns;
+            *angle = last;
+        }
     }
 }
 
@@ -270,7 +342,7 @@ fn turned_by(net: &Net, joint: &NetJoint) -> Option<Sum> {
             }
         }
     }
-    Some(Sum { of, rest })
+    Some(Sum { of, rest, slides: false })
 }
 
 /// The columns of a row as series by time, the input at a speed.

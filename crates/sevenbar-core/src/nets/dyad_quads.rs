@@ -1,8 +1,9 @@
 //! Rows of dyads four at once in vector lanes, or one by one on processors of another kind.
 
-use super::dyad_rows::{DyadRows, Found};
+use super::dyad_rows::DyadRows;
+use super::dyad_sides::Found;
 use super::joints::TERMS;
-use crate::loops::equation::closed::{Closed, Explicit, Explicits, Stretch};
+use crate::loops::equation::closed::{Closed, Explicits, Stretch};
 use crate::number::Number;
 use crate::vectors::{Four, QUAD, QuadKernel, dispatch_quads};
 
@@ -36,59 +37,92 @@ struct Made<'a, S: Closed> {
 }
 
 impl<S: Closed> Made<'_, S> {
+    /// Power series of the input.
     #[inline(always)]
-    fn found<N: Number>(&self, value: N) -> Found<N> {
+    fn series<N: Number>(&self, value: N) -> [N; TERMS] {
         let [velocity, acceleration, jerk] = *self.given;
-        let series = [
+        [
             value,
             N::splat(velocity),
             N::splat(acceleration / 2.0),
             N::splat(jerk / 6.0),
-        ];
-        self.dyads.row(&self.on.signs, series, self.on.from.as_ref())
+        ]
     }
 
-    fn one(self, k: usize) {
-        let found = self.found(self.values[k]);
-        let row = &mut self.rows[k];
-        for c in 0..self.dyads.columns() {
-            row.at.values[c] = found.values[c];
-            for order in 0..TERMS - 1 {
-                row.rates[order][c] = found.rates[order][c];
+    /// The row of a net of pins, if it is one.
+    #[inline(always)]
+    fn of_pins<N: Number>(&self, value: N) -> Option<Found<N>> {
+        let near = (self.on.from.as_ref(), self.on.turns.as_ref());
+        let pins = self.dyads.pins.as_ref()?;
+        Some(pins.row(&self.on.signs, self.series(value), near))
+    }
+
+    /// The row of a net of any dyads.
+    #[inline(always)]
+    fn of_dyads<N: Number>(&self, value: N) -> Found<N> {
+        self.dyads
+            .row(&self.on.signs, self.series(value), self.on.from.as_ref())
+    }
+
+    fn one(mut self, k: usize) {
+        if let Some(found) = self.of_pins(self.values[k]) {
+            self.put_one(k, &found);
+            if self.rows.is_sure[k] {
+                return;
             }
         }
-        close(row, [found.residual, found.condition, found.sine]);
+        let found = self.of_dyads(self.values[k]);
+        self.put_one(k, &found);
+    }
+
+    fn put_one(&mut self, k: usize, found: &Found<f64>) {
+        let rows = &mut *self.rows;
+        for c in 0..self.dyads.columns() {
+            rows.values[c][k] = found.values[c];
+            for order in 0..TERMS - 1 {
+                rows.rates[order][c][k] = found.rates[order][c];
+            }
+        }
+        rows.residual[k] = found.residual;
+        rows.condition[k] = found.condition;
+        rows.is_sure[k] = is_sure(found.residual, found.sine);
+    }
+
+    #[inline(always)]
+    fn put<F: Four>(&mut self, found: &Found<F>) {
+        let rows = &mut *self.rows;
+        for c in 0..self.dyads.columns() {
+            rows.values[c] = found.values[c].store();
+            for order in 0..TERMS - 1 {
+                rows.rates[order][c] = found.rates[order][c].store();
+            }
+        }
+        rows.residual = found.residual.store();
+        rows.condition = found.condition.store();
+        let sine = found.sine.store();
+        for k in 0..QUAD {
+            rows.is_sure[k] = is_sure(rows.residual[k], sine[k]);
+        }
     }
 }
 
 impl<S: Closed> QuadKernel for Made<'_, S> {
     #[inline(always)]
-    fn run<F: Four>(self) {
-        let found = self.found(F::load(self.values));
-        for c in 0..self.dyads.columns() {
-            let lanes = found.values[c].store();
-            for k in 0..QUAD {
-                self.rows[k].at.values[c] = lanes[k];
-            }
-            for order in 0..TERMS - 1 {
-                let lanes = found.rates[order][c].store();
-                for k in 0..QUAD {
-                    self.rows[k].rates[order][c] = lanes[k];
-                }
+    fn run<F: Four>(mut self) {
+        let value = F::load(self.values);
+        if let Some(found) = self.of_pins(value) {
+            self.put(&found);
+            if self.rows.is_sure == [true; QUAD] {
+                return;
             }
         }
-        let (residual, condition) = (found.residual.store(), found.condition.store());
-        let sine = found.sine.store();
-        for k in 0..QUAD {
-            close(&mut self.rows[k], [residual[k], condition[k], sine[k]]);
-        }
+        let found = self.of_dyads(value);
+        self.put(&found);
     }
 }
 
-/// Puts down how well a row closes, its condition number, and whether it is sure with such a sine of a dyad.
+/// Whether a row that closes so well is sure with such a sine of a dyad.
 #[inline(always)]
-fn close<S: Closed>(row: &mut Explicit<S>, [residual, condition, sine]: [f64; 3]) {
-    row.residual = residual;
-    row.condition = condition;
-    row.is_sure = DyadRows::is_sure(sine) && residual < CLOSES;
+fn is_sure(residual: f64, sine: f64) -> bool {
+    DyadRows::is_sure(sine) && residual < CLOSES
 }

@@ -6,12 +6,13 @@
 //!
 //! Source: docs/theory_nets.md, (14) to (17).
 
-use super::dyad_sides::{Joined, MOST, Poses, on};
+use super::dyad_sides::{Found, Joined, MOST, Poses, on};
 use super::dyads::{Pair, Plane};
 use super::in_plane::{Complex, InPlane};
 use super::joints::TERMS;
 use super::modes::{Part, Stage};
 use super::net::Net;
+use super::pin_rows::PinRows;
 use super::rows::{On, Row};
 use super::series::Series;
 use super::square::Square;
@@ -67,21 +68,8 @@ pub(super) struct DyadRows {
     rows: Vec<PlanarRow>,
     /// What columns that are not in use add to the squares of `A`.
     besides: f64,
-}
-
-/// A row of numbers of any kind.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found<M> {
-    /// The columns [rad, or relative to the size].
-    pub values: [M; MOST],
-    /// Series of the rates.
-    pub rates: [[M; MOST]; TERMS - 1],
-    /// The closure error.
-    pub residual: M,
-    /// The condition number of `A` with the input's row.
-    pub condition: M,
-    /// The least sine of a dyad, to the side of its sign.
-    pub sine: M,
+    /// The same where all joints are pins.
+    pub pins: Option<PinRows>,
 }
 
 impl DyadRows {
@@ -153,7 +141,9 @@ impl DyadRows {
                 Some(PlanarRow { on: row.on(), kind, columns })
             })
             .collect();
+        let pins = PinRows::of(net, &stages, &plane, driven, (size, besides));
         Some(Self {
+            pins,
             driven,
             columns: columns?,
             stages: stages
@@ -214,6 +204,16 @@ impl DyadRows {
         Some(sides)
     }
 
+    /// Cosine and sine of what columns turn by at values, where these are wanted.
+    pub fn turns(&self, values: &[f64], turns: &mut [[f64; 2]]) {
+        if self.pins.is_some() {
+            for ((column, value), turn) in self.columns.iter().zip(values).zip(turns) {
+                let (sine, cosine) = (value - column.reads).sin_cos();
+                *turn = [cosine, sine];
+            }
+        }
+    }
+
     /// Whether a row with such a least sine is sure.
     #[inline(always)]
     pub fn is_sure(sine: f64) -> bool {
@@ -223,7 +223,6 @@ impl DyadRows {
     /// The row with the input's series, with turns of columns counted on from those of a place near by.
     #[inline(always)]
     pub fn row<M: Number>(&self, sides: &[f64; MOST_SIGNS], input: [M; TERMS], near: &[f64]) -> Found<M> {
-        let zero = M::splat(0.0);
         let mut poses: Poses<Series<M, TERMS>> = [InPlane::still(); MOST];
         let driven = self.columns[self.driven];
         let z = match driven.moves {
@@ -239,13 +238,7 @@ impl DyadRows {
             poses[stage.links[0]] = both[0];
             poses[stage.links[1]] = both[1];
         }
-        let mut found = Found {
-            values: [zero; MOST],
-            rates: [[zero; MOST]; TERMS - 1],
-            residual: zero,
-            condition: zero,
-            sine: M::splat(1.0),
-        };
+        let mut found = Found::nothing();
         self.read(&poses, near, &mut found);
         found.values[self.driven] = input[0];
         for order in 1..TERMS {

@@ -6,6 +6,7 @@
 
 use super::dyads::{Pair, Plane};
 use super::in_plane::{Complex, InPlane};
+use super::joints::TERMS;
 use super::modes::Stage;
 use super::rows::On;
 use crate::number::Number;
@@ -16,6 +17,36 @@ pub(super) const MOST: usize = 9;
 
 /// Poses in the plane of what every step moves.
 pub(super) type Poses<N> = [InPlane<N>; MOST];
+
+/// A row of numbers of any kind.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found<M> {
+    /// The columns [rad, or relative to the size].
+    pub values: [M; MOST],
+    /// Series of the rates.
+    pub rates: [[M; MOST]; TERMS - 1],
+    /// The closure error.
+    pub residual: M,
+    /// The condition number of `A` with the input's row.
+    pub condition: M,
+    /// The least sine of a dyad, to the side of its sign.
+    pub sine: M,
+}
+
+impl<M: Number> Found<M> {
+    /// What is known of none.
+    #[inline(always)]
+    pub fn nothing() -> Self {
+        let zero = M::splat(0.0);
+        Self {
+            values: [zero; MOST],
+            rates: [[zero; MOST]; TERMS - 1],
+            residual: zero,
+            condition: zero,
+            sine: M::splat(1.0),
+        }
+    }
+}
 
 /// The pose of what a step moves, of the ground where there is none.
 #[inline(always)]

@@ -58,6 +58,7 @@ impl Flat {
 }
 
 /// Directions x and y in the plane.
+#[derive(Debug)]
 pub(super) struct Plane {
     x: Vec3,
     y: Vec3,
@@ -74,6 +75,11 @@ impl Plane {
     /// A place, or a direction, as a number.
     pub fn place(&self, v: Vec3) -> Complex64 {
         Complex64::new(dot(v, self.x), dot(v, self.y))
+    }
+
+    /// A number as a direction, or a place in the plane through the origin.
+    pub fn direction(&self, z: Complex64) -> Vec3 {
+        std::array::from_fn(|k| z.re * self.x[k] + z.im * self.y[k])
     }
 
     /// A pose of what moves in it.

@@ -2,6 +2,7 @@
 //!
 //! Source: docs/theory_nets.md, (7).
 
+use super::joints::TERMS;
 use crate::number::Number;
 use num_complex::Complex64;
 
@@ -102,5 +103,63 @@ impl<N: Number> InPlane<N> {
     #[inline(always)]
     pub fn shifted(&self, by: Complex<N>) -> Self {
         Self { z: self.z, t: self.t.plus(by) }
+    }
+}
+
+/// How a link moves: its turn, the place of its pin with three derivatives, its angular velocity with two.
+#[derive(Clone, Copy)]
+pub(super) struct Moving<N> {
+    pub z: Complex<N>,
+    pin: [Complex<N>; TERMS],
+    pub spin: [N; TERMS - 1],
+    /// What takes a place on the link to its second and third derivative.
+    bent: [Complex<N>; 2],
+}
+
+impl<N: Number> Moving<N> {
+    #[inline(always)]
+    pub fn new(z: Complex<N>, pin: [Complex<N>; TERMS], spin: [N; TERMS - 1]) -> Self {
+        let [w, a, j] = spin;
+        let square = w * w;
+        let bent = [
+            Complex { re: -square, im: a },
+            Complex { re: (w * a).scaled(-3.0), im: j.minus_product(square, w) },
+        ];
+        Self { z, pin, spin, bent }
+    }
+
+    /// A place on the link, with three derivatives.
+    #[inline(always)]
+    pub fn carry(&self, off: Complex64) -> [Complex<N>; TERMS] {
+        let r = self.z.by(off);
+        let [place, first, second, third] = self.pin;
+        let w = self.spin[0];
+        [
+            place.plus(r),
+            Complex {
+                re: first.re.minus_product(w, r.im),
+                im: first.im.plus_product(w, r.re),
+            },
+            plus_product(second, self.bent[0], r),
+            plus_product(third, self.bent[1], r),
+        ]
+    }
+}
+
+/// `a + b c`
+#[inline(always)]
+pub(super) fn plus_product<N: Number>(a: Complex<N>, b: Complex<N>, c: Complex<N>) -> Complex<N> {
+    Complex {
+        re: a.re.plus_product(b.re, c.re).minus_product(b.im, c.im),
+        im: a.im.plus_product(b.re, c.im).plus_product(b.im, c.re),
+    }
+}
+
+/// `a - b c`
+#[inline(always)]
+pub(super) fn minus_product<N: Number>(a: Complex<N>, b: Complex<N>, c: Complex<N>) -> Complex<N> {
+    Complex {
+        re: a.re.minus_product(b.re, c.re).plus_product(b.im, c.im),
+        im: a.im.minus_product(b.re, c.im).minus_product(b.im, c.re),
     }
 }

@@ -1,6 +1,6 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `modes`, `net_rows`, `described`, `in_plane`, `dyad_sides`, `dyad_rows`, `dyad_quads`, `sized`, `search`, `motion`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `motion`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
@@ -19,8 +19,10 @@ mod motion;
 mod net;
 mod net_rows;
 mod order;
+mod pin_rows;
 mod planar_block;
 mod planar_family;
+mod plane_points;
 mod rows;
 mod search;
 mod series;

@@ -9,7 +9,7 @@ use super::freedoms::{Freedoms, freedoms};
 use super::modes::{Part, modes};
 use super::net_rows::NetRows;
 use super::search::{STARTS, STARTS_OF_MANY, is_isolated, searched, settled};
-use super::sized::SizedNet;
+use super::sized::{MOST_COLUMNS, SizedNet};
 use crate::loops::circuits::change_points as curve_points;
 use crate::loops::circuits::curve;
 use crate::loops::circuits::found::Search;
@@ -32,9 +32,6 @@ const SLIDE_SEED: f64 = 0.02;
 
 /// A rate by the length of the curve below which a column rests: a dead centre is known to the root of rounding.
 const RESTS: f64 = 1e-6;
-
-/// Most columns of a net that is followed.
-const MOST_COLUMNS: usize = 17;
 
 /// Why a net has no motion that is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -180,21 +177,25 @@ pub fn net_motion(
     sized(described, Motion(Asked::new(described, over)?, parts))
 }
 
-/// The one circuit through a pose of a net, given by the columns of the description.
+/// The one circuit through a pose of a net, given by the columns of the description; its rows have a closed form where its `parts`, if these are given, do.
 pub fn net_circuit_through(
     described: &DescribedNet,
+    parts: Option<&[Part]>,
     pose: &[f64],
     over: &Over,
 ) -> Result<NetThrough, NotFollowed> {
-    struct Circuit<'a>(Asked<'a>, Vec<f64>);
+    struct Circuit<'a>(Asked<'a>, Option<&'a [Part]>, Vec<f64>);
     impl Sized for Circuit<'_> {
         type Out = NetThrough;
+        fn parts(&self) -> Option<(&[Part], usize)> {
+            Some((self.1?, self.0.ends.0.inner))
+        }
         fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> NetThrough {
-            self.0.through(net, &self.1)
+            self.0.through(net, &self.2)
         }
     }
     let pose = described.inner_values(pose);
-    sized(described, Circuit(Asked::new(described, over)?, pose))
+    sized(described, Circuit(Asked::new(described, over)?, parts, pose))
 }
 
 /// d(output)/d(input) at a pose, given by the columns of the description, where both rest; `None` where one of them moves.
@@ -255,7 +256,7 @@ impl<'a> Asked<'a> {
         curves: Curves<SizedNet<C, R, B>>,
     ) -> (NetMotion, Vec<Reach>) {
         let Over { samples, speed, law, .. } = self.over;
-        let selected = |_: &Passes<SizedNet<C, R, B>>, circuit, _: (f64, f64)| circuit_of(net, circuit);
+        let selected = |_: &Passes<SizedNet<C, R, B>>, circuit, _: (f64, f64)| circuit_of(circuit);
         let how = (samples, speed, law);
         let over = over_input(self.described, net, curves, self.ends, how, &selected);
         let values_of = |(point, circuits): (curve_points::ChangePoint<SizedNet<C, R, B>>, Vec<usize>)| {
@@ -369,19 +370,9 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// A circuit whose size the compiler need not know, and how far it goes.
-fn circuit_of<const C: usize, const R: usize, const B: usize>(
-    net: &SizedNet<C, R, B>,
-    circuit: OverInput<SizedNet<C, R, B>>,
-) -> (NetCircuit, Reach) {
-    let used = net.used();
-    let sizes = [used, net.net.balls.len()];
-    let mut rows = NetRows::new(sizes, circuit.rows.len(), circuit.offsets, circuit.speed);
-    for row in &circuit.rows {
-        let rates = row.rates.iter().map(|rates| &rates[..used]);
-        let besides = (row.status, row.pass, row.residual, row.condition);
-        rows.push(net.values(&row.at), net.balls(&row.at), rates, besides);
-    }
+/// A circuit, and how far it goes.
+fn circuit_of(circuit: OverInput<NetRows>) -> (NetCircuit, Reach) {
+    let rows = circuit.rows.at_speed(circuit.offsets, circuit.speed);
     (NetCircuit { rows, measures: circuit.measures }, circuit.reach)
 }
 

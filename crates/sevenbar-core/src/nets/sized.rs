@@ -21,6 +21,9 @@ use crate::rigid::{Vec3, dot, norm, sub};
 use crate::vectors::QUAD;
 use std::fmt::Debug;
 
+/// Most columns of a net that is followed.
+pub(super) const MOST_COLUMNS: usize = 17;
+
 /// A net of one freedom with at most so many columns and one row less; lengths relative to the size.
 pub(super) struct SizedNet<const C: usize, const R: usize, const B: usize> {
     pub net: Net,
@@ -345,7 +348,10 @@ impl<const C: usize, const R: usize, const B: usize> Closed for SizedNet<C, R, B
     fn stretch(&self, input: usize, ends: [&At<Self>; 2]) -> Option<Stretch<Self>> {
         let explicit = self.explicit.as_ref().filter(|e| e.driven() == input)?;
         let signs = explicit.sides(ends.map(|at| self.values(at)))?;
-        Some(Stretch { signs, from: ends[0].values })
+        let from = ends[0].values;
+        let mut turns = [[0.0; 2]; C];
+        explicit.turns(&from, &mut turns);
+        Some(Stretch { signs, from, turns })
     }
 
     fn explicit(

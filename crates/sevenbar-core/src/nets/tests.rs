@@ -8,8 +8,9 @@ use super::rows::{On, Row};
 use super::sized::SizedNet;
 use super::steps::{Move, Step};
 use crate::loops::circuits::known_curves::Curves;
-use crate::loops::equation::closed::{Closed, Explicit};
+use crate::loops::equation::closed::{Closed, Explicits};
 use crate::loops::motions::passes::Passes;
+use crate::loops::motions::row::Row as OfCircuit;
 use crate::outcome::RowStatus;
 use crate::rigid::Vec3;
 use crate::vectors::QUAD;
@@ -90,12 +91,12 @@ fn compared(net: &Net, parts: &[Part], name: &str) -> f64 {
         for ends in curve.nodes.windows(2) {
             let value = 0.5 * (ends[0].at.values[0] + ends[1].at.values[0]);
             let on = explicit.stretch(0, [&ends[0].at, &ends[1].at]);
-            let mut made = Explicit::none();
+            let mut made = Explicits::none();
             if let Some(on) = on {
                 explicit.explicit(&on, &[value; QUAD], &[1.0, 0.0, 0.0], &mut made);
             }
             let over = (ends[0].at.values[0] - ends[1].at.values[0]).abs();
-            met += if made[0].is_sure { over } else { 0.0 };
+            met += if made.is_sure[0] { over } else { 0.0 };
             all += over;
         }
         let one = Passes::new(&general, curve.clone(), 0).unwrap();
@@ -114,7 +115,7 @@ fn compared(net: &Net, parts: &[Part], name: &str) -> f64 {
         });
         let law: Vec<[f64; 4]> = law.into_iter().chain(near).collect();
         let step = (high - low) / 97.0;
-        let pairs = [
+        let pairs: [(Vec<OfCircuit<Whole>>, Vec<OfCircuit<Whole>>); 2] = [
             (one.rows(low, step), other.rows(low, step)),
             (
                 one.law_rows(&law, general.is_turn(0), 0.0),
@@ -301,6 +302,59 @@ fn dyads_on_dyads_have_the_rows_of_the_general_way() {
     }
 }
 
+/// Two dyads of pins, the second on the first's links, each closed at one of its three pins.
+fn closed_at(chords: [usize; 2]) -> (Net, Vec<Part>) {
+    let places = [
+        [[0.1, 0.4], [1.1, 0.8], [1.0, 0.0]],
+        [[1.5, 0.6], [2.2, 0.7], [2.0, 0.0]],
+    ];
+    let mut steps = vec![step(None, hinge(0.0, 0.0), 1.0)];
+    let (mut rows, mut parts) = (Vec::new(), Vec::new());
+    let mut known = [Some(0), None];
+    for (places, chord) in places.into_iter().zip(chords) {
+        let pairs = places.map(|[x, y]| hinge(x, y));
+        let base = steps.len();
+        // a link that hangs on the other comes after it
+        let links = if chord == 0 {
+            [base + 1, base]
+        } else {
+            [base, base + 1]
+        };
+        let [one, two] = links.map(Some);
+        let (first, second, closed) = match chord {
+            0 => ((known[1], pairs[2]), (two, pairs[1]), [known[0], one]),
+            1 => ((known[0], pairs[0]), (known[1], pairs[2]), [one, two]),
+            _ => ((known[0], pairs[0]), (one, pairs[1]), [two, known[1]]),
+        };
+        steps.push(step(first.0, first.1, -1.0));
+        steps.push(step(second.0, second.1, 1.0));
+        rows.extend(closing(pairs[chord], closed));
+        parts.push(Part::Dyad(Stage {
+            dyad: Dyad { normal: Z, pairs },
+            links,
+            known,
+        }));
+        known = [two, one];
+    }
+    (
+        Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 2.5 },
+        parts,
+    )
+}
+
+#[test]
+fn nets_of_pins_may_be_closed_at_any_pin_of_a_dyad() {
+    for chords in [[0, 1], [1, 2], [2, 0], [0, 0], [2, 2], [1, 1]] {
+        let (net, parts) = closed_at(chords);
+        let independent = super::freedoms::freedoms(&net).independent;
+        let whole = Whole::new(&net, &independent);
+        let dyads = DyadRows::of(&whole.net, &parts, 0, net.size, 0.0).unwrap();
+        assert!(dyads.pins.is_some(), "{chords:?}");
+        let share = compared(&net, &parts, &format!("{chords:?}"));
+        assert!(share > 0.6, "{chords:?} {share}");
+    }
+}
+
 #[test]
 fn what_leans_out_of_the_plane_or_is_driven_elsewhere_has_no_closed_form() {
     let pairs = [hinge(0.3, 0.9), hinge(2.4, 1.9), hinge(2.8, 0.0)];
@@ -330,15 +384,16 @@ fn rows_one_by_one_are_those_of_four_at_once() {
         let on = whole.stretch(0, [&drawn, &drawn]).unwrap();
         let values = [0.25, 0.3, 0.35, 0.4];
         let given = [0.7, -0.3, 0.9];
-        let mut made = Explicit::none();
+        let mut made = Explicits::none();
         whole.explicit(&on, &values, &given, &mut made);
-        for (row, value) in made.iter().zip(values) {
+        for (k, value) in values.into_iter().enumerate() {
+            let row = OfCircuit::<Whole>::explicit(0, &made, k);
             let one = dyads.row(
                 &on.signs,
                 [value, given[0], given[1] / 2.0, given[2] / 6.0],
                 &on.from,
             );
-            assert!(row.is_sure && DyadRows::is_sure(one.sine));
+            assert!(made.is_sure[k] && DyadRows::is_sure(one.sine));
             assert!(one.residual < 1e-14 && (one.condition - row.condition).abs() < 1e-12 * row.condition);
             for c in 0..whole.used() {
                 assert!((one.values[c] - row.at.values[c]).abs() < 1e-14);

@@ -105,7 +105,10 @@ class NetSolver:
         """The one circuit through a pose (columns,)."""
         linkage, tree = self._linkage, self._tree(column, output)
         table = None if law is None else law.table
-        raw = tree.followed(lambda core: core.circuit_through(pose, column, output, samples, speed, table))
+        parts = parts_of(linkage, tree)
+        raw = tree.followed(
+            lambda core: core.circuit_through(parts, pose, column, output, samples, speed, table)
+        )
         match raw:
             case ():
                 raise no_circuit(linkage, column, None, linkage.size)

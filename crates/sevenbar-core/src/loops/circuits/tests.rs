@@ -370,7 +370,7 @@ fn rows<S: Closed>(
         let passes = Passes::new(closed, curve.clone(), 0).unwrap();
         let ends = &passes.limits[..passes.limits.len() - usize::from(passes.turns_back())];
         limits.extend(ends.iter().map(|n| (n.at.values[0] - origin).rem_euclid(TAU)));
-        for row in passes.rows(origin, TAU / 360.0) {
+        for row in passes.rows::<Vec<_>>(origin, TAU / 360.0) {
             if row.status == RowStatus::Ok {
                 let degrees = ((row.at.values[0] - origin).to_degrees())
                     .round()
@@ -535,7 +535,7 @@ fn every_mode_of_a_watt_six_bar_by_dyads_lies_on_one_of_the_circuits_followed_an
     let mut rows = 0;
     for curve in &found.curves {
         let passes = Passes::new(&net, curve.clone(), 0).unwrap();
-        for row in passes.rows(0.0, TAU / 96.0) {
+        for row in passes.rows::<Vec<_>>(0.0, TAU / 96.0) {
             // near a dead centre the dyads do not close beside it
             if row.status != RowStatus::Ok || row.condition > 100.0 {
                 continue;

@@ -37,26 +37,28 @@ impl Joint {
 /// Most signs by which a stretch of a pass is distinguished from others at the same inputs.
 pub(crate) const MOST_SIGNS: usize = 4;
 
-/// The signs of a stretch of a pass, and the columns at its first end.
+/// The signs of a stretch of a pass, and its first end.
 #[derive(Debug)]
 pub(crate) struct Stretch<S: Closed> {
     pub signs: [f64; MOST_SIGNS],
     pub from: S::Columns<f64>,
+    /// Cosine and sine of the turns at these columns.
+    pub turns: S::Columns<[f64; 2]>,
 }
 
-/// A row in closed form: series of the rates, the closure error, the condition number of `A` with the input's row.
+/// Rows in closed form that are made at once, of nets without balls: each number for all rows.
 #[derive(Debug)]
-pub(crate) struct Explicit<S: Closed> {
-    pub at: At<S>,
-    pub rates: [S::Columns<f64>; 3],
-    pub residual: f64,
-    pub condition: f64,
-    /// Whether its closed form is sure.
-    pub is_sure: bool,
+pub(crate) struct Explicits<S: Closed> {
+    pub values: S::Columns<[f64; QUAD]>,
+    /// Series of the rates.
+    pub rates: [S::Columns<[f64; QUAD]>; 3],
+    /// The closure errors.
+    pub residual: [f64; QUAD],
+    /// The condition numbers of `A` with the input's row.
+    pub condition: [f64; QUAD],
+    /// Whether their closed form is sure.
+    pub is_sure: [bool; QUAD],
 }
-
-/// Rows in closed form that are made at once.
-pub(crate) type Explicits<S> = [Explicit<S>; QUAD];
 
 /// What closes.
 pub(crate) trait Closed: Sized {
@@ -259,7 +261,7 @@ pub(crate) struct Placed<S: Closed, N: Number = f64> {
 #[derive(Debug)]
 pub(crate) struct Inverse<S: Closed, N: Number = f64>(pub S::Bordered<S::Columns<N>>);
 
-copied!(At<S, N>, Placed<S, N>, Inverse<S, N>, Explicit<S>);
+copied!(At<S, N>, Placed<S, N>, Inverse<S, N>);
 
 impl<S: Closed> At<S> {
     /// All joints at zero.
@@ -272,12 +274,17 @@ impl<S: Closed> At<S> {
     }
 }
 
-impl<S: Closed> Explicit<S> {
+impl<S: Closed> Explicits<S> {
     /// Room for rows.
-    pub fn none() -> Explicits<S> {
-        let rates = [S::Columns::filled(0.0); 3];
-        let (residual, condition) = (f64::NAN, f64::NAN);
-        [Self { at: At::zero(), rates, residual, condition, is_sure: false }; QUAD]
+    pub fn none() -> Self {
+        let zero = S::Columns::filled([0.0; QUAD]);
+        Self {
+            values: zero,
+            rates: [zero; 3],
+            residual: [f64::NAN; QUAD],
+            condition: [f64::NAN; QUAD],
+            is_sure: [false; QUAD],
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! One circuit: its rows over an input, and what it is measured by.
 
 use super::extremes::output_extremes;
+use super::kept::Kept;
 use super::passes::{Pass, Passes};
 use super::row::Row;
 use super::rows::{Rows, Tally};
@@ -39,9 +40,9 @@ pub(crate) struct Reach {
 }
 
 /// A circuit over an input as it is followed.
-pub(crate) struct OverInput<S: Closed> {
+pub(crate) struct OverInput<K> {
     /// Its rows at unit speed of the input, or by a law.
-    pub rows: Vec<Row<S>>,
+    pub rows: K,
     /// Whole turns to be added to each column of the description.
     pub offsets: Vec<f64>,
     /// d(input)/dt of the rows that are wanted, as it is followed.
@@ -51,8 +52,8 @@ pub(crate) struct OverInput<S: Closed> {
     pub reach: Reach,
 }
 
-impl From<OverInput<Chain>> for Circuit {
-    fn from(circuit: OverInput<Chain>) -> Self {
+impl From<OverInput<Vec<Row>>> for Circuit {
+    fn from(circuit: OverInput<Vec<Row>>) -> Self {
         let OverInput { rows, offsets, speed, measures, reach } = circuit;
         Self {
             rows: Rows { rows, offsets, speed, still: None },
@@ -205,11 +206,11 @@ pub(crate) struct Wanted<'a> {
 }
 
 /// The circuit of some passes.
-pub(crate) fn circuit<S: Closed, D: Described>(
+pub(crate) fn circuit<S: Closed, D: Described, K: Kept<S>>(
     linkage: &D,
     passes: &Passes<S>,
     wanted: &Wanted,
-) -> OverInput<S> {
+) -> OverInput<K> {
     let chain = passes.chain;
     let Wanted { driver, follower, grid, speed, law, .. } = *wanted;
     let curve = &passes.curve;
@@ -219,7 +220,7 @@ pub(crate) fn circuit<S: Closed, D: Described>(
     let turns = curve.goes_round(chain, driver.inner);
     // never stopped by a dead centre
     let driven_round = turns && !passes.turns_back();
-    let mut rows = grid_rows(passes, grid);
+    let mut rows: K = grid_rows(passes, grid);
     let extremes = if driven_round && !crosses && law.is_none() {
         output_extremes(passes, &rows, follower.inner, &gained, grid.1)
     } else {
@@ -290,17 +291,18 @@ pub(crate) fn circuit<S: Closed, D: Described>(
 }
 
 /// The rows of a circuit on a grid of inputs, from its first to its last, and from the input zero where it goes round.
-fn grid_rows<S: Closed>(passes: &Passes<S>, grid: (f64, f64)) -> Vec<Row<S>> {
+fn grid_rows<S: Closed, K: Kept<S>>(passes: &Passes<S>, grid: (f64, f64)) -> K {
     let (chain, curve) = (passes.chain, &passes.curve);
-    let mut rows = passes.rows(grid.0, grid.1);
+    let mut rows: K = passes.rows(grid.0, grid.1);
     if !curve.is_closed() {
         // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
-        let lost = |r: &Row<S>| r.status == RowStatus::NoSolution;
-        rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
-        rows.drain(..rows.iter().take_while(|r| lost(r)).count());
+        let lost = |rows: &K, k: usize| rows.status(k) == RowStatus::NoSolution;
+        let count = rows.count();
+        rows.truncate(count - (0..count).rev().take_while(|&k| lost(&rows, k)).count());
+        rows.leave_out((0..rows.count()).take_while(|&k| lost(&rows, k)).count());
     }
     if curve.goes_round(chain, passes.input) && !passes.turns_back() {
-        begin_at_zero(chain, &mut rows, passes.input, &curve.gained(), grid.1);
+        begin_at_zero(&mut rows, passes.input, &curve.gained(), grid.1);
     }
     rows
 }
@@ -372,12 +374,13 @@ impl<S: Closed, D: Described> Seen<'_, S, D> {
 }
 
 /// Whole turns that bring the first row into (-pi, pi].
-fn shift<S: Closed>(chain: &S, rows: &[Row<S>]) -> S::Columns<f64> {
+fn shift<S: Closed, K: Kept<S>>(chain: &S, rows: &K) -> S::Columns<f64> {
     let mut shift = S::Columns::filled(0.0);
-    if let Some(row) = rows.iter().find(|r| r.status != RowStatus::NoSolution) {
+    if let Some(row) = (0..rows.count()).find(|&k| rows.status(k) != RowStatus::NoSolution) {
         for (c, s) in shift.as_mut().iter_mut().enumerate() {
             if chain.is_turn(c) {
-                *s = -TAU * ((row.at.values[c] - short_way(row.at.values[c])) / TAU).round();
+                let value = rows.value(row, c);
+                *s = -TAU * ((value - short_way(value)) / TAU).round();
             }
         }
     }
@@ -406,22 +409,11 @@ pub(crate) fn grid<S: Closed>(chain: &S, passes: &[Passes<S>], samples: usize) -
 }
 
 /// Rows of a circuit that goes round, begun at the input zero.
-fn begin_at_zero<S: Closed>(
-    chain: &S,
-    rows: &mut [Row<S>],
-    input: usize,
-    gained: &S::Columns<f64>,
-    step: f64,
-) {
-    let whole =
-        |r: &Row<S>| (r.at.values[input] / TAU - (r.at.values[input] / TAU).round()).abs() * TAU < 0.5 * step;
-    let Some(first) = rows.iter().position(whole) else {
+fn begin_at_zero<S: Closed, K: Kept<S>>(rows: &mut K, input: usize, gained: &S::Columns<f64>, step: f64) {
+    let whole = |value: f64| (value / TAU - (value / TAU).round()).abs() * TAU < 0.5 * step;
+    let Some(first) = (0..rows.count()).find(|&k| whole(rows.value(k, input))) else {
         return;
     };
-    for row in &mut rows[..first] {
-        for c in 0..chain.columns() {
-            row.at.values[c] += gained[c];
-        }
-    }
-    rows.rotate_left(first);
+    rows.add(first, gained);
+    rows.begin_with(first);
 }

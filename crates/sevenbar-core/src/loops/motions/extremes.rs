@@ -6,9 +6,10 @@
 //!
 //! Source: docs/theory_many.md, (11).
 
+use super::kept::Kept;
 use super::passes::Passes;
-use super::row::{Row, UNIT};
-use crate::loops::equation::closed::Closed;
+use super::row::UNIT;
+use crate::loops::equation::closed::{At, Closed};
 use crate::loops::rates::velocities::{self, ORDERS};
 use crate::outcome::{Ends, RowStatus};
 
@@ -32,35 +33,46 @@ const UNHALVED: usize = 8;
 /// The lowest and highest velocity, acceleration and jerk of the output; none where there are rows without rates.
 ///
 /// Inputs are given in the turns of the rows, which follow each other from the first on, a `step` apart.
-pub(super) fn output_extremes<S: Closed>(
+pub(super) fn output_extremes<S: Closed, K: Kept<S>>(
     passes: &Passes<S>,
-    rows: &[Row<S>],
+    rows: &K,
     output: usize,
     gained: &S::Columns<f64>,
     step: f64,
 ) -> [Option<Ends>; ORDERS] {
-    let at_nodes = passes.node_rows(step);
-    let Some(first) = rows.first().map(|r| r.at.values[passes.input]) else {
-        return [None; ORDERS];
-    };
-    if rows.iter().chain(&at_nodes).any(|r| r.status != RowStatus::Ok) {
+    let at_nodes: K = passes.node_rows(step);
+    if rows.count() == 0 {
         return [None; ORDERS];
     }
+    let lists = [rows, &at_nodes];
+    let is_ok = |list: &K| (0..list.count()).all(|k| list.status(k) == RowStatus::Ok);
+    if !lists.into_iter().all(is_ok) {
+        return [None; ORDERS];
+    }
+    let first = rows.value(0, passes.input);
     let span = gained[passes.input];
-    let mut samples: Vec<(f64, &Row<S>)> = rows
-        .iter()
-        .chain(&at_nodes)
-        .map(|r| (first + (r.at.values[passes.input] - first).rem_euclid(span), r))
-        .collect();
-    samples.sort_by(|a, b| a.0.total_cmp(&b.0));
-    samples.dedup_by(|a, b| a.0 - b.0 < SAME_SAMPLE);
+    let mut samples: Vec<OfRow> = Vec::with_capacity(rows.count() + at_nodes.count());
+    for (place, list) in lists.into_iter().enumerate() {
+        samples.extend((0..list.count()).map(|k| {
+            let off = list.value(k, passes.input) - first;
+            // one that lies in the span needs no remainder, which is slow
+            let off = if off >= 0.0 && off < span {
+                off
+            } else {
+                off.rem_euclid(span)
+            };
+            OfRow { input: first + off, rates: list.rates(k, output), place: (place, k) }
+        }));
+    }
+    samples.sort_by(|a, b| a.input.total_cmp(&b.input));
+    samples.dedup_by(|a, b| a.input - b.input < SAME_SAMPLE);
     // the last may be the first, by a rounding short of a turn on
     if let [first, .., last] = samples[..]
-        && first.0 + span - last.0 < SAME_SAMPLE
+        && first.input + span - last.input < SAME_SAMPLE
     {
         samples.pop();
     }
-    let search = Search { passes, samples: &samples, output, span };
+    let search = Search { passes, lists, samples: &samples, output, span };
     std::array::from_fn(|order| Some(search.ends(order)))
 }
 
@@ -72,48 +84,79 @@ struct Sample {
     slope: f64,
 }
 
-struct Search<'a, 'b, S: Closed> {
+/// The output's rates on a row, with the place of that.
+#[derive(Clone, Copy)]
+struct OfRow {
+    input: f64,
+    rates: [f64; ORDERS],
+    place: (usize, usize),
+}
+
+struct Search<'a, 'b, S: Closed, K> {
     passes: &'a Passes<'b, S>,
-    /// Rows by their inputs, rising.
-    samples: &'a [(f64, &'a Row<S>)],
+    /// Rows on the grid, and at nodes.
+    lists: [&'a K; 2],
+    /// What they have of the output, by their inputs, rising.
+    samples: &'a [OfRow],
     output: usize,
     /// Of the input, all the way round.
     span: f64,
 }
 
-impl<S: Closed> Search<'_, '_, S> {
-    /// The rate of an order, 0 for the velocity.
-    fn rate(&self, row: &Row<S>, order: usize) -> f64 {
-        let factorial = [1.0, 1.0, 2.0];
-        row.rates[order][self.output] * factorial[order]
-    }
+/// The rate of an order, 0 for the velocity.
+fn rate(rates: &[f64; ORDERS], order: usize) -> f64 {
+    let factorial = [1.0, 1.0, 2.0];
+    rates[order] * factorial[order]
+}
 
+impl<S: Closed, K: Kept<S>> Search<'_, '_, S, K> {
     /// The slope of the rate of an order.
-    fn slope(&self, row: &Row<S>, order: usize) -> f64 {
+    #[inline]
+    fn slope(&self, rates: &[f64; ORDERS], at: impl Fn() -> At<S>, order: usize) -> f64 {
         if order + 1 < ORDERS {
-            self.rate(row, order + 1)
+            rate(rates, order + 1)
         } else {
             let chain = self.passes.chain;
-            velocities::fourth_derivative(chain, &row.at, self.passes.input, self.output)
+            velocities::fourth_derivative(chain, &at(), self.passes.input, self.output)
         }
     }
 
     /// A row before or after the others is one a turn back or on.
-    fn place(&self, k: i64) -> (f64, &Row<S>) {
+    #[inline]
+    fn place(&self, k: i64) -> OfRow {
         let count = self.samples.len() as i64;
-        let (input, row) = self.samples[k.rem_euclid(count) as usize];
-        (input + k.div_euclid(count) as f64 * self.span, row)
+        // most need no division, which is slow
+        let (turns, k) = if k < 0 || k >= count {
+            (k.div_euclid(count), k.rem_euclid(count))
+        } else {
+            (0, k)
+        };
+        let row = self.samples[k as usize];
+        OfRow { input: row.input + turns as f64 * self.span, ..row }
     }
 
+    /// Input and jerk of such a row.
+    #[inline]
+    fn jerk_at(&self, k: i64) -> (f64, f64) {
+        let row = self.place(k);
+        (row.input, rate(&row.rates, ORDERS - 1))
+    }
+
+    #[inline]
     fn sample(&self, k: i64, order: usize) -> Sample {
-        let (input, row) = self.place(k);
-        Sample { input, value: self.rate(row, order), slope: self.slope(row, order) }
+        let OfRow { input, rates, place: (list, k) } = self.place(k);
+        let at = || self.lists[list].at(k);
+        Sample {
+            input,
+            value: rate(&rates, order),
+            slope: self.slope(&rates, at, order),
+        }
     }
 
     fn ends(&self, order: usize) -> Ends {
         let mut ends = [[f64::INFINITY, 0.0], [f64::NEG_INFINITY, 0.0]];
-        for (input, row) in self.samples {
-            look(&mut ends, self.rate(row, order), *input);
+        for row in self.samples {
+            look(&mut ends, rate(&row.rates, order), row.input);
         }
         for (low, high) in self.brackets(order, &ends) {
             self.refine(order, low, high, &mut ends);
@@ -138,8 +181,7 @@ impl<S: Closed> Search<'_, '_, S> {
                 }
                 continue;
             }
-            let [before, here, after] = [k - 1, k, k + 1].map(|k| self.place(k));
-            let [before, here, after] = [before, here, after].map(|(at, row)| (at, self.rate(row, order)));
+            let (before, here, after) = (self.jerk_at(k - 1), self.jerk_at(k), self.jerk_at(k + 1));
             let (rise, next) = (here.1 - before.1, after.1 - here.1);
             if rise * next > 0.0 {
                 continue;
@@ -182,7 +224,12 @@ impl<S: Closed> Search<'_, '_, S> {
             let Some(row) = passes.row(0, inside, &UNIT) else {
                 break;
             };
-            let here = Sample { input, value: self.rate(&row, order), slope: self.slope(&row, order) };
+            let rates = row.rates.map(|order| order[self.output]);
+            let here = Sample {
+                input,
+                value: rate(&rates, order),
+                slope: self.slope(&rates, || row.at, order),
+            };
             if flattest.is_none_or(|f| here.slope.abs() < f.slope.abs()) {
                 flattest = Some(here);
             }

@@ -2,10 +2,11 @@
 
 pub(crate) mod circuit;
 mod extremes;
+pub(crate) mod kept;
 pub(crate) mod measures;
 mod met_twice;
 pub(crate) mod motion;
 pub(crate) mod passes;
-mod row;
+pub(crate) mod row;
 mod row_lanes;
 pub(crate) mod rows;

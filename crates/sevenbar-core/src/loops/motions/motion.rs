@@ -1,8 +1,10 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
 use super::circuit::{Circuit, Followed, Limit, Limits, OverInput, Reach, Wanted, circuit, grid};
+use super::kept::Kept;
 use super::met_twice::{Held, HeldMotions, held_at};
 use super::passes::Passes;
+use super::row::Row;
 use crate::loops::branch_points::counting::Uncounted;
 use crate::loops::circuits::change_points as curve_points;
 use crate::loops::circuits::curve::Curve;
@@ -146,7 +148,7 @@ fn followed(linkage: &Loop, curves: Curves, asked: &Asked) -> Option<Motion> {
     let chain = linkage.reduced.chain.as_ref()?;
     let ends = ends(linkage, asked.input, asked.output)?;
     // one after the other, since the rows of all may not fit into memory
-    let selected = |passes: &Passes, circuit, grid| {
+    let selected = |passes: &Passes, circuit: OverInput<Vec<Row>>, grid| {
         let circuit = Circuit::from(circuit);
         if keep || law.is_some() {
             circuit
@@ -186,16 +188,16 @@ pub(crate) struct Over<S: Closed, C> {
 pub(crate) type How<'a> = (usize, f64, Option<&'a [[f64; 4]]>);
 
 /// What is kept of a circuit, by its passes and the origin and step of the inputs of its rows.
-type Selected<'a, S, C> = dyn 'a + Fn(&Passes<S>, OverInput<S>, (f64, f64)) -> C;
+type Selected<'a, S, K, C> = dyn 'a + Fn(&Passes<S>, OverInput<K>, (f64, f64)) -> C;
 
 /// Curves over an input; `selected` is what is kept of each circuit, by its passes and the origin and step of the inputs of its rows.
-pub(crate) fn over_input<S: Closed, D: Described, C>(
+pub(crate) fn over_input<S: Closed, D: Described, K: Kept<S>, C>(
     linkage: &D,
     chain: &S,
     mut curves: Curves<S>,
     (driver, follower): (Column, Column),
     (samples, speed, law): How,
-    selected: &Selected<'_, S, C>,
+    selected: &Selected<'_, S, K, C>,
 ) -> Over<S, C> {
     let own = std::mem::take(&mut curves.curves);
     let rests = |c: &Curve<S>| c.rests(driver.inner);
@@ -211,8 +213,8 @@ pub(crate) fn over_input<S: Closed, D: Described, C>(
     let (passes, circuits): (Vec<Passes<S>>, Vec<C>) = passes
         .into_iter()
         .filter_map(|p| {
-            let circuit = circuit(linkage, &p, &wanted);
-            (!circuit.rows.is_empty()).then(|| {
+            let circuit: OverInput<K> = circuit(linkage, &p, &wanted);
+            (circuit.rows.count() > 0).then(|| {
                 let circuit = selected(&p, circuit, grid);
                 (p, circuit)
             })
@@ -439,7 +441,7 @@ fn on_passes(
 ) -> Circuit {
     let grid = grid(passes.chain, std::slice::from_ref(passes), samples);
     let wanted = Wanted { driver, follower, grid, speed, law };
-    circuit(linkage, passes, &wanted).into()
+    circuit::<_, _, Vec<_>>(linkage, passes, &wanted).into()
 }
 
 /// Of the curves that were found from a pose the one it lies on, not one beyond a change point; where several meet there one on which

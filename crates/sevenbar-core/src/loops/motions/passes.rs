@@ -1,12 +1,13 @@
 //! A followed curve as rows over an input: passes between dead centres, rows on a grid of inputs, extremes.
 
+use super::kept::Kept;
 use super::row::{self, Row, Solved, UNIT};
 use super::row_lanes::{Near, rows_near};
 use crate::loops::circuits::curve::{self, Curve, Node};
 use crate::loops::circuits::turnings::{self, begun_at, insert, turns_at};
 use crate::loops::circuits::walked_again;
 use crate::loops::equation::chain::Chain;
-use crate::loops::equation::closed::{At, Closed, Explicit, Stretch};
+use crate::loops::equation::closed::{At, Closed, Explicits, Stretch};
 use crate::loops::equation::dense::{Array, combined, dot, length};
 use crate::loops::rates::velocities::ORDERS;
 use crate::outcome::RowStatus;
@@ -122,10 +123,10 @@ impl<'a, S: Closed> Passes<'a, S> {
             return Some(row);
         }
         if let Some(on) = self.stretch(segment) {
-            let mut made = Explicit::none();
+            let mut made = Explicits::none();
             self.chain.explicit(&on, &[value; QUAD], rates, &mut made);
-            if made[0].is_sure {
-                return Some(Row::explicit(pass, &made[0]));
+            if made.is_sure[0] {
+                return Some(Row::explicit(pass, &made, 0));
             }
         }
         self.newton_row(pass, segment, value, rates)
@@ -306,8 +307,8 @@ impl<'a, S: Closed> Passes<'a, S> {
     }
 
     /// Rows on a grid of inputs `origin + k step`, with exact rows at dead centres; the input has unit speed.
-    pub fn rows(&self, origin: f64, step: f64) -> Vec<Row<S>> {
-        let mut rows = Vec::new();
+    pub fn rows<K: Kept<S>>(&self, origin: f64, step: f64) -> K {
+        let mut rows = K::none(self.chain, 0);
         let closed = self.curve.is_closed();
         let slack = SAME_ROW * step;
         for (n, pass) in self.passes.iter().enumerate() {
@@ -346,12 +347,12 @@ impl<'a, S: Closed> Passes<'a, S> {
     }
 
     /// Rows at those nodes of the first pass from which a step leads over less than `step` of the input.
-    pub fn node_rows(&self, step: f64) -> Vec<Row<S>> {
+    pub fn node_rows<K: Kept<S>>(&self, step: f64) -> K {
         let pass = &self.passes[0];
         let value = |k: usize| self.curve.nodes[k].at.values[self.input];
         let near = |a: usize, b: usize| (value(a) - value(b)).abs() < step;
         let dense = |k: &usize| near(*k, k + 1) || (*k > pass.from && near(*k, k - 1));
-        let mut rows = Vec::new();
+        let mut rows = K::none(self.chain, 0);
         self.rows_at(0, (pass.from..pass.to).filter(dense).map(value), &mut rows);
         rows
     }
@@ -360,8 +361,8 @@ impl<'a, S: Closed> Passes<'a, S> {
     ///
     /// An input that turns may be met a turn on or back; one that lies in the pass with `shift` taken off it, as the circuit's
     /// rows are given, is met there, for a pass may be longer than a turn. Only a closed curve is gone along again.
-    pub fn law_rows(&self, law: &[[f64; 4]], turns: bool, shift: f64) -> Vec<Row<S>> {
-        let mut rows = Vec::new();
+    pub fn law_rows<K: Kept<S>>(&self, law: &[[f64; 4]], turns: bool, shift: f64) -> K {
+        let mut rows = K::none(self.chain, self.passes.len() * law.len());
         for (n, pass) in self.passes.iter().enumerate() {
             let (low, high) = (pass.start.min(pass.end), pass.start.max(pass.end));
             for q in law {
@@ -399,15 +400,15 @@ impl<'a, S: Closed> Passes<'a, S> {
 
 impl<S: Closed> Passes<'_, S> {
     /// Rows of a pass at inputs in it, in its order, side by side; singly where that does not settle.
-    fn rows_at(&self, pass: usize, values: impl Iterator<Item = f64>, rows: &mut Vec<Row<S>>) {
+    fn rows_at<K: Kept<S>>(&self, pass: usize, values: impl Iterator<Item = f64>, rows: &mut K) {
         let p = &self.passes[pass];
         let value_at = |node: usize| self.curve.nodes[node].at.values[self.input];
         let rising = p.end > p.start;
         let mut segment = p.from;
-        rows.reserve_exact(values.size_hint().0);
+        rows.reserve(values.size_hint().0);
         if S::EXPLICIT {
             let mut values = values.peekable();
-            let mut made = Explicit::none();
+            let mut made = Explicits::none();
             while let Some(&first) = values.peek() {
                 stopping::piece();
                 while segment + 1 < p.to && (value_at(segment + 1) <= first) == rising {
@@ -428,14 +429,13 @@ impl<S: Closed> Passes<'_, S> {
                     if let Some(on) = &stretch {
                         self.chain.explicit(on, &four, &UNIT, &mut made);
                     }
-                    let own = &made[..count];
-                    if stretch.is_some() && own.iter().all(|row| row.is_sure) {
-                        rows.extend(own.iter().map(|row| Row::explicit(pass, row)));
+                    if stretch.is_some() && made.is_sure == [true; QUAD] {
+                        rows.push_explicit(pass, &made, count);
                         continue;
                     }
-                    for (value, explicit) in four.iter().zip(own) {
-                        if stretch.is_some() && explicit.is_sure {
-                            rows.push(Row::explicit(pass, explicit));
+                    for (k, value) in four[..count].iter().enumerate() {
+                        if stretch.is_some() && made.is_sure[k] {
+                            rows.push(Row::explicit(pass, &made, k));
                         } else {
                             let row = self
                                 .crossing_row(pass, segment, *value)
@@ -461,10 +461,10 @@ impl<S: Closed> Passes<'_, S> {
                 })
                 .collect();
             let found = rows_near(self.chain, self.input, pass, &starts);
-            rows.extend(starts.iter().zip(found).map(|(near, row)| {
-                row.or_else(|| self.row(pass, near.value, &UNIT))
-                    .unwrap_or(Row::missing(pass))
-            }));
+            for (near, row) in starts.iter().zip(found) {
+                let row = row.or_else(|| self.row(pass, near.value, &UNIT));
+                rows.push(row.unwrap_or(Row::missing(pass)));
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A row of a circuit as the chain has it.
 
 use crate::loops::equation::chain::Chain;
-use crate::loops::equation::closed::{At, Closed, Explicit, Inverse, Placed, copied, input_row};
+use crate::loops::equation::closed::{At, Closed, Explicits, Inverse, Placed, copied, input_row};
 use crate::loops::equation::dense::{Array, length};
 use crate::loops::rates::velocities::{self, ORDERS, Rates};
 use crate::number::Number;
@@ -36,11 +36,18 @@ impl<S: Closed> Row<S> {
         rates
     }
 
-    /// One in closed form.
-    #[inline(always)]
-    pub fn explicit(pass: usize, own: &Explicit<S>) -> Self {
-        let Explicit { at, rates, residual, condition, .. } = *own;
-        Self { at, rates, status: RowStatus::Ok, pass, residual, condition }
+    /// One of those in closed form.
+    pub fn explicit(pass: usize, own: &Explicits<S>, k: usize) -> Self {
+        let mut at = At::zero();
+        at.values = S::Columns::from_fn(|c| own.values[c][k]);
+        Self {
+            at,
+            rates: own.rates.map(|order| S::Columns::from_fn(|c| order[c][k])),
+            status: RowStatus::Ok,
+            pass,
+            residual: own.residual[k],
+            condition: own.condition[k],
+        }
     }
 
     /// The row at an input beyond a limit.
