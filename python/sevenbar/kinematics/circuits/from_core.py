@@ -98,9 +98,9 @@ def circuit_from(
     if len(order) and raw.mode is None and speed < 0 and law is None and raw.turns and not turns_back:
         order = np.append(order[:1], order[:0:-1])
         q, dq, ddq, dddq = _backwards(q, linkage.turning)[order], dq[order], ddq[order], dddq[order]
-    status = _STATUS_WORDS[statuses[order]]
-    # the pose of a row may be known where a ball's turns are not
-    status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
+        statuses, branch = statuses[order], branch[order]
+        residual, condition = residual[order], condition[order]
+    status = _status_words(statuses, q)
     inputs = q[:, input_column]
     if law is None:
         velocity, acceleration, jerk = map(_extremes, (raw.velocity, raw.acceleration, raw.jerk))
@@ -120,10 +120,10 @@ def circuit_from(
         dddq=dddq,
         time=driven_time(inputs, speed, law),
         status=status,
-        branch=branch[order],
+        branch=branch,
         mode=np.full(len(order), index) if raw.mode is None else raw.mode,
-        residual=residual[order] * size,
-        condition=condition[order],
+        residual=residual * size,
+        condition=condition,
         dead_centres=tuple(DeadCentre(*d) for d in raw.dead_centres),
         input_range=raw.input_range,
         output_range=raw.output_range,
@@ -145,6 +145,17 @@ def circuit_from(
         _answers=linkage.answers,
         _transmission=_extremes(raw.transmission),
     )
+
+
+def _status_words(statuses: Integers, q: Floats) -> Words:
+    """The words of statuses; one word, if all are the same, stands once in memory."""
+    # nothing is slower than words row by row; the least of numbers of which one is none is none
+    if len(q) and statuses.min() == statuses.max() and not math.isnan(q.min()):
+        return np.broadcast_to(_STATUS_WORDS[statuses[0]], statuses.shape)
+    status: Words = _STATUS_WORDS[statuses]
+    # the pose of a row may be known where a ball's turns are not
+    status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
+    return status
 
 
 def _backwards(q: Floats, turns: Booleans) -> Floats:
