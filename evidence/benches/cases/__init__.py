@@ -6,7 +6,18 @@ import importlib
 from types import ModuleType
 
 #: In the order of the page.
-CASES = ("rssr_array", "circuit", "forces", "modes", "simulators", "sweeps", "growth", "footprint", "studio")
+CASES = (
+    "rssr_array",
+    "circuit",
+    "nets",
+    "forces",
+    "modes",
+    "simulators",
+    "sweeps",
+    "growth",
+    "footprint",
+    "studio",
+)
 
 
 def case(name: str) -> ModuleType:
