@@ -115,14 +115,15 @@ fn compared(net: &Net, parts: &[Part], name: &str) -> f64 {
         });
         let law: Vec<[f64; 4]> = law.into_iter().chain(near).collect();
         let step = (high - low) / 97.0;
-        let pairs: [(Vec<OfCircuit<Whole>>, Vec<OfCircuit<Whole>>); 2] = [
-            (one.rows(low, step), other.rows(low, step)),
-            (
+        type Both = [Vec<OfCircuit<Whole>>; 2];
+        let pairs: [Both; 2] = [
+            [one.rows(low, step), other.rows(low, step)],
+            [
                 one.law_rows(&law, general.is_turn(0), 0.0),
                 other.law_rows(&law, general.is_turn(0), 0.0),
-            ),
+            ],
         ];
-        for (want, got) in pairs {
+        for [want, got] in pairs {
             assert_eq!(want.len(), got.len(), "{name}");
             for (want, got) in want.iter().zip(&got) {
                 assert_eq!((want.status, want.pass), (got.status, got.pass), "{name}");
