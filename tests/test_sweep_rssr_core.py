@@ -84,7 +84,7 @@ def apart(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.abs((a - b + np.pi) % (2 * np.pi) - np.pi)
 
 
-@pytest.mark.parametrize("count", [600, 5000])
+@pytest.mark.parametrize("count", [1500, pytest.param(5000, marks=pytest.mark.proof)])
 @pytest.mark.parametrize("driver", DRIVERS)
 def test_types_and_limits_are_those_of_the_linkage_s_own_motion(driver: str, count: int) -> None:
     linkages = of_all_kinds(count, count)

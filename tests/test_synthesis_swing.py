@@ -10,6 +10,7 @@ from sevenbar.design.closure import NAMES, outputs, transmissions
 from sevenbar.design.limits import Limits
 from sevenbar.design.survey import SurveyTask, SwingWish
 from sevenbar.design.survey.polish import Polish
+from sevenbar.design.synthesis.function import swing
 from sevenbar.design.synthesis.function.swing import swing_generation
 from sevenbar.errors import RequestError
 
@@ -138,7 +139,8 @@ def test_limits_of_a_swing_are_kept_to():
     assert found.candidates[0].transmission_lowest >= math.radians(40)
 
 
-def test_a_swing_that_cannot_be_reached_tells_the_nearest():
+def test_a_swing_that_cannot_be_reached_tells_the_nearest(monkeypatch):
+    monkeypatch.setattr(swing, "FITTED_LEAST", 4)
     found = swing_generation(math.radians(340), 1.1, count=1)
     assert found.candidates == ()
     with pytest.raises(RequestError, match=r"nearest: swing \d+\.?\d* deg with time ratio \d"):
