@@ -14,11 +14,14 @@ def test_what_is_not_printed_is_no_name(name: str) -> None:
         linkage_of(name)
 
 
-def test_each_name_is_text_in_a_page_that_plays(tmp_path: Path) -> None:
-    assert len(set(NAMES)) >= 40
-    for number, name in enumerate(NAMES):
-        (tmp_path / str(number)).mkdir()
-        page_of(name, tmp_path / str(number))
+@pytest.fixture(scope="module")
+def films(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """A page that plays of each name, in which the name is text."""
+    return {name: page_of(name, tmp_path_factory.mktemp("film")) for name in NAMES}
+
+
+def test_each_name_is_text_in_a_page_that_plays(films: dict[str, Path]) -> None:
+    assert len(films) >= 40
 
 
 @pytest.mark.filterwarnings("ignore:Glyph")  # which fonts there are
@@ -28,7 +31,9 @@ def test_a_name_is_text_in_every_file(name: str, tmp_path: Path) -> None:
     assert {"csv", "xlsx", "json", "mat", "urdf", "cmd", "toml", "svg", "html"} <= set(kinds)
 
 
-def test_pages_that_play_open_no_dialog_and_play(chromium, tmp_path: Path) -> None:
-    for number, name in enumerate(NAMES):
-        (tmp_path / str(number)).mkdir()
-        assert wrong_on(chromium, page_of(name, tmp_path / str(number))) == [], name
+def test_pages_that_play_open_no_dialog_and_play(chromium, films: dict[str, Path]) -> None:
+    # one small window for all: a new one each takes longer than the film
+    window = chromium.new_context(viewport={"width": 400, "height": 300})
+    for name, path in films.items():
+        assert wrong_on(window, path) == [], name
+    window.close()
