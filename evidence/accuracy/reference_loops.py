@@ -44,6 +44,9 @@ SAME = 1e-6
 #: beside another one, and no method need tell the two apart.
 ISOLATED = 1e-4
 
+#: A step of Newton's method so short [rad, or parts of the size] that the next one would be rounding.
+ARRIVED = 1e-12
+
 #: Singular value below which a direction is free: far above roundings, far below what holds a pose.
 FREE = 1e-6
 
@@ -218,7 +221,9 @@ class Loop:
 
     def jacobian(self, q: np.ndarray) -> np.ndarray:
         """(n, 6, m): turning over moving, the latter in parts of the size, by joint values in their units."""
-        walk = self.walk(np.atleast_2d(q))
+        return self._jacobian_of(self.walk(np.atleast_2d(q)))
+
+    def _jacobian_of(self, walk: Walk) -> np.ndarray:
         columns = np.moveaxis(walk.jacobian(self.turns, self.slides), -1, 0).copy()
         columns[:, 3:] /= self.size
         return columns * self.scales
@@ -290,17 +295,19 @@ class Loop:
         return np.inf
 
     def polished(self, q: np.ndarray, column: int, steps: int = 6) -> np.ndarray:
-        """Newton's method in double precision from (n, m), the input held."""
+        """Newton's method in double precision from (n, m), the input held; at most so many steps."""
         q = np.array(np.atleast_2d(q), dtype=np.float64)
         free = self.free(column)
         for _ in range(steps):
             walk = self.walk(q)
             residual = walk.residual(self.size).T
-            held = self.jacobian(q)[:, :, free]
+            held = self._jacobian_of(walk)[:, :, free]
             step = np.linalg.pinv(held, rcond=1e-8) @ residual[:, :, None]
             length = np.abs(step).max(axis=1, keepdims=True)
             step *= np.minimum(1.0, 0.3 / np.maximum(length, 1e-300))
             q[:, free] -= step[:, :, 0] * self.scales[free]
+            if not length.max(initial=0.0) > ARRIVED:
+                break
         return q
 
 
