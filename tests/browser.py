@@ -3,6 +3,7 @@
 import io
 import shutil
 import time
+from base64 import b64decode
 from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -24,21 +25,72 @@ FLAGS = (
     "--no-first-run",
 )
 SIZE = {"width": 1000, "height": 640}
-#: Most of what a page costs is its 3D picture, drawn by the processor: ten a second serve as well as sixty.
-TEN_A_SECOND = """
+#: Most of what a page costs is its 3D picture, drawn by the processor: ten a second serve as well as sixty where
+#: anything happens, and one a second where nothing does. `wake` says that something does: a hand on the page, a word
+#: of the server, a look at the canvas.
+SPARED = """
 {
-    const frame = window.requestAnimationFrame.bind(window), asked = new Set();
-    let count = 0;
-    window.requestAnimationFrame = draw => {
+    const frame = window.requestAnimationFrame.bind(window), asked = new Map();
+    const often = 85, seldom = 1000, awake = 1500;
+    let count = 0, woken = 0;
+    const draw = id => frame(now => {
+        const one = asked.get(id);
+        if (asked.delete(id)) one.draw(now);
+    });
+    const calm = () => performance.now() - woken > awake;
+    window.requestAnimationFrame = draw_it => {
         const id = ++count;
-        asked.add(id);
-        setTimeout(() => frame(now => { if (asked.delete(id)) draw(now); }), 85);
+        asked.set(id, { draw: draw_it, timer: setTimeout(draw, calm() ? seldom : often, id) });
         return id;
     };
-    window.cancelAnimationFrame = id => { asked.delete(id); };
+    window.cancelAnimationFrame = id => {
+        clearTimeout(asked.get(id)?.timer);
+        asked.delete(id);
+    };
+    window.wake = () => {
+        if (calm())
+            for (const [id, one] of asked) {
+                clearTimeout(one.timer);
+                one.timer = setTimeout(draw, 0, id);
+            }
+        woken = performance.now();
+    };
+    for (const kind of ["pointerdown", "pointermove", "pointerup", "wheel", "keydown", "input"])
+        window.addEventListener(kind, window.wake, { capture: true, passive: true });
+    // viser's socket is in a worker
+    window.Worker = class extends window.Worker {
+        constructor(...given) {
+            super(...given);
+            this.addEventListener("message", window.wake);
+        }
+    };
+    // what was drawn can be read at any time, which takes a tenth of a screenshot; smooth edges double what it costs
+    const context = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, given) {
+        const own = { preserveDrawingBuffer: true, antialias: SMOOTH };
+        return context.call(this, kind, String(kind).startsWith("webgl") ? { ...given, ...own } : given);
+    };
 }
 """
-#: From one look at the canvas to the next [ms]: what a page is told is drawn two pictures later.
+#: What the 3D canvas shows after some more pictures are drawn, in its size on the page, as a PNG.
+LOOKED = """
+async ({ pictures }) => {
+    for (let i = 0; i < pictures; i++) {
+        window.wake();
+        await new Promise(done => requestAnimationFrame(done));
+    }
+    const canvas = document.querySelector("canvas[data-engine]"), copy = document.createElement("canvas");
+    [copy.width, copy.height] = [canvas.clientWidth, canvas.clientHeight];
+    const flat = copy.getContext("2d");
+    flat.fillStyle = "white";
+    flat.fillRect(0, 0, copy.width, copy.height);
+    flat.drawImage(canvas, 0, 0, copy.width, copy.height);
+    return copy.toDataURL();
+}
+"""
+#: What a page is told is drawn two pictures later.
+PICTURES = 3
+#: From one look at the canvas to the next [ms].
 LOOK = 300
 #: What anything on a page may take [s]: a guard against hanging, long enough for a machine with other work.
 PATIENCE = 600.0
@@ -46,8 +98,6 @@ PATIENCE = 600.0
 SCREENSHOTS = Path(__file__).parents[1] / "build" / "screenshots"
 #: Below this spread between the channels (of 1) a pixel is grey.
 CHROMA = 0.15
-#: What may lie over the canvas: windows that float, and notices.
-OVER = "[data-floating-window], .mantine-Notifications-root { visibility: hidden !important }"
 
 
 def chromium():
@@ -70,11 +120,11 @@ def launched():
         browser.close()
 
 
-def person(browser, **options):
-    """Pages of a browser as if another person had opened it."""
+def person(browser, *, smooth=False, **options):
+    """Pages of a browser as if another person had opened it; with `smooth` edges for pictures that people see."""
     context = browser.new_context(**options)
     context.set_default_timeout(PATIENCE * 1e3)
-    context.add_init_script(TEN_A_SECOND)
+    context.add_init_script(SPARED.replace("SMOOTH", str(smooth).lower()))
     return context
 
 
@@ -86,9 +136,9 @@ class Pages:
         self.contexts = []
         self.wrong = []
 
-    def __call__(self, url, *, tolerated=()):
+    def __call__(self, url, *, tolerated=(), smooth=False):
         """The page at an address, connected; what holds one of the words tolerated is not wrong."""
-        context = person(self.browser, viewport=SIZE)
+        context = person(self.browser, smooth=smooth, viewport=SIZE)
         self.contexts.append(context)
         page = context.new_page()
 
@@ -131,23 +181,36 @@ def keep(page, name):
     return path
 
 
-def canvas_colours(page):
-    """What the 3D canvas shows now, without what lies over it: (height, width, 3), 0 to 255."""
-    png = page.locator("canvas[data-engine]").screenshot(style=OVER)
-    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB"))
+def canvas_colours(page, pictures=PICTURES):
+    """What the 3D canvas shows after so many pictures, without what lies over it: (height, width, 3), 0 to 255.
+
+    Of a page, or of a frame in it.
+    """
+    png = page.evaluate(LOOKED, {"pictures": pictures}).partition(",")[2]
+    return np.asarray(Image.open(io.BytesIO(b64decode(png))).convert("RGB"))
 
 
-def settled(page, *, within=PATIENCE):
-    """What the 3D canvas shows once it stands still: twice the same."""
+def settled(page, wanted=None, *, still=True, within=PATIENCE):
+    """What the 3D canvas shows once it stands still, twice the same, and is as wanted, if that is given.
+
+    Of a film, which is never `still`, what is wanted must be met alone.
+    """
     end = time.monotonic() + within
-    before = canvas_colours(page)
+    # a film goes on by itself
+    pictures = PICTURES if still else 0
+    before = canvas_colours(page, pictures)
     while time.monotonic() < end:
         page.wait_for_timeout(LOOK)
-        after = canvas_colours(page)
-        if np.array_equal(before, after):
+        after = canvas_colours(page, pictures)
+        if (not still or np.array_equal(before, after)) and (wanted is None or wanted(after)):
             return after
         before = after
-    return pytest.fail(f"the canvas still moves after {within:g} s", pytrace=False)
+    return pytest.fail(f"the canvas still moves, or is not as wanted, after {within:g} s", pytrace=False)
+
+
+def changed(page, before, least):
+    """What the 3D canvas shows once it stands still and differs from a picture in more pixels than so many."""
+    return settled(page, lambda after: differs(before, after) > least)
 
 
 def drawn(image, colour, tolerance=24):

@@ -16,7 +16,7 @@ TOUR = " ".join((Path(__file__).parents[1] / "docs" / "studio.md").read_text(enc
 @pytest.fixture
 def desk(studio, pages):
     one = studio("rssr")
-    return Desk("rssr", pages(one.url), one)
+    return Desk("rssr", pages(one.url, smooth=True), one)
 
 
 def told(name, value):
@@ -82,7 +82,7 @@ def test_the_tour_of_the_manual_is_true(desk, tmp_path):
 
 def test_the_picture_of_the_readme(studio, pages):
     one = studio("seven_r")
-    desk = Desk("seven_r", pages(one.url), one)
+    desk = Desk("seven_r", pages(one.url, smooth=True), one)
     page = desk.page
     desk.type("go to input", "60")
     open_tab(page, "Show")

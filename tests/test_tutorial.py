@@ -138,7 +138,7 @@ def test_the_studio_answers_what_the_tutorial_says(studio, pages, tmp_path):
     text = [text for kind, text in boxes(ENGLISH) if kind == "toml" and text.startswith("# feeder.toml")][-1]
     write_file(text, tmp_path)
     one = studio(tmp_path / "feeder.toml")
-    desk = Desk("rssr", pages(one.url), one)
+    desk = Desk("rssr", pages(one.url, smooth=True), one)
     said = prose(ENGLISH)
     desk.type("L1 [mm]", "125")
     desk.until(lambda: desk.verdict().get("motion type"), "double-rocker")
