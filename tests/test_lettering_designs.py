@@ -7,6 +7,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
+from sevenbar.design.maps import atlas
 from sevenbar.design.maps.atlas import motion_map
 from sevenbar.design.maps.figures import draw
 from sevenbar.design.maps.heights import measure_heights, with_contours
@@ -37,7 +38,10 @@ def map_of(name):
     over = {"rssr": {"L1": "100:400", "L3": "300:800"}}.get(
         name, {"length_1": "20:120", "length_3": "20:120"}
     )
-    return motion_map(sb.load(name), over, grid=13)
+    with pytest.MonkeyPatch.context() as patch:
+        # boundaries less smooth, which have the same letters
+        patch.setattr(atlas, "LOOP", atlas.LOOP._replace(tolerance=1e-2))
+        return motion_map(sb.load(name), over, grid=13 if name == "rssr" else 5)
 
 
 @cache
@@ -77,6 +81,11 @@ def function():
     return function_generation(function=lambda x: x**2, x_range=(0.0, 1.0), count=1)
 
 
+@cache
+def swing():
+    return swing_generation(np.pi / 3, 1.2, count=1)
+
+
 #: Every kind of figure of a design.
 FIGURES = {
     "map, rssr": lambda: draw(map_of("rssr")),
@@ -93,7 +102,7 @@ FIGURES = {
     "least": lambda: least_figure(*least(), "least_acceleration"),
     "inertia": lambda: inertia_figure(inertia(sb.load("seven_r").motion(72), {"P": 2.5})),
     "function": lambda: function_figure(function().candidates[0], function().wish),
-    "swing": lambda: swing_figure(swing_generation(np.pi / 3, 1.2, count=1).candidates[0]),
+    "swing": lambda: swing_figure(swing().candidates[0]),
 }
 
 
