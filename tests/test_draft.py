@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from gallery_sample import sampled
 from sevenbar.description.draft import Draft
 from sevenbar.description.files import loads
 from sevenbar.description.gallery import loops, text
@@ -94,7 +95,7 @@ def test_a_text_that_nothing_changed_comes_back_byte_for_byte(name: str) -> None
     assert Draft.of(TEXTS[name], name).toml() == TEXTS[name]
 
 
-@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("name", [*sampled(), *WAYS])
 def test_a_changed_dimension_is_the_only_place_that_differs_in_the_file(name: str) -> None:
     content = TEXTS[name]
     draft = Draft.of(content, name)

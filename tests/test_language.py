@@ -218,10 +218,10 @@ COMMANDS = {
     "sweep rssr --over L1=100:400:5 --measure motion_type,swing": {"swing"},
     "design function --y x^2 --x 0:1 --designs 1": {"RSSR"},
     "design swing --swing 60deg --time-ratio 1.2 --designs 1": {"RSSR"},
-    "design survey --count 2000 --ball-angle 20deg --output-range 0:23.75deg --designs 2": {
+    "design survey --count 400 --ball-angle 30deg --output-range 0:23.75deg --designs 2": {
         *("RSSR", "M", "N", "L", "D"),
     },
-    "design survey --count 2000 --swing 60deg --time-ratio 1.3 --motion-type crank-rocker": {
+    "design survey --count 400 --swing 60deg --time-ratio 1.3 --motion-type crank-rocker": {
         *("RSSR", "M", "N", "L", "D"),
     },
     "design point rssr --link 2 --box=-200:200,-200:200,-200:200": {"u", "v", "w", "Clarabel", "Solved"},
