@@ -31,7 +31,7 @@ def test_a_small_sample_holds_and_the_page_has_every_family(tmp_path, monkeypatc
         assert f"| {name} | {family.quick} | 0 |" in text
 
 
-@pytest.mark.parametrize("share", [1 / 32, pytest.param(1 / 8, marks=pytest.mark.proof)])
+@pytest.mark.parametrize("share", [1 / 64, pytest.param(1 / 8, marks=pytest.mark.proof)])
 @pytest.mark.parametrize("name", command.FAMILIES)
 def test_a_few_of_each_family_hold(name, share):
     family = command.FAMILIES[name]
