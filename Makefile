@@ -103,7 +103,7 @@ oldest: wheel  ## The fast tests with the oldest versions of all dependencies th
 	$(VENV)-oldest/bin/pip install -r "$(VENV)-oldest/versions.txt" "$(NEWEST_WHEEL)" \
 	  hypothesis mpmath nbformat playwright pytest pytest-xdist yourdfpy
 	$(VENV)-oldest/bin/pytest -n auto --dist worksteal -m "not slow and not proof" -o filterwarnings= \
-	  $(foreach name,docs_reference docs_site export_solids layers step_axes,--ignore tests/test_$(name).py)
+	  $(foreach name,docs/test_docs_reference docs/test_docs_site export/test_export_solids project/test_layers description/test_step_axes,--ignore tests/$(name).py)
 
 # the wheel in an environment of its own, so that no peer changes the one for work and sizes are an installation's;
 # a quick look: make bench BENCH=--quick

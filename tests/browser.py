@@ -5,13 +5,14 @@ import shutil
 import time
 from base64 import b64decode
 from contextlib import contextmanager
-from pathlib import Path
 from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from PIL import Image
+
+from places import ROOT
 
 #: Chromium as Debian, Ubuntu and Google call it.
 NAMES = ("chromium", "chromium-browser", "google-chrome")
@@ -95,7 +96,7 @@ LOOK = 300
 #: What anything on a page may take [s]: a guard against hanging, long enough for a machine with other work.
 PATIENCE = 600.0
 #: Where pictures of pages are kept; ignored by git, removed by `make clean`.
-SCREENSHOTS = Path(__file__).parents[1] / "build" / "screenshots"
+SCREENSHOTS = ROOT / "build" / "screenshots"
 #: Below this spread between the channels (of 1) a pixel is grey.
 CHROMA = 0.15
 

@@ -18,16 +18,15 @@ import trimesh
 
 import golden_tasks
 import sevenbar as sb
-from commands import sevenbar
+from command_runs import sevenbar
+from places import ROOT, TESTS
 from sevenbar.description.gallery import loops
 from sevenbar.drawing import plot
 from sevenbar.export.tables import write_csv
 
 #: The record, a file a case.
-FOLDER = Path(__file__).parent / "golden_record"
+FOLDER = TESTS / "golden_record"
 
-#: Where commands run, so that the names of files that they are given have no folder of one machine.
-ROOT = Path(__file__).parents[1]
 
 #: At most so many lines of a table are kept, spread over it.
 ROWS = 12

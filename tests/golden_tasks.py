@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 
 from rich.console import Console
 
+from places import EXAMPLES
 from sevenbar.description.gallery import text as gallery_text
 from sevenbar.description.schema import TomlSchema, json_schema
 from sevenbar.design.task.along import DesignAlong
@@ -20,7 +21,7 @@ from sevenbar.design.task.report import TaskDesigns, task_report
 from sevenbar.design.task.search import designed
 from sevenbar.errors import SevenbarError
 
-EXAMPLES = Path(__file__).parents[1] / "examples" / "design"
+DESIGN_EXAMPLES = EXAMPLES / "design"
 
 #: A point of the coupler of the gallery's planar four-bar.
 POINT = '[[point]]\nname = "P"\nlink = 2\nat = [-50, 0, 20]\n'
@@ -296,7 +297,7 @@ def of_text(text, starts):
 
 def of_example(name):
     """The designs of a documented task, begun at its linkage alone."""
-    return _designs(task_file(EXAMPLES / f"{name}_task.toml"), 0).replace(f"{EXAMPLES}/", "")
+    return _designs(task_file(DESIGN_EXAMPLES / f"{name}_task.toml"), 0).replace(f"{DESIGN_EXAMPLES}/", "")
 
 
 def _designs(read, starts):

@@ -7,12 +7,13 @@ fixtures that it shares with other tests. A test that is not on the list is fast
 
 import os
 from collections import defaultdict
-from pathlib import Path
 
 import pytest
 
+from places import TESTS
+
 #: The list, a name a line.
-LIST = Path(__file__).with_name("slow_tests.txt")
+LIST = TESTS / "slow_tests.txt"
 
 #: What the fast tests may take together [s of one processor].
 BUDGET = 65.0

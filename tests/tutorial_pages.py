@@ -16,14 +16,14 @@ from pathlib import Path
 
 from PIL import Image
 
-from commands import sevenbar
+from command_runs import sevenbar
+from places import DOCS
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
 PAGES = (DOCS / "tutorial.md", DOCS / "zh" / "tutorial.md")
 QUICK = (DOCS / "quick-start.md", DOCS / "zh" / "quick-start.md")
 IMAGES = DOCS / "images"
 BOX = re.compile(r"^```(toml|console|python)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-#: Where in the newcomer's folder each picture comes from; that of the studio is taken by tests/test_tutorial.py.
+#: Where in the newcomer's folder each picture comes from; that of the studio is taken by tests/docs/test_tutorial.py.
 PICTURES = {
     "tutorial_configuration.png": "report/configuration.png",
     "tutorial_map_swing.png": "map/swing.png",
