@@ -5,9 +5,7 @@ import time
 
 import sevenbar as sb
 from browser import PATIENCE, keep
-from controls import (
-    type_into,
-)
+from controls import type_into
 
 #: After a text is typed it is taken, and after any change the page is sent anew [ms].
 TAKEN, SHOWN = 1300, 400

@@ -15,7 +15,7 @@ import pytest
 
 import sevenbar as sb
 from compared_slopes import compare_all
-from engine_columns import slides, turns
+from run_differences import slides, turns
 from sevenbar.errors import DescriptionError
 from sevenbar.export import export
 from sevenbar.export.layout import arrange

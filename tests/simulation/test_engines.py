@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from engine_columns import slides, turns
 from gallery_sample import sampled
 from places import REFERENCES
+from run_differences import slides, turns
 from sevenbar.errors import EngineError
 from sevenbar.simulation.agreement import agreement
 from sevenbar.simulation.exudyn_screw import ScrewConstraint

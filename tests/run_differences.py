@@ -1,4 +1,4 @@
-"""Which columns of a motion turn, and which slide."""
+"""The greatest differences between two runs of a linkage, of its turns and of its slides."""
 
 
 def turns(run):
