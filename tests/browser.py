@@ -89,7 +89,7 @@ async ({ pictures }) => {
     return copy.toDataURL();
 }
 """
-#: What a page is told is drawn two pictures later.
+#: What a page is sent is drawn two pictures later.
 PICTURES = 3
 #: From one look at the canvas to the next [ms].
 LOOK = 300
@@ -192,7 +192,7 @@ def canvas_colours(page, pictures=PICTURES):
 
 
 def settled(page, wanted=None, *, still=True, within=PATIENCE):
-    """What the 3D canvas shows once it stands still, twice the same, and is as wanted, if that is given.
+    """What the 3D canvas shows once it is still, twice the same, and is as wanted, if that is given.
 
     Of a film, which is never `still`, what is wanted must be met alone.
     """
@@ -210,7 +210,7 @@ def settled(page, wanted=None, *, still=True, within=PATIENCE):
 
 
 def changed(page, before, least):
-    """What the 3D canvas shows once it stands still and differs from a picture in more pixels than so many."""
+    """What the 3D canvas shows once it is still and differs from a picture in more pixels than so many."""
     return settled(page, lambda after: differs(before, after) > least)
 
 

@@ -50,7 +50,7 @@ class Desk:
         self.wait(TAKEN)
 
     def reading(self):
-        """Input and output [deg], and the mode and their number, as the page tells them."""
+        """Input and output [deg], and the mode and their number, as the page shows them."""
         words = self.page.evaluate(READING)
         found = re.search(r"input ([-\d.]+)°.*output ([-\d.]+)°.*mode (\d+) of (\d+)", words, re.DOTALL)
         return float(found[1]), float(found[2]), int(found[3]), int(found[4])

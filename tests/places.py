@@ -7,7 +7,7 @@ import sevenbar
 #: The folder of the tests, and of the published answers that they are held against.
 TESTS = Path(__file__).parent
 REFERENCES = TESTS / "references"
-#: The repository, and parts of it.
+#: The repository, and folders in it.
 ROOT = TESTS.parent
 DOCS, EXAMPLES = ROOT / "docs", ROOT / "examples"
 #: The package as it is imported.

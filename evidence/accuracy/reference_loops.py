@@ -44,7 +44,7 @@ SAME = 1e-6
 #: beside another one, and no method need tell the two apart.
 ISOLATED = 1e-4
 
-#: A step of Newton's method so short [rad, or parts of the size] that the next one would be rounding.
+#: A step of Newton's method so short [rad, or relative to the size] that the next one would be rounding.
 ARRIVED = 1e-12
 
 #: Singular value below which a direction is free: far above roundings, far below what holds a pose.

@@ -62,7 +62,7 @@ OWN = ("configuration", "curves", "modes")
 
 
 def cases() -> list[Any]:
-    """Every linkage with every kind of figure; what the sample of the gallery stands for is a proof."""
+    """Every linkage with every kind of figure; what the sample of the gallery represents is a proof."""
     return [
         pytest.param(name, kind, marks=() if name in (*SAMPLE, *DRAWN) or kind in OWN else pytest.mark.proof)
         for name in (*loops(), *DRAWN)

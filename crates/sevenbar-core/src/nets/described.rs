@@ -267,7 +267,7 @@ struct Terms {
 }
 
 impl Terms {
-    /// Sums of an order, which has such a factor; of slides in parts of the size.
+    /// Sums of an order, which has such a factor; of slides relative to the size.
     fn of(sums: &[Sum], factor: f64, size: f64) -> Self {
         let (mut ends, mut of) = (Vec::new(), Vec::new());
         for sum in sums {

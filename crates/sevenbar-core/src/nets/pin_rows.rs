@@ -2,7 +2,7 @@
 //!
 //! What `dyad_rows` does for every kind of dyad in power series is done here link by link with angular velocities, for a third of the
 //! work: each order of a dyad is two linear equations with the matrix of the first. The matrix `A` falls into blocks of two by two along
-//! the dyads, so its inverse needs no factorisation. Angles are told from those of a place near by.
+//! the dyads, so its inverse needs no factorisation. Angles are counted from those of a place near by.
 //!
 //! Source: docs/theory_nets.md, (14) to (18).
 

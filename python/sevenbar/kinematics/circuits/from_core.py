@@ -148,7 +148,7 @@ def circuit_from(
 
 
 def _status_words(statuses: Integers, q: Floats) -> Words:
-    """The words of statuses; one word, if all are the same, stands once in memory."""
+    """The words of statuses; one word, if all are the same, is once in memory."""
     # nothing is slower than words row by row; the least of numbers of which one is none is none
     if len(q) and statuses.min() == statuses.max() and not math.isnan(q.min()):
         return np.broadcast_to(_STATUS_WORDS[statuses[0]], statuses.shape)
