@@ -66,7 +66,7 @@ macro_rules! operators {
 #[derive(Clone, Copy, Debug)]
 struct Plain(Reals);
 
-/// Operators of [`Plain`]. On x86, where it serves machines of before 2013, each is compiled once and called: written out in every kernel
+/// Operators of [`Plain`]. On x86, where it serves machines without AVX2, each is compiled once and called: written out in every kernel
 /// they would be a fifth of the library. Elsewhere it is the only kind.
 macro_rules! plain {
     ($($operator:ident $name:ident $by:tt),*) => {

@@ -4,8 +4,8 @@ use super::joints::TERMS;
 use super::sized::{MOST_COLUMNS, SizedNet};
 use crate::loops::equation::closed::{At, Explicits};
 use crate::loops::equation::rotations::Rotation;
-use crate::loops::motions::kept::Kept;
 use crate::loops::motions::row::Row;
+use crate::loops::motions::row_store::RowStore;
 use crate::outcome::RowStatus;
 
 /// Numbers of a row besides its columns and balls: status, pass, residual and condition.
@@ -89,7 +89,7 @@ impl NetRows {
     }
 }
 
-impl<const C: usize, const R: usize, const B: usize> Kept<SizedNet<C, R, B>> for NetRows {
+impl<const C: usize, const R: usize, const B: usize> RowStore<SizedNet<C, R, B>> for NetRows {
     fn none(net: &SizedNet<C, R, B>, room: usize) -> Self {
         let sizes = [net.used(), net.net.balls.len()];
         Self {

@@ -1,9 +1,9 @@
 //! One circuit: its rows over an input, and what it is measured by.
 
 use super::extremes::output_extremes;
-use super::kept::Kept;
 use super::passes::{Pass, Passes};
 use super::row::Row;
+use super::row_store::RowStore;
 use super::rows::{Rows, Tally};
 use crate::loops::circuits::curve::{Curve, Node};
 use crate::loops::circuits::turnings::{self, Turning};
@@ -206,7 +206,7 @@ pub(crate) struct Wanted<'a> {
 }
 
 /// The circuit of some passes.
-pub(crate) fn circuit<S: Closed, D: Described, K: Kept<S>>(
+pub(crate) fn circuit<S: Closed, D: Described, K: RowStore<S>>(
     linkage: &D,
     passes: &Passes<S>,
     wanted: &Wanted,
@@ -291,7 +291,7 @@ pub(crate) fn circuit<S: Closed, D: Described, K: Kept<S>>(
 }
 
 /// The rows of a circuit on a grid of inputs, from its first to its last, and from the input zero where it goes round.
-fn grid_rows<S: Closed, K: Kept<S>>(passes: &Passes<S>, grid: (f64, f64)) -> K {
+fn grid_rows<S: Closed, K: RowStore<S>>(passes: &Passes<S>, grid: (f64, f64)) -> K {
     let (chain, curve) = (passes.chain, &passes.curve);
     let mut rows: K = passes.rows(grid.0, grid.1);
     if !curve.is_closed() {
@@ -374,7 +374,7 @@ impl<S: Closed, D: Described> Seen<'_, S, D> {
 }
 
 /// Whole turns that bring the first row into (-pi, pi].
-fn shift<S: Closed, K: Kept<S>>(chain: &S, rows: &K) -> S::Columns<f64> {
+fn shift<S: Closed, K: RowStore<S>>(chain: &S, rows: &K) -> S::Columns<f64> {
     let mut shift = S::Columns::filled(0.0);
     if let Some(row) = (0..rows.count()).find(|&k| rows.status(k) != RowStatus::NoSolution) {
         for (c, s) in shift.as_mut().iter_mut().enumerate() {
@@ -409,7 +409,7 @@ pub(crate) fn grid<S: Closed>(chain: &S, passes: &[Passes<S>], samples: usize) -
 }
 
 /// Rows of a circuit that goes round, begun at the input zero.
-fn begin_at_zero<S: Closed, K: Kept<S>>(rows: &mut K, input: usize, gained: &S::Columns<f64>, step: f64) {
+fn begin_at_zero<S: Closed, K: RowStore<S>>(rows: &mut K, input: usize, gained: &S::Columns<f64>, step: f64) {
     let whole = |value: f64| (value / TAU - (value / TAU).round()).abs() * TAU < 0.5 * step;
     let Some(first) = (0..rows.count()).find(|&k| whole(rows.value(k, input))) else {
         return;

@@ -6,9 +6,9 @@
 //!
 //! Source: docs/theory_many.md, (11).
 
-use super::kept::Kept;
 use super::passes::Passes;
 use super::row::UNIT;
+use super::row_store::RowStore;
 use crate::loops::equation::closed::{At, Closed};
 use crate::loops::rates::velocities::{self, ORDERS};
 use crate::outcome::{Ends, RowStatus};
@@ -33,7 +33,7 @@ const UNHALVED: usize = 8;
 /// The lowest and highest velocity, acceleration and jerk of the output; none where there are rows without rates.
 ///
 /// Inputs are given in the turns of the rows, which follow each other from the first on, a `step` apart.
-pub(super) fn output_extremes<S: Closed, K: Kept<S>>(
+pub(super) fn output_extremes<S: Closed, K: RowStore<S>>(
     passes: &Passes<S>,
     rows: &K,
     output: usize,
@@ -109,7 +109,7 @@ fn rate(rates: &[f64; ORDERS], order: usize) -> f64 {
     rates[order] * factorial[order]
 }
 
-impl<S: Closed, K: Kept<S>> Search<'_, '_, S, K> {
+impl<S: Closed, K: RowStore<S>> Search<'_, '_, S, K> {
     /// The slope of the rate of an order.
     #[inline]
     fn slope(&self, rates: &[f64; ORDERS], at: impl Fn() -> At<S>, order: usize) -> f64 {

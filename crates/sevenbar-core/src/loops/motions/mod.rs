@@ -2,11 +2,11 @@
 
 pub(crate) mod circuit;
 mod extremes;
-pub(crate) mod kept;
 pub(crate) mod measures;
 mod met_twice;
 pub(crate) mod motion;
 pub(crate) mod passes;
 pub(crate) mod row;
 mod row_lanes;
+pub(crate) mod row_store;
 pub(crate) mod rows;

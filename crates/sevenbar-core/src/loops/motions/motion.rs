@@ -1,10 +1,10 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
 use super::circuit::{Circuit, Followed, Limit, Limits, OverInput, Reach, Wanted, circuit, grid};
-use super::kept::Kept;
 use super::met_twice::{Held, HeldMotions, held_at};
 use super::passes::Passes;
 use super::row::Row;
+use super::row_store::RowStore;
 use crate::loops::branch_points::counting::Uncounted;
 use crate::loops::circuits::change_points as curve_points;
 use crate::loops::circuits::curve::Curve;
@@ -191,7 +191,7 @@ pub(crate) type How<'a> = (usize, f64, Option<&'a [[f64; 4]]>);
 type Selected<'a, S, K, C> = dyn 'a + Fn(&Passes<S>, OverInput<K>, (f64, f64)) -> C;
 
 /// Curves over an input; `selected` is what is kept of each circuit, by its passes and the origin and step of the inputs of its rows.
-pub(crate) fn over_input<S: Closed, D: Described, K: Kept<S>, C>(
+pub(crate) fn over_input<S: Closed, D: Described, K: RowStore<S>, C>(
     linkage: &D,
     chain: &S,
     mut curves: Curves<S>,

@@ -1,8 +1,8 @@
 //! A followed curve as rows over an input: passes between dead centres, rows on a grid of inputs, extremes.
 
-use super::kept::Kept;
 use super::row::{self, Row, Solved, UNIT};
 use super::row_lanes::{Near, rows_near};
+use super::row_store::RowStore;
 use crate::loops::circuits::curve::{self, Curve, Node};
 use crate::loops::circuits::turnings::{self, begun_at, insert, turns_at};
 use crate::loops::circuits::walked_again;
@@ -307,7 +307,7 @@ impl<'a, S: Closed> Passes<'a, S> {
     }
 
     /// Rows on a grid of inputs `origin + k step`, with exact rows at dead centres; the input has unit speed.
-    pub fn rows<K: Kept<S>>(&self, origin: f64, step: f64) -> K {
+    pub fn rows<K: RowStore<S>>(&self, origin: f64, step: f64) -> K {
         let mut rows = K::none(self.chain, 0);
         let closed = self.curve.is_closed();
         let slack = SAME_ROW * step;
@@ -347,7 +347,7 @@ impl<'a, S: Closed> Passes<'a, S> {
     }
 
     /// Rows at those nodes of the first pass from which a step leads over less than `step` of the input.
-    pub fn node_rows<K: Kept<S>>(&self, step: f64) -> K {
+    pub fn node_rows<K: RowStore<S>>(&self, step: f64) -> K {
         let pass = &self.passes[0];
         let value = |k: usize| self.curve.nodes[k].at.values[self.input];
         let near = |a: usize, b: usize| (value(a) - value(b)).abs() < step;
@@ -361,7 +361,7 @@ impl<'a, S: Closed> Passes<'a, S> {
     ///
     /// An input that turns may be met a turn on or back; one that lies in the pass with `shift` taken off it, as the circuit's
     /// rows are given, is met there, for a pass may be longer than a turn. Only a closed curve is gone along again.
-    pub fn law_rows<K: Kept<S>>(&self, law: &[[f64; 4]], turns: bool, shift: f64) -> K {
+    pub fn law_rows<K: RowStore<S>>(&self, law: &[[f64; 4]], turns: bool, shift: f64) -> K {
         let mut rows = K::none(self.chain, self.passes.len() * law.len());
         for (n, pass) in self.passes.iter().enumerate() {
             let (low, high) = (pass.start.min(pass.end), pass.start.max(pass.end));
@@ -400,7 +400,7 @@ impl<'a, S: Closed> Passes<'a, S> {
 
 impl<S: Closed> Passes<'_, S> {
     /// Rows of a pass at inputs in it, in its order, side by side; singly where that does not settle.
-    fn rows_at<K: Kept<S>>(&self, pass: usize, values: impl Iterator<Item = f64>, rows: &mut K) {
+    fn rows_at<K: RowStore<S>>(&self, pass: usize, values: impl Iterator<Item = f64>, rows: &mut K) {
         let p = &self.passes[pass];
         let value_at = |node: usize| self.curve.nodes[node].at.values[self.input];
         let rising = p.end > p.start;

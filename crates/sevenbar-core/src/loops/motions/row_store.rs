@@ -1,11 +1,11 @@
-//! The rows of a circuit as they are kept: one after the other as they are, or only the numbers that are in use.
+//! How the rows of a circuit are stored: one after the other as they are, or only the numbers that are in use.
 
 use super::row::Row;
 use crate::loops::equation::closed::{At, Closed, Explicits};
 use crate::outcome::RowStatus;
 
 /// Rows one after the other.
-pub(crate) trait Kept<S: Closed> {
+pub(crate) trait RowStore<S: Closed> {
     /// None yet, with room for so many.
     fn none(chain: &S, room: usize) -> Self;
     /// Makes room for so many more.
@@ -38,7 +38,7 @@ pub(crate) trait Kept<S: Closed> {
     fn begin_with(&mut self, first: usize);
 }
 
-impl<S> Kept<S> for Vec<Row<S>>
+impl<S> RowStore<S> for Vec<Row<S>>
 where
     S: Closed,
 {
