@@ -24,18 +24,18 @@ NAMES = ("crank", "coupler_pin", "rocker_pin", "rocker")
 #: Crank, coupler, rocker and ground of textbooks, with the class by Grashof's rule.
 TEXTBOOK = [
     ((40, 100, 80, 90), "crank-rocker"),
-    ((2, 7, 9, 4), "change point"),
+    ((2, 7, 9, 4), "change-point"),
     ((80, 100, 40, 90), "crank-rocker"),
     ((100, 80, 90, 40), "double-crank"),
     ((80, 40, 90, 100), "double-rocker"),
-    ((50, 60, 70, 100), "triple rocker"),
-    ((1, 1, 1, 1), "change point"),
-    ((0.1, 0.4, 0.2, 0.3), "change point"),
-    ((0.3, 0.5, 0.6, 0.4), "change point"),
-    ((2.6, 4.1, 3.3, 3.4), "change point"),
+    ((50, 60, 70, 100), "triple-rocker"),
+    ((1, 1, 1, 1), "change-point"),
+    ((0.1, 0.4, 0.2, 0.3), "change-point"),
+    ((0.3, 0.5, 0.6, 0.4), "change-point"),
+    ((2.6, 4.1, 3.3, 3.4), "change-point"),
     ((2.6, 4.1, 3.3, 3.5), "crank-rocker"),
-    ((0.3, 0.1, 0.3, 0.1), "change point"),
-    ((3, 4, 5, 6), "change point"),
+    ((0.3, 0.1, 0.3, 0.1), "change-point"),
+    ((3, 4, 5, 6), "change-point"),
 ]
 
 
@@ -61,9 +61,9 @@ def test_textbook_four_bars_have_their_class(lengths, grashof):
     assert found.grashof == grashof
     short, one, other, long = sorted(lengths)
     assert found.excess == pytest.approx(short + long - one - other, abs=1e-12)
-    assert (found.excess == 0) == (grashof == "change point")
+    assert (found.excess == 0) == (grashof == "change-point")
     motion = rows.motion(24)
-    if grashof == "change point":
+    if grashof == "change-point":
         assert motion.motion_type == "change-point" or motion.change_points
     else:
         assert motion.motion_type == expected(found, "theta_1", "theta_4")
@@ -105,7 +105,7 @@ def test_the_class_is_that_of_the_motion_of_random_four_bars_for_every_input():
         assert motion.motion_type == expected(found, first, second), (lengths, first, second)
         assert (found.excess < 0) == (len(motion.circuits) == 2), lengths
         seen.add(found.grashof)
-    assert seen == {"crank-rocker", "double-crank", "double-rocker", "triple rocker"}
+    assert seen == {"crank-rocker", "double-crank", "double-rocker", "triple-rocker"}
 
 
 def test_the_class_is_that_of_the_motion_of_random_spherical_four_bars_for_every_input():
@@ -128,7 +128,7 @@ def test_the_class_is_that_of_the_motion_of_random_spherical_four_bars_for_every
         motion = found.motion(24, input=first, output=second)
         assert motion.motion_type == expected(bar, first, second), (arcs, first, second)
         seen.add(bar.grashof)
-    assert seen == {"crank-rocker", "double-crank", "double-rocker", "triple rocker"}
+    assert seen == {"crank-rocker", "double-crank", "double-rocker", "triple-rocker"}
 
 
 def test_the_class_is_that_of_the_motion_of_random_slider_cranks_for_every_input():
@@ -161,9 +161,9 @@ def test_the_class_is_that_of_the_motion_of_random_slider_cranks_for_every_input
     ("crank", "rod", "offset", "grashof"),
     [
         (40, 140, 0, "Grashof"),
-        (40, 140, 100, "change point"),
-        (0.1, 0.3, 0.2, "change point"),
-        (1, 1, 0, "change point"),
+        (40, 140, 100, "change-point"),
+        (0.1, 0.3, 0.2, "change-point"),
+        (1, 1, 0, "change-point"),
         (40, 140, 101, "non-Grashof"),
         (2.6, 3.1, 0.4, "Grashof"),
     ],
@@ -181,12 +181,12 @@ def test_near_a_change_point_the_class_is_that_of_the_motion(exponent, sign):
     gap = sign * 10.0**exponent
     rows = sb.from_dh("RRRR", length=[2, 7 + gap, 8, 3], twist=[0] * 4, offset=[0] * 4)
     found = four_bar_of(rows, "theta_1", "theta_4")
-    assert found.excess == pytest.approx(2 + 8 - 7 - gap - 3, abs=1e-9) or found.grashof == "change point"
+    assert found.excess == pytest.approx(2 + 8 - 7 - gap - 3, abs=1e-9) or found.grashof == "change-point"
     if abs(gap) <= 1e-13:
-        assert found.grashof == "change point"
+        assert found.grashof == "change-point"
         assert rows.motion(24).motion_type == "change-point"
     elif abs(gap) >= 1e-9:
-        assert found.grashof == ("crank-rocker" if gap > 0 else "triple rocker")
+        assert found.grashof == ("crank-rocker" if gap > 0 else "triple-rocker")
         assert rows.motion(24).motion_type == expected(found, "theta_1", "theta_4")
 
 
@@ -246,7 +246,7 @@ def test_links_of_a_planar_loop_with_balls_are_those_in_its_plane_however_it_is_
         bar = linkage(written).as_four_bar()
         found = [*bar.links.values()] + ([] if bar.offset is None else [bar.offset])
         assert sorted(found) == pytest.approx(sorted(scale * x for x in expected_links), rel=1e-9), way
-        classes.add(bar.grashof in ("triple rocker", "non-Grashof"))
+        classes.add(bar.grashof in ("triple-rocker", "non-Grashof"))
     assert classes == {False}
 
 

@@ -28,7 +28,6 @@ def grashof_text(bar: FourBar, unit: str) -> str:
         kinds = {
             "Grashof": say("Grashof"),
             "non-Grashof": say("no joint turns fully"),
-            "change point": say("change-point"),
             "cannot close": say("the offset is longer than both links together, so the loop does not close"),
         }
         kind = kinds.get(bar.grashof) or say(bar.grashof)
@@ -40,8 +39,7 @@ def grashof_text(bar: FourBar, unit: str) -> str:
             "crank-rocker": say("Grashof crank-rocker"),
             "double-crank": say("Grashof double-crank"),
             "double-rocker": say("Grashof double-rocker"),
-            "change point": say("change-point"),
-            "triple rocker": say("triple-rocker: no joint turns fully"),
+            "triple-rocker": say("triple-rocker: no joint turns fully"),
             "cannot close": say(
                 "the {link} is longer than the three others together, so the loop does not close",
                 link=retold(bar.longest),

@@ -36,8 +36,8 @@ Grashof = Literal[
     "crank-rocker",
     "double-crank",
     "double-rocker",
-    "change point",
-    "triple rocker",
+    "change-point",
+    "triple-rocker",
     "cannot close",
     "Grashof",
     "non-Grashof",
@@ -79,10 +79,10 @@ def four_bar_of_links(
     turning: tuple[str, ...] = ()
     grashof: Grashof
     if abs(excess) <= EQUAL_SUMS * sum(lengths):
-        grashof, excess = "change point", 0.0
+        grashof, excess = "change-point", 0.0
     elif excess > 0:
         too_long = math.fsum((l, -s, -p, -q)) > EQUAL_SUMS * sum(lengths)
-        grashof = "cannot close" if too_long else "triple rocker"
+        grashof = "cannot close" if too_long else "triple-rocker"
     else:
         opposite = "link 2" if "link 2" in roles else "coupler"
         by_role: dict[str, Grashof] = {"ground": "double-crank", opposite: "double-rocker"}
@@ -107,7 +107,7 @@ def slider_crank_of_links(
     grashof: Grashof
     turning: tuple[str, ...] = ()
     if abs(excess) <= EQUAL_SUMS * (s + l + offset):
-        grashof, excess = "change point", 0.0
+        grashof, excess = "change-point", 0.0
     elif excess > 0:
         too_far = math.fsum((offset, -s, -l)) > EQUAL_SUMS * (s + l + offset)
         grashof = "cannot close" if too_far else "non-Grashof"
