@@ -208,6 +208,9 @@ def test_ctrl_c_leaves_the_best_so_far_and_says_so(tmp_path):
     text = (tmp_path / "out" / "design_1.toml").read_text(encoding="utf-8")
     assert "# unfinished: stopped after 3 of 21 steps; these are the best so far" in text
     assert json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))["unfinished"]
+    # figures would take longer than the half second in which a command ends
+    assert {path.suffix for path in (tmp_path / "out").iterdir()} == {".toml", ".csv", ".json"}
+    assert run.stderr.splitlines()[-1] == "figures are left out: the search was stopped"
 
 
 def test_ctrl_c_before_anything_is_found_leaves_nothing(tmp_path):

@@ -38,8 +38,10 @@ def deliver(
     """Prints a result for people, writes its files into `out` and names them; JSON is printed at the end.
 
     `also` are files elsewhere, each with what writes it. A result of a search that Ctrl+C stopped is
-    `unfinished`: the command ends as Ctrl+C does.
+    `unfinished`: it is written without its figures, and the command ends as Ctrl+C does.
     """
+    if unfinished:
+        report = report.without_figures()
     if out is not None:
         # nothing is printed before it is certain that files can go there
         check_targets([out / name for name in report.files_of(found)], force=force)
@@ -62,6 +64,8 @@ def deliver(
     else:
         tell_written(written)
     if unfinished:
+        if out is not None:
+            typer.echo("figures are left out: the search was stopped", err=True)
         raise typer.Exit(stopped())
 
 

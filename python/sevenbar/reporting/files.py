@@ -6,7 +6,7 @@ import json
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -74,6 +74,11 @@ class Report(Generic[T]):
     def files_of(self, found: T) -> Files[T]:
         """The files of a result, in the order in which they are written."""
         return {**self.files, **({} if self.figures is None else self.figures(found)), **self.pages}
+
+    def without_figures(self) -> Report[T]:
+        """The report with its numbers only: figures take time, which a command that was stopped has not."""
+        files = {name: write for name, write in self.files.items() if not isinstance(write, FigureFile)}
+        return replace(self, files=files, figures=None, pages={})
 
     def json(self, found: T) -> str:
         """A result as JSON text."""
@@ -151,22 +156,32 @@ def columns_file(columns: Callable[[T], Mapping[str, npt.ArrayLike]]) -> Write[T
     return write
 
 
-def figure_files(stem: str, formats: Sequence[str], draw: Callable[[T], Figure | None]) -> Files[T]:
-    """A figure in each of these formats, drawn once; no file where `draw` returns `None`."""
-    drawn: list[tuple[T, Figure | None]] = []
+class FigureFile(Generic[T]):
+    """Writes one figure in each of the formats, drawn once; no file where `draw` returns `None`."""
 
-    def write(found: T, path: Path) -> None:
+    def __init__(self, draw: Callable[[T], Figure | None], last: str) -> None:
+        self._draw, self._last = draw, last
+        self._drawn: list[tuple[T, Figure | None]] = []
+
+    def __call__(self, found: T, path: Path) -> None:
+        """Writes the figure of a result in the format of the path's ending."""
         from sevenbar.drawing.figure import save
 
-        if not drawn or drawn[0][0] is not found:
-            drawn[:] = [(found, draw(found))]
-        figure = drawn[0][1]
-        if path.suffix == f".{formats[-1]}":
+        if not self._drawn or self._drawn[0][0] is not found:
+            self._drawn[:] = [(found, self._draw(found))]
+        figure = self._drawn[0][1]
+        if path.suffix == self._last:
             # a figure is large, and this was its last format
-            drawn.clear()
+            self._drawn.clear()
         if figure is not None:
             save(figure, path)
 
+
+def figure_files(stem: str, formats: Sequence[str], draw: Callable[[T], Figure | None]) -> Files[T]:
+    """A figure in each of these formats, drawn once; no file where `draw` returns `None`."""
+    if not formats:
+        return {}
+    write = FigureFile(draw, f".{formats[-1]}")
     return {f"{stem}.{ending}": write for ending in formats}
 
 
