@@ -218,7 +218,7 @@ def test_the_tables_of_poses_have_the_stops(tmp_path):
     found = json.loads(sevenbar("modes", "stops.toml", "--at", "90", "--json", cwd=tmp_path).stdout)
     assert [mode["stopped_by"] for mode in found["modes"]] == [["range of theta_1"]] * 2
     assert (
-        "超出 theta_1 的范围限位"
+        "超出 theta_1 的范围"
         in sevenbar("modes", "stops.toml", "--at", "90", "--lang", "zh", cwd=tmp_path).stdout
     )
 
