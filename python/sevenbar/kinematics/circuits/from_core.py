@@ -29,14 +29,14 @@ SAME_LIMIT = 1e-6
 CoreRows = tuple[Floats, Integers, Integers, Floats, Floats]
 
 
-def change_points_from(raw: _core.RawMotion, column: int) -> tuple[ChangePoint, ...]:
-    """The change points of a motion, by their input; `column`: the input."""
-    points = (
+def change_points_from(raw: _core.RawMotion, column: int, *, turns: bool = True) -> tuple[ChangePoint, ...]:
+    """The change points of a motion by their input, which is the `column` and `turns` or slides."""
+    points = [
         ChangePoint(values[column], np.array(values), tuple(circuits), ways, freedoms)
         for values, circuits, ways, freedoms in raw.change_points
-    )
+    ]
     # just below zero by rounding is zero, not a whole turn
-    return tuple(sorted(points, key=lambda point: float(within_turn(point.input))))
+    return tuple(sorted(points, key=lambda point: float(within_turn(point.input)) if turns else point.input))
 
 
 def search_from(raw: _core.RawSearch, columns: Sequence[str]) -> Search:
@@ -235,7 +235,7 @@ def motion_from(
         samples=samples,
         motion_type=raw.motion_type,
         limits=merged(limits, turns=linkage.turns(column), size=size),
-        change_points=change_points_from(raw, column),
+        change_points=change_points_from(raw, column, turns=linkage.turns(column)),
         circuits=circuits,
         search=search_from(raw.search, linkage.columns),
         redundant=redundant,
