@@ -10,7 +10,7 @@ import sevenbar as sb
 from gallery_sample import sampled
 from sevenbar.errors import RequestError
 from sevenbar.export import FORMATS, export
-from sevenbar.simulation.mjcf import Drive
+from sevenbar.export.mjcf import Drive
 
 
 def opened(path):

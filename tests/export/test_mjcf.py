@@ -8,8 +8,8 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.gallery import loops
-from sevenbar.simulation.mjcf import mjcf
-from sevenbar.simulation.prototype import prototype
+from sevenbar.export.mjcf import mjcf
+from sevenbar.export.prototype import prototype
 from sevenbar.simulation.run import prepared
 
 

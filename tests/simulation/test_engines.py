@@ -15,9 +15,9 @@ from gallery_sample import sampled
 from places import REFERENCES
 from run_differences import slides, turns
 from sevenbar.errors import EngineError
+from sevenbar.export.prototype import GROUND, Connection, prototype
 from sevenbar.simulation.agreement import agreement
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
-from sevenbar.simulation.prototype import GROUND, Connection, prototype
 from sevenbar.simulation.run import ENGINES, moved, prepared, simulate
 
 TABLE_1 = json.loads((REFERENCES / "rssr_table1.json").read_text(encoding="utf-8"))

@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 import sevenbar as sb
 from command_runs import mistake, sevenbar
 from sevenbar.errors import NotCoveredError, OutputError, RequestError
+from sevenbar.export.prototype import prototype
 from sevenbar.reporting.csv_tables import write_columns
 from sevenbar.simulation import report as simulation_report
 from sevenbar.simulation.figures import joints_figure, output_figure, points_figure
-from sevenbar.simulation.prototype import prototype
 from sevenbar.simulation.run import simulate
 
 

@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.export.acting import in_links
 from sevenbar.export.layout import arrange
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid
 from sevenbar.export.pose import take
+from sevenbar.export.prototype import GYRATION
 from sevenbar.forces.bodies import inertia_at
 from sevenbar.forces.solids import DENSITIES, ball, cylinder, square_bar
 from sevenbar.kinematics.dynamics.link_bodies import resolved
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.simulation.acting import in_links
-from sevenbar.simulation.prototype import GYRATION
 from sevenbar.text.units import LENGTHS
 
 #: The mass of a body that has none where others do, as a part of the heaviest one's: programs take none

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from sevenbar.errors import RequestError
+from sevenbar.export.mjcf import Drive, mjcf
 from sevenbar.export.parts import Assembly
+from sevenbar.export.prototype import prototype
 from sevenbar.kinematics.loop.law import Law
-from sevenbar.simulation.mjcf import Drive, mjcf
-from sevenbar.simulation.prototype import prototype
 from sevenbar.text.progress import Progress, silent
 
 

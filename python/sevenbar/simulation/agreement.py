@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Booleans, Floats
+from sevenbar.export.prototype import Prototype
 from sevenbar.forces.result import Forces
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.rigid import placed
 from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
 from sevenbar.simulation.joint_values import BodyStates, JointValues, joint_values
-from sevenbar.simulation.prototype import Prototype
 from sevenbar.text.printing import Printed
 
 

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.export.prototype import GROUND, GYRATION, Connection, MovingBody, Prototype, SpinRule
 from sevenbar.forces.bodies import inertia_at
 from sevenbar.kinematics.loop.rigid import perpendicular, pose
 from sevenbar.simulation.engine import imported
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
-from sevenbar.simulation.prototype import GROUND, GYRATION, Connection, MovingBody, Prototype, SpinRule
 from sevenbar.text.units import LENGTHS
 
 #: A body's mass, or that of the heaviest. Small against lengths of size one, so that constraints weigh most

@@ -8,10 +8,10 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import EngineError
+from sevenbar.export.prototype import Prototype
 from sevenbar.simulation.engine import Record, imported, tell
 from sevenbar.simulation.exudyn_assembly import ExudynAssembly, pace_of
 from sevenbar.simulation.exudyn_forces import add_acting, constraint_forces, constraint_sensors
-from sevenbar.simulation.prototype import Prototype
 from sevenbar.text.progress import Progress
 
 #: Numerical damping of the generalized-alpha method, which needs less than 1 for constraints on positions;

@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.export.acting import JointSpring, PlacedLoad
+from sevenbar.export.prototype import GROUND, Connection
 from sevenbar.kinematics.loop.rigid import pose
-from sevenbar.simulation.acting import JointSpring, PlacedLoad
 from sevenbar.simulation.exudyn_assembly import ExudynAssembly
-from sevenbar.simulation.prototype import GROUND, Connection
 from sevenbar.text.units import LENGTHS
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.export.prototype import GROUND, Connection
 from sevenbar.kinematics.loop.rigid import pose
-from sevenbar.simulation.prototype import GROUND, Connection
 
 
 class ScrewConstraint:

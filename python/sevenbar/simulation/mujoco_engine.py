@@ -11,10 +11,10 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import EngineError
+from sevenbar.export.mjcf import IMPEDANCE, TIME_CONSTANT, cut, mjcf
+from sevenbar.export.mjcf_acting import MASSLESS
+from sevenbar.export.prototype import GROUND, Prototype
 from sevenbar.simulation.engine import Record, imported, tell
-from sevenbar.simulation.mjcf import IMPEDANCE, TIME_CONSTANT, cut, mjcf
-from sevenbar.simulation.mjcf_acting import MASSLESS
-from sevenbar.simulation.prototype import GROUND, Prototype
 from sevenbar.text.progress import Progress
 from sevenbar.text.units import LENGTHS
 

@@ -91,7 +91,7 @@ def simulation_report(engine: str, figures: Sequence[str] = ("png",)) -> Report[
 
 
 def _mjcf(run: Simulation) -> str:
-    from sevenbar.simulation.mjcf import mjcf
+    from sevenbar.export.mjcf import mjcf
 
     return mjcf(run.model, time_step=run.course.step)
 

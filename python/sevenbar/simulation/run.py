@@ -11,12 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from sevenbar.errors import RequestError, shown
+from sevenbar.export.prototype import Prototype, prototype
 from sevenbar.kinematics.linkage import Linkage, sample_count
 from sevenbar.simulation import exudyn_engine, mujoco_engine
 from sevenbar.simulation.agreement import Simulation, agreement
 from sevenbar.simulation.course import Course, course
 from sevenbar.simulation.engine import Record, imported
-from sevenbar.simulation.prototype import Prototype, prototype
 from sevenbar.text.progress import Progress
 
 #: The engines by name.

@@ -10,9 +10,9 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from sevenbar.export.mjcf_elements import add, mark, numbers
+from sevenbar.export.prototype import GROUND, GYRATION, Prototype
 from sevenbar.kinematics.loop.rigid import pose
-from sevenbar.simulation.mjcf_elements import add, mark, numbers
-from sevenbar.simulation.prototype import GROUND, GYRATION, Prototype
 from sevenbar.text.units import LENGTHS
 
 #: Mass of every body where nothing acts [kg]: the motion that the drive prescribes does not depend on it.

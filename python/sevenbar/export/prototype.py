@@ -13,12 +13,12 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError, RequestError
+from sevenbar.export.acting import PlacedLoading, acting
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.circuits.poses import poses_along
 from sevenbar.kinematics.loop.joints import JointKind, kind_row
 from sevenbar.kinematics.loop.rigid import about, inverse
-from sevenbar.simulation.acting import PlacedLoading, acting
 
 #: The number of the ground among the bodies.
 GROUND = -1

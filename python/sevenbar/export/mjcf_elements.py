@@ -7,8 +7,8 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.export.prototype import Prototype
 from sevenbar.kinematics.loop.rigid import quaternion
-from sevenbar.simulation.prototype import Prototype
 from sevenbar.text.units import LENGTHS
 
 #: Radius of the sites that springs end at, as a part of the linkage's size.

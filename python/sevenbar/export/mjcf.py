@@ -28,12 +28,12 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.export.mjcf_acting import add_springs, gyration, heaviest, inertial, joint_spring
+from sevenbar.export.mjcf_elements import add, mark, numbers, placed
+from sevenbar.export.prototype import GROUND, STILL, Connection, Prototype, SpinRule
 from sevenbar.kinematics.loop.geometry import moved_by
 from sevenbar.kinematics.loop.joints import Step
 from sevenbar.kinematics.loop.rigid import inverse, pose
-from sevenbar.simulation.mjcf_acting import add_springs, gyration, heaviest, inertial, joint_spring
-from sevenbar.simulation.mjcf_elements import add, mark, numbers, placed
-from sevenbar.simulation.prototype import GROUND, STILL, Connection, Prototype, SpinRule
 from sevenbar.text.units import LENGTHS
 
 #: The flywheel's inertia, in those of a body: constraints change its speed by about the inverse of this.
