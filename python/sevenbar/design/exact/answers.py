@@ -13,6 +13,7 @@ from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import CHECK_SAMPLES, Candidate, Claim, Refusal, checked
 from sevenbar.design.exact.dyads import Dyad
+from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed
 
@@ -36,6 +37,8 @@ class ExactAnswer:
     draft: Draft
     claim: Claim
     verdict: Candidate | Refusal | None
+    #: `None` for what is no linkage.
+    motion_type: str | None
     #: All joints' values at the wanted poses (n, columns); `None` where only input and output are wanted.
     poses: Floats | None = None
 
@@ -69,7 +72,7 @@ class ExactAnswer:
         lowest = None if free is None or self.linkage.form != "rssr" else free.transmission_lowest
         return {
             "defect": self.defect,
-            "motion_type": free.motion_type if free is not None else self.linkage.motion().motion_type,
+            "motion_type": self.motion_type,
             "transmission_lowest_deg": None if lowest is None else math.degrees(lowest),
             **self.claim.figures,
             **{d.column: d.value for d in self.draft.dimensions if d.kind != "speed"},
@@ -132,7 +135,11 @@ def judged(draft: Draft, claim: Claim, poses: Floats | None = None) -> ExactAnsw
     """An answer with what its circuits say; `poses` (n, columns) as `checked` takes them."""
     little = float(np.ptp(claim.inputs)) < LITTLE
     for samples in CHECKED_AT if little else CHECKED_AT[:-1]:
-        verdict = checked(draft, claim, poses=poses, samples=samples)
+        try:
+            motion = draft.linkage.motion(samples)
+        except (DescriptionError, RequestError) as error:
+            return ExactAnswer(draft, claim, Refusal("assembly", str(error)), None, poses)
+        verdict = checked(draft, claim, poses=poses, motion=motion)
         if not isinstance(verdict, Refusal) or verdict.fault != "assembly":
             break
-    return ExactAnswer(draft, claim, verdict, poses)
+    return ExactAnswer(draft, claim, verdict, motion.motion_type, poses)

@@ -50,7 +50,9 @@ def loop(driver: Dyad, follower: Dyad, task: Displacements, name: str, length_un
     claim = Claim(columns[0][:, 0], columns[3][:, 0], off, length_unit, figures)
     whole = np.column_stack(columns)
     # with eight freedoms one input leaves another: there are no circuits
-    return ExactAnswer(draft, claim, None, whole) if whole.shape[1] == 8 else judged(draft, claim, whole)
+    if whole.shape[1] == 8:
+        return ExactAnswer(draft, claim, None, draft.linkage.motion().motion_type, whole)
+    return judged(draft, claim, whole)
 
 
 def all_loops(
