@@ -252,3 +252,11 @@ def test_the_middle_of_a_rod_is_a_place_of_the_drawing_and_of_a_coupler_half_its
             for body in bodies
         ]
         assert np.allclose(pulls[0].torque, pulls[1].torque)
+
+
+@pytest.mark.parametrize(("before", "place"), [("", "input"), ("[drive]\n", "drive.input")])
+def test_who_writes_input_is_told_of_the_drive(tmp_path, before, place):
+    file = tmp_path / "four.toml"
+    file.write_text(f'format = 1\n{before}input = "crank"\n\n[[joint]]\nkind = "R"\n', encoding="utf-8")
+    line = f"{place}: is not known here; the input is the joint of [drive]: write joint = .. below that head"
+    assert line in mistake("analyze", file)

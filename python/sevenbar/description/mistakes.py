@@ -21,6 +21,9 @@ ROW_READS = "is of joints as drawn; a row reads its own angle, or offset of P, s
 STOP_ENDS = ("limits", "limit", "ends", "between", "min", "max", "low", "high")
 RANGE = "is not known here; give range = [low, high]"
 
+#: What to say of `input` above all tables or in [drive].
+INPUT = "is not known here; the input is the joint of [drive]: write joint = .. below that head"
+
 
 @dataclass(frozen=True)
 class FileForms:
@@ -55,6 +58,7 @@ class FileForms:
                 home = not_covered(location[-1], of_joint=location[0] == "joint" and len(location) > 1)
                 home = home or ROW_READS * (location[0] == "link" and location[-1] == "value")
                 home = home or RANGE * (location[0] == "stop" and location[-1] in STOP_ENDS)
+                home = home or INPUT * (location in (["input"], ["drive", "input"]))
                 home = home or ("" if near else self._home(str(location[-1])))
                 message = home or f"is not known here; {near}allowed: {keys}"
             case "literal_error" | "int_parsing_size":
