@@ -7,17 +7,22 @@ CSV, tabs, semicolons, blanks, decimal commas, UTF-16, sheets of a workbook, and
 from __future__ import annotations
 
 import csv
-import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from io import StringIO
 from typing import Any
 
 from sevenbar.errors import shown
-from sevenbar.text.csv_cells import NUMBER, as_written
+from sevenbar.text.csv_cells import as_written
 from sevenbar.text.listed import listed
-from sevenbar.text.table import COMMA_NUMBER, NAME_AND_UNIT, NO_NUMBER, name_and_unit
-from sevenbar.text.units import is_unit
+from sevenbar.text.table import (
+    COMMA_NUMBER,
+    NAME_AND_UNIT,
+    NO_NUMBER,
+    has_decimal_commas,
+    name_and_unit,
+    units_in,
+)
 from sevenbar.text.workbook import WorkbookSheet, cell_name
 
 #: Whether a line's cells, without their units, may be a header.
@@ -130,25 +135,14 @@ def _grid(
     width = len(names)
     body = selected[first + 1 :]
     units = [""] * width
-    if body and _only_units(body[0][1]):
-        units = ([re.sub(r"[\[\]()]", "", cell) for cell in body[0][1]] + units)[:width]
+    if body and (below := units_in(body[0][1])) is not None:
+        units = (below + units)[:width]
         body = body[1:]
     rows = [tuple((cells + [""] * width)[: max(width, len(cells))]) for _, cells in body]
-    comma = decimal_comma and _has_decimal_commas(rows)
+    comma = decimal_comma and has_decimal_commas(rows)
     lines_of = tuple(number for number, _ in body)
     return CellTable(tuple(names), tuple(units), lines_of, tuple(rows), title, word, comma)
 
 
 def _is_remark(cells: Sequence[str]) -> bool:
     return bool(cells) and cells[0].startswith(("#", "%"))
-
-
-def _only_units(cells: Sequence[str]) -> bool:
-    bare = [re.sub(r"[\[\]()]", "", cell).strip() for cell in cells]
-    return any(bare) and all(not cell or cell == "-" or is_unit(cell) for cell in bare)
-
-
-def _has_decimal_commas(rows: Sequence[Sequence[str]]) -> bool:
-    cells = [cell for row in rows for cell in row]
-    point = any("." in cell and NUMBER.fullmatch(cell) for cell in cells)
-    return not point and any(COMMA_NUMBER.fullmatch(cell) for cell in cells)

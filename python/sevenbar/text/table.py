@@ -236,6 +236,18 @@ def name_and_unit(text: str) -> tuple[str, str]:
     return text.strip(), ""
 
 
+def units_in(cells: Sequence[str]) -> list[str] | None:
+    """The units in a line of them, "" for "-" and for an empty cell; `None` for any other line.
+
+    >>> units_in(["[deg]", "-", "mm"]), units_in(["name", "mm"])
+    (['deg', '', 'mm'], None)
+    """
+    bare = [re.sub(r"[\[\]()]", "", cell).strip() for cell in cells]
+    if not any(bare) or not all(not cell or cell == "-" or is_unit(cell) for cell in bare):
+        return None
+    return ["" if cell == "-" else cell for cell in bare]
+
+
 def number(cell: str, *, decimal_comma: bool = False) -> float | None:
     """The number in a cell; NaN for one of `NO_NUMBER`, `None` for any other text."""
     if cell.lower() in NO_NUMBER:
@@ -326,7 +338,7 @@ def read_table(path: Path, of: str) -> TextTable:
             )
         rows.append(tuple(cells))
         line_numbers.append(i)
-    decimal_comma = delimiter != "," and _decimal_comma(rows)
+    decimal_comma = delimiter != "," and has_decimal_commas(rows)
     return TextTable(source, names, units, header_line, tuple(line_numbers), tuple(rows), decimal_comma)
 
 
@@ -375,7 +387,7 @@ def _delimiter(line: str) -> str:
     return "," if "," in line else ""
 
 
-def _decimal_comma(rows: Sequence[Sequence[str]]) -> bool:
+def has_decimal_commas(rows: Sequence[Sequence[str]]) -> bool:
     """Whether decimals have commas, judged by the first row with decimals, since 0;0 may precede 0,1;0,5."""
     for row in rows:
         point = any("." in cell and NUMBER.fullmatch(cell) for cell in row)
@@ -405,9 +417,9 @@ def _header(
         cells = _header_cells(line, delimiter, width)
         if cells is None:
             continue
-        bare = [cell.strip("[]() ") for cell in cells]
-        if units == none and all(is_unit(cell) or cell in ("", "-") for cell in bare) and any(bare):
-            units = tuple("" if cell == "-" else cell for cell in bare)
+        below = units_in(cells)
+        if units == none and below is not None:
+            units = tuple(below)
             continue
         return tuple(cells), units, line_number
     return none, units, 0
