@@ -150,9 +150,8 @@ class Linkage(Solvable):
 
     def _rssr(self, what: str) -> ClosedForm:
         if self.kind != "RSSR":
-            raise NotCoveredError(
-                f"{what}: a loop {' '.join(self.kind)} has no closed form here; it is offered for R S S R"
-            )
+            loop = "a net" if self.net is not None else f"a loop {' '.join(self.kind)}"
+            raise NotCoveredError(f"{what}: {loop} has no closed form here; it is offered for R S S R")
         return self._closed_form
 
     def _speed(self, speed: object, column: int) -> float:
