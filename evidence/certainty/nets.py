@@ -46,6 +46,10 @@ KINDS = {
     "yoke with a dyad": "F A|A B|B ~ C|C ~ F|C D|D E|E F",
     "slider-crank and dyad, driven by the slide": "F ~ A|A B|B C|C F|B D|D E|E F",
     "a slide in a coupler": "F A|A B|B C|C F|B ~ D|D E|E F",
+    "two rockers on a crank": "F A|A B|B C|C F|A D|D E|E F",
+    "three pistons on a crank": "F A|A B|B C|C ~ F|A D|D E|E ~ F|A G|G H|H ~ F",
+    "excavator, driven by its cylinder": "A ~ B|F A|B C|C F|C D|D E|E F",
+    "knee press of eight links": "F A|A B|B C|C F|C D|D E|E F|D G|G H|H ~ F",
 }
 
 #: How many inputs are tried, one of them as drawn, and how far a slide may be from there [length].
