@@ -29,9 +29,9 @@ def axes(
         if out.suffix.lower() != ".csv":
             raise RequestError(f"--out: {out}: the table is written as CSV; give a file that ends in .csv")
         check_targets([out], force=force)
-    found = PartAxes(model.name, tuple(axes_of_step(model)))
+    result = PartAxes(model.name, tuple(axes_of_step(model)))
 
     def write(path: Path) -> None:
-        fill_folder(path.parent, lambda aside: write_axes(found, aside / path.name), force=force)
+        fill_folder(path.parent, lambda aside: write_axes(result, aside / path.name), force=force)
 
-    deliver(found, axes_report(), json=json, also={} if out is None else {out: write})
+    deliver(result, axes_report(), json=json, also={} if out is None else {out: write})

@@ -74,11 +74,11 @@ class _Commands(typer.core.TyperGroup):
         if cmd_name not in _ELSEWHERE:
             return super().get_command(ctx, cmd_name)
         module, _, name = _ELSEWHERE[cmd_name].partition(":")
-        found = getattr(importlib.import_module(module), name)
-        if isinstance(found, typer.Typer):
-            return typer.main.get_command(found)
+        result = getattr(importlib.import_module(module), name)
+        if isinstance(result, typer.Typer):
+            return typer.main.get_command(result)
         alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-        alone.command(cmd_name, cls=Command)(found)
+        alone.command(cmd_name, cls=Command)(result)
         return typer.main.get_command(alone)
 
     def invoke(self, ctx: Any) -> Any:
@@ -282,16 +282,16 @@ def modes(
     column = loaded.input_column(input_joint, "--input")
     check_targets([] if out is None else [out], force=force)
     value = input_value("--at", "0" if at is None else at, loaded, input_joint)
-    found = loaded.assembly_modes(value, input=loaded.columns[column])
-    poses, limit = rates_at(loaded, column, value, speed, found)
+    result = loaded.assembly_modes(value, input=loaded.columns[column])
+    poses, limit = rates_at(loaded, column, value, speed, result)
 
     def draw(path: Path) -> None:
         from sevenbar.drawing import plot
 
-        plot.save(plot.modes_overview(loaded, found, input=loaded.columns[column]), path)
+        plot.save(plot.modes_overview(loaded, result, input=loaded.columns[column]), path)
 
     report = modes_report(loaded, column, poses, limit=limit, rates=at is not None)
-    deliver(found, report, json=json, also={} if out is None else {out: draw})
+    deliver(result, report, json=json, also={} if out is None else {out: draw})
 
 
 @app.command("plot", cls=Command)
@@ -349,7 +349,7 @@ def plot_(
         min(sample_count("samples", samples), MOST_DRAWN),
         input=input_joint, output=output, speed=speed,
     )  # fmt: skip
-    if "transmission" in kinds and all(found.transmission_angle is None for found in motion):
+    if "transmission" in kinds and all(result.transmission_angle is None for result in motion):
         if kind is not None and "transmission" in kind:
             raise RequestError("--kind: this linkage has no transmission angle; leave transmission out")
         kinds.remove("transmission")

@@ -26,7 +26,7 @@ def check_out(report: Report[T], out: Path | None, *, force: bool) -> None:
 
 
 def deliver(
-    found: T,
+    result: T,
     report: Report[T],
     out: Path | None = None,
     *,
@@ -44,13 +44,13 @@ def deliver(
         report = report.without_figures()
     if out is not None:
         # nothing is printed before it is certain that files can go there
-        check_targets([out / name for name in report.files_of(found)], force=force)
+        check_targets([out / name for name in report.files_of(result)], force=force)
     if not json:
-        report.print(found)
+        report.print(result)
         sys.stdout.flush()
     written: list[Path] = []
     if out is not None:
-        written += write_files(report, found, out, force=force)
+        written += write_files(report, result, out, force=force)
     for path, write in also.items():
         try:
             write(path)
@@ -60,7 +60,7 @@ def deliver(
             raise
         written.append(path)
     if json:
-        typer.echo(report.json(found))
+        typer.echo(report.json(result))
     else:
         tell_written(written)
     if unfinished:
@@ -69,10 +69,10 @@ def deliver(
         raise typer.Exit(stopped())
 
 
-def write_files(report: Report[T], found: T, out: Path, *, force: bool) -> list[Path]:
+def write_files(report: Report[T], result: T, out: Path, *, force: bool) -> list[Path]:
     """Writes the files of a result with a bar that names the one at work."""
     with progress_bar(f"writing {out}") as progress:
-        return report.write(found, out, force=force, progress=progress)
+        return report.write(result, out, force=force, progress=progress)
 
 
 def command_line() -> str:

@@ -76,8 +76,8 @@ def point(
     if out is not None and called in [point.name for point in draft.linkage.points]:
         raise RequestError(f"--name: {linkage} has a point {shown(called)} already; give another name")
 
-    def toml(found: LeastPoint | NearestPath) -> str:
-        longer = draft.with_point(called, link, found.at.tolist())
+    def toml(result: LeastPoint | NearestPath) -> str:
+        longer = draft.with_point(called, link, result.at.tolist())
         # a name that no file may have is refused here
         _ = longer.linkage
         return longer.toml()
@@ -93,8 +93,8 @@ def point(
         of, measure = _least(least or "acceleration")
         search = partial(least_point, motion, link, sides, of=of, measure=measure)
     with progress_bar(f"searching a point of link {link} of {loaded.heading}") as progress:
-        found = search(circuit=circuit, branch=branch, progress=progress)
-    deliver(found, report, out, json=json, force=force)
+        result = search(circuit=circuit, branch=branch, progress=progress)
+    deliver(result, report, out, json=json, force=force)
 
 
 def inertia(

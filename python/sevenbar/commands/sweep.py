@@ -102,18 +102,18 @@ def sweep(
         typer.echo(f"\n{state}: {out} (sweep.json, {parts} part{'s' * (parts != 1)})")
 
 
-def _as_dict(found: Sweep) -> dict[str, Any]:
-    return {**found.description, "totals": asdict(found.totals)}
+def _as_dict(result: Sweep) -> dict[str, Any]:
+    return {**result.description, "totals": asdict(result.totals)}
 
 
 #: The heads of the table of ranges.
 RANGE_HEADS = ("measure", "lowest", "linkage", "highest", "linkage", "rows")
 
 
-def _text(held: HeldDimensions, found: Sweep) -> RenderableType:
+def _text(held: HeldDimensions, result: Sweep) -> RenderableType:
     """Counts by words, ranges of numbers, of all linkages."""
-    totals = found.totals
-    sampling = found.description["sampling"]
+    totals = result.totals
+    sampling = result.description["sampling"]
     how = say(sampling["method"])
     if sampling["seed"] is not None:
         how = say("{method}, seed {seed}", method=how, seed=sampling["seed"])

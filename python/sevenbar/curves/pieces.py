@@ -180,7 +180,7 @@ def pieces(
     )
     origin = first + cut * period
     todo = np.column_stack([edges[:-1], edges[1:]])
-    found: list[tuple[float, float, Floats]] = []
+    result: list[tuple[float, float, Floats]] = []
     scale, count = float(np.abs(rows).max()), 0
     # the last terms of the piece that was halved
     before = np.full(len(todo), math.inf)
@@ -196,14 +196,14 @@ def pieces(
         count += grid.size
         if halving == HALVINGS or count + 2 * rough.sum() * grid.shape[1] > MOST_VALUES:
             rough[:] = False
-        found += [(a, b, own) for (a, b), own in zip(todo[~rough], series[~rough], strict=True)]
+        result += [(a, b, own) for (a, b), own in zip(todo[~rough], series[~rough], strict=True)]
         halves = [np.column_stack([todo[:, 0], middle]), np.column_stack([middle, todo[:, 1]])]
         todo, before = np.concatenate(halves)[np.tile(rough, 2)], np.tile(last[rough], 2)
         if not len(todo):
             break
-    found.sort(key=lambda piece: piece[0])
-    edges = np.array([piece[0] for piece in found] + [found[-1][1]])
-    series = np.stack([piece[2] for piece in found]).reshape(len(found), len(found[0][2]), -1)
+    result.sort(key=lambda piece: piece[0])
+    edges = np.array([piece[0] for piece in result] + [result[-1][1]])
+    series = np.stack([piece[2] for piece in result]).reshape(len(result), len(result[0][2]), -1)
     jumps = edges[np.isin(edges[:-1], marks[:-1]).nonzero()] if shares.size else np.empty(0)
     return Pieces(rows, Along(edges, series), origin, period, jumps)
 

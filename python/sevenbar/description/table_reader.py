@@ -117,16 +117,16 @@ def described(grid: CellTable, source: str, name: str, ground: str = "") -> Tabl
     return result
 
 
-def add_points(found: TableDescription, grid: CellTable, source: str) -> None:
+def add_points(result: TableDescription, grid: CellTable, source: str) -> None:
     """Adds the points of a sheet of their own."""
     reader = _Reader(grid, source)
-    reader.length_unit = str(found.raw["length_unit"])
-    reader.by_name = "ground" in found.raw
-    reader.places, reader.problems = found.places, [*reader.problems, *found.problems]
-    points = [reader.point(row, len(found.raw.get("point", [])) + k) for k, row in enumerate(reader.filled)]
-    found.problems = reader.problems
+    reader.length_unit = str(result.raw["length_unit"])
+    reader.by_name = "ground" in result.raw
+    reader.places, reader.problems = result.places, [*reader.problems, *result.problems]
+    points = [reader.point(row, len(result.raw.get("point", [])) + k) for k, row in enumerate(reader.filled)]
+    result.problems = reader.problems
     if points:
-        found.raw["point"] = [*found.raw.get("point", []), *points]
+        result.raw["point"] = [*result.raw.get("point", []), *points]
 
 
 class _Reader(LinkCells):

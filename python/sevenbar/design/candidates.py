@@ -367,19 +367,19 @@ def _travel(circuit: Circuit, inputs: Floats, position: Floats) -> float:
     return last + math.tau * round((rough - last) / math.tau)
 
 
-def within_limits(found: Candidate, limits: Limits) -> Candidate | Refusal:
+def within_limits(result: Candidate, limits: Limits) -> Candidate | Refusal:
     """A design that keeps the limits, or which it misses."""
-    lowest = found.transmission_lowest
+    lowest = result.transmission_lowest
     if lowest is not None and lowest < limits.transmission_lowest - LIMIT_ROUNDING:
         angle, wanted = math.degrees(lowest), math.degrees(limits.transmission_lowest)
         return Refusal(
             "transmission", f"transmission angle down to {angle:.4g} deg, {wanted:g} deg are required"
         )
-    if fault := size_fault(found.draft, limits):
+    if fault := size_fault(result.draft, limits):
         return fault
-    if limits.motion_type is not None and found.motion_type != limits.motion_type:
-        return Refusal("motion type", f"is a {found.motion_type}, required is a {limits.motion_type}")
-    return found
+    if limits.motion_type is not None and result.motion_type != limits.motion_type:
+        return Refusal("motion type", f"is a {result.motion_type}, required is a {limits.motion_type}")
+    return result
 
 
 def size_fault(draft: Draft, limits: Limits) -> Refusal | None:

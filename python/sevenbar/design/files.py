@@ -59,20 +59,20 @@ def design_files(
     return files | {"summary.csv": write_summary, "summary.json": json_file(as_dict)}
 
 
-def _figure(found: T, *, place: int, figure: Callable[[T, Any], Figure]) -> Figure | None:
-    return figure(found, found.candidates[place]) if place < len(found.candidates) else None
+def _figure(result: T, *, place: int, figure: Callable[[T, Any], Figure]) -> Figure | None:
+    return figure(result, result.candidates[place]) if place < len(result.candidates) else None
 
 
-def _write_design(found: T, path: Path, *, place: int, head: Callable[[T], Sequence[str]]) -> None:
-    if place < len(found.candidates):
-        text = toml_of(found.candidates[place], head(found))
+def _write_design(result: T, path: Path, *, place: int, head: Callable[[T], Sequence[str]]) -> None:
+    if place < len(result.candidates):
+        text = toml_of(result.candidates[place], head(result))
         loads(text, path.name)  # what is written must open
         path.write_text(text, encoding="utf-8")
 
 
-def write_summary(found: DesignSet, path: Path) -> None:
+def write_summary(result: DesignSet, path: Path) -> None:
     """Writes a table with a line for each design; a column that one does not have is empty there."""
-    rows = [{"design": i, **c.columns} for i, c in enumerate(found.candidates, 1)]
+    rows = [{"design": i, **c.columns} for i, c in enumerate(result.candidates, 1)]
     names = list(dict.fromkeys(name for row in rows for name in row))
     write_csv(path, names, ([row.get(name) for name in names] for row in rows))
 

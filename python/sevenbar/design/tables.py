@@ -48,9 +48,9 @@ def cell(value: object, tiny: float = 0.0) -> str:
     return "0" if abs(value) < tiny else f"{value:.5g}"
 
 
-def plain_designs(found: DesignSet) -> list[dict[str, Any]]:
+def plain_designs(result: DesignSet) -> list[dict[str, Any]]:
     """What is reported of each design, as plain values."""
     return [
         {"design": i, "name": one.draft.linkage.name, **one.columns}
-        for i, one in enumerate(found.candidates, 1)
+        for i, one in enumerate(result.candidates, 1)
     ]

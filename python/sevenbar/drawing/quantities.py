@@ -327,12 +327,12 @@ def quantities(motion: Motion, acting: ActingForces | None = None) -> tuple[Quan
     subjects += [(f"column.{c.name}", c.name, "", c) for c in linkage.each_column if c.name not in ends]
     subjects += [(f"point.{point.name}", point.name, "", point) for point in linkage.points]
     names: set[str] = set()
-    found = [*_listed(MOTION, motion, subjects, names)]
+    result = [*_listed(MOTION, motion, subjects, names)]
     if acting is not None and not acting.is_empty:
         subjects = [("forces", "", "", acting.linkage.loading)]
         subjects += [(f"forces.{joint.name}", joint.name, "", joint) for joint in linkage.joints]
-        found += _listed(FORCES, motion, subjects, names, acting)
-    return tuple(found)
+        result += _listed(FORCES, motion, subjects, names, acting)
+    return tuple(result)
 
 
 def place_of_column(motion: Motion, name: str) -> Quantity:

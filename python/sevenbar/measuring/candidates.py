@@ -67,18 +67,18 @@ class Candidates:
             )
         self.circuits = {circuit.index: circuit for circuit in motion.circuits}
         self.turns = {circuit.index: max(circuit.turns, 1) for circuit in motion.circuits}
-        found: Passes = {}
+        result: Passes = {}
         for circuit in motion.circuits:
             for branch in range(len(circuit.time) // inputs.size):
                 part = slice(branch * inputs.size, (branch + 1) * inputs.size)
-                found[circuit.index, branch] = [
+                result[circuit.index, branch] = [
                     np.where(
                         circuit.status[part] == "no-solution", np.nan, rates[part, circuit.output_column]
                     )
                     for rates in (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)
                 ]
-        self._last = (inputs.tobytes(), found)
-        return found
+        self._last = (inputs.tobytes(), result)
+        return result
 
     def stretch_of_rows(self, key: Key) -> Integers:
         """The stretch of each row (n,); one where all rows are of one pass."""
@@ -95,7 +95,7 @@ class Candidates:
 
     def differences(self, rates: Sequence[Floats], offset: float, *, signed: bool) -> dict[str, Floats]:
         """Measured minus computed of each quantity, an angle within half a turn."""
-        found, speeds = {}, self.speeds(signed=signed)
+        result, speeds = {}, self.speeds(signed=signed)
         for quantity, values in self.values.items():
             order = OUTPUTS.index(quantity)
             apart = values - rates[order] * speeds**order
@@ -103,8 +103,8 @@ class Candidates:
                 apart = apart - offset
                 if not self.ends.output_slides:
                     apart = apart - math.tau * np.round(apart / math.tau)
-            found[quantity] = apart
-        return found
+            result[quantity] = apart
+        return result
 
     def _residual(self, rates: Sequence[Floats], offset: float, *, signed: bool) -> tuple[float, int, float]:
         """Root mean square of the differences relative to the ranges, open rows, and that of the others.
@@ -213,7 +213,7 @@ class Candidates:
         curves = self.passes(grid)
         if not self.ends.output_slides:
             curves = {k: [unwrapped(rates[0]), *rates[1:]] for k, rates in curves.items()}
-        found: dict[Key, tuple[float, float]] = {}
+        result: dict[Key, tuple[float, float]] = {}
         for shift in sorted(shifts.tolist(), key=abs):
             read: dict[int, Passes] = {}
             for key in wanted:
@@ -227,9 +227,9 @@ class Candidates:
                 here = self._gathered(read[key.turn], key)
                 moved = self._offset(here) if offset else 0.0
                 residual = self._residual(here, moved, signed=False)[0]
-                if residual < found.get(key, (math.inf, 0.0))[0]:
-                    found[key] = residual, shift
-        return {key: found.get(key, (0.0, 0.0))[1] for key in wanted}
+                if residual < result.get(key, (math.inf, 0.0))[0]:
+                    result[key] = residual, shift
+        return {key: result.get(key, (0.0, 0.0))[1] for key in wanted}
 
     def _refined(self, candidate: PassFit, offset: bool) -> PassFit:
         """The phase and offset of least squares near those given, by Gauss and Newton's steps."""
@@ -288,16 +288,16 @@ class Candidates:
             way = float(self.ways[rows[0]]) if rows.size else 1.0
             speed = abs(self.speed) * way if chosen.signed else self.speed
             rates = table[chosen.circuit, branch]
-            found = {q: rates[OUTPUTS.index(q)] * speed ** OUTPUTS.index(q) for q in self.values}
-            if "angle" in found and not self.ends.output_slides:
-                angle = unwrapped(found["angle"])
+            result = {q: rates[OUTPUTS.index(q)] * speed ** OUTPUTS.index(q) for q in self.values}
+            if "angle" in result and not self.ends.output_slides:
+                angle = unwrapped(result["angle"])
                 known = np.flatnonzero(np.isfinite(angle))
                 if known.size and rows.size:
                     nearest = known[np.argmin(np.abs(grid[known] - self.inputs[rows[0]]))]
                     turns = round((float(computed["angle"][rows[0]]) - angle[nearest]) / math.tau)
                     angle = angle + math.tau * turns
-                found["angle"] = angle
-            for quantity, values in {"input": grid + chosen.phase, **found}.items():
+                result["angle"] = angle
+            for quantity, values in {"input": grid + chosen.phase, **result}.items():
                 parts[quantity] += [values, gap]
         return {quantity: np.concatenate(values)[:-1] for quantity, values in parts.items()}
 

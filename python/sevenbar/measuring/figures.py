@@ -90,23 +90,23 @@ def calibration_figure(calibration: Calibration) -> Figure:
 
 
 def _figure(
-    found: Comparison | Calibration,
+    result: Comparison | Calibration,
     what: str,
     curves: Callable[[str], list[Drawn]],
     below: Mapping[str, float],
     differences: Callable[[str], list[Floats]],
 ) -> Figure:
     """Curves with measured points, and differences in panels `below`: their heights by their labels."""
-    ends, columns = found.ends, len(found.outputs)
+    ends, columns = result.ends, len(result.outputs)
     figure = page_figure(WIDE if columns == 1 else NARROW * columns, TALL, pads=(0.04, 0.06))
     heights = {"height_ratios": (3.0, *below.values())}
     grid = figure.subplots(1 + len(below), columns, sharex=True, squeeze=False, gridspec_kw=heights)
-    x = shown(ends, "input", found.input)
-    for quantity, column in zip(found.outputs, grid.T, strict=True):
+    x = shown(ends, "input", result.input)
+    for quantity, column in zip(result.outputs, grid.T, strict=True):
         top, *panels = column
         for across, values, label, look in curves(quantity):
             top.plot(across, values, label=label, **look)
-        _points(top, x, shown(ends, quantity, found.measured[quantity]), say("measured"))
+        _points(top, x, shown(ends, quantity, result.measured[quantity]), say("measured"))
         own = unit(ends, quantity)
         # with several columns the quantity must stand at each
         top.set_ylabel(quantity_label(ends.output, ends.word(quantity), own))
@@ -120,7 +120,7 @@ def _figure(
             if ends.turns("input"):
                 axes.xaxis.set_major_locator(DegreeLocator(9))
     figure.align_ylabels()
-    headline(figure, f"{short(found.linkage.heading, 60)}\n{what}")
+    headline(figure, f"{short(result.linkage.heading, 60)}\n{what}")
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(handles), frameon=False)
     return figure

@@ -122,11 +122,11 @@ def calibration_page(calibration: Calibration) -> Page:
     return page(calibration.linkage.heading, facts, _parameter_table(calibration))
 
 
-def _facts(found: Comparison | ExtremesComparison | Calibration, speed: float, measured: str) -> Facts:
+def _facts(result: Comparison | ExtremesComparison | Calibration, speed: float, measured: str) -> Facts:
     """What every page begins with."""
-    ends, facts = found.ends, Facts()
-    facts.also(format=1, linkage=found.linkage.name)
-    facts.add("measured", measured, measured=found.source)
+    ends, facts = result.ends, Facts()
+    facts.also(format=1, linkage=result.linkage.name)
+    facts.add("measured", measured, measured=result.source)
     facts.also(units={"length": ends.length_unit, "angle": "rad", "time": "s"})
     drive = {"input": ends.input, "output": ends.output, "speed": speed}
     facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output), drive=drive)
@@ -141,9 +141,9 @@ def _add_others(facts: Facts, others: Sequence[str]) -> None:
         facts.add("not by", say("; ").join([*others[:MOST_CANDIDATES], *rest]))
 
 
-def _measured(found: Comparison | Calibration, rows: str) -> str:
-    quantities = say(", ").join(say(found.ends.word(quantity)) for quantity in found.outputs)
-    return say("{source}, {rows} of {quantities}", source=found.source, rows=rows, quantities=quantities)
+def _measured(result: Comparison | Calibration, rows: str) -> str:
+    quantities = say(", ").join(say(result.ends.word(quantity)) for quantity in result.outputs)
+    return say("{source}, {rows} of {quantities}", source=result.source, rows=rows, quantities=quantities)
 
 
 def _unidentified(parameter: Parameter, ends: Ends) -> str:

@@ -54,9 +54,9 @@ def _names(axes: Sequence[PartAxis]) -> list[str]:
     ]
 
 
-def write_axes(found: PartAxes, path: Path) -> None:
+def write_axes(result: PartAxes, path: Path) -> None:
     """Writes the table as CSV."""
-    write_csv(path, HEAD, axes_rows(found.axes))
+    write_csv(path, HEAD, axes_rows(result.axes))
 
 
 def axes_report() -> Report[PartAxes]:
@@ -64,18 +64,18 @@ def axes_report() -> Report[PartAxes]:
     return Report(_text, _as_dict, {"axes.csv": write_axes})
 
 
-def _text(found: PartAxes) -> RenderableType:
+def _text(result: PartAxes) -> RenderableType:
     table = Table(box=None, pad_edge=False)
     for head in ("name", "shape", "point [mm]", "direction", "radius [mm]", "extent [mm]", "parts"):
         table.add_column(head, overflow="fold")
-    for name, axis in list(zip(_names(found.axes), found.axes, strict=True))[:MOST_PRINTED]:
+    for name, axis in list(zip(_names(result.axes), result.axes, strict=True))[:MOST_PRINTED]:
         direction = "" if axis.direction is None else _vector(axis.direction)
         radii = " to ".join(f"{radius:.6g}" for radius in dict.fromkeys((axis.radii[0], axis.radii[-1])))
         parts = ", ".join(axis.parts)
         table.add_row(name, axis.shape, _vector(axis.at), direction, radii, f"{axis.extent:.6g}", parts)
-    shared = sum(len(axis.parts) > 1 for axis in found.axes)
-    count = len(found.axes)
-    first = Text(f"{found.source}: {count} axes and balls, {shared} of them shared by several parts")
+    shared = sum(len(axis.parts) > 1 for axis in result.axes)
+    count = len(result.axes)
+    first = Text(f"{result.source}: {count} axes and balls, {shared} of them shared by several parts")
     more = max(count - MOST_PRINTED, 0)
     below = [Text(), Text(f"and {more} more, which the table of --out has")] if more else []
     return Group(first, Text(), table, *below)
@@ -86,11 +86,11 @@ def _vector(values: Any) -> str:
     return ", ".join(f"{round(value, 9) + 0.0:.6g}" for value in values)
 
 
-def _as_dict(found: PartAxes) -> dict[str, Any]:
+def _as_dict(result: PartAxes) -> dict[str, Any]:
     keys = ("shape", "at", "direction", "radii", "extent", "parts", "faces", "count")
     rows = []
-    for name, axis in zip(_names(found.axes), found.axes, strict=True):
+    for name, axis in zip(_names(result.axes), result.axes, strict=True):
         values = {key: getattr(axis, key) for key in keys}
         plain = {key: value.tolist() if hasattr(value, "tolist") else value for key, value in values.items()}
         rows.append({"name": name, **plain})
-    return {"format": 1, "source": found.source, "length_unit": "mm", "axes": rows}
+    return {"format": 1, "source": result.source, "length_unit": "mm", "axes": rows}

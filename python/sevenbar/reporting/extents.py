@@ -112,11 +112,11 @@ def span_rows(motion: Motion) -> tuple[Row, list[Row]]:
     return heads, rows
 
 
-def _reasons(found: Allowed | None) -> str:
-    if found is None:
+def _reasons(result: Allowed | None) -> str:
+    if result is None:
         return "-"
     return (
-        "; ".join(sorted({name for row in set(found.stopped_by) for name in row.split(", ") if name})) or "-"
+        "; ".join(sorted({name for row in set(result.stopped_by) for name in row.split(", ") if name})) or "-"
     )
 
 

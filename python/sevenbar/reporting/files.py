@@ -41,16 +41,16 @@ class LongTable(Generic[T]):
 
     def __call__(
         self,
-        found: T,
+        result: T,
         path: Path,
         progress: Callable[[float], object] = lambda share: None,  # noqa: ARG005
     ) -> None:
         """Writes it as CSV; `progress(share)` is called with the share that is written, 0 to 1."""
-        total = max(1, self.rows(found))
+        total = max(1, self.rows(result))
         # only what writes tables needs it
         from sevenbar.reporting.csv_tables import write_parts
 
-        write_parts(path, self.parts(found), lambda done: progress(done / total))
+        write_parts(path, self.parts(result), lambda done: progress(done / total))
 
 
 @dataclass(frozen=True)
@@ -71,31 +71,31 @@ class Report(Generic[T]):
         """The files that `write` may write, to be checked before long work."""
         return [folder / name for name in (*self.files, *self.pages)]
 
-    def files_of(self, found: T) -> Files[T]:
+    def files_of(self, result: T) -> Files[T]:
         """The files of a result, in the order in which they are written."""
-        return {**self.files, **({} if self.figures is None else self.figures(found)), **self.pages}
+        return {**self.files, **({} if self.figures is None else self.figures(result)), **self.pages}
 
     def without_figures(self) -> Report[T]:
         """The report with its numbers only: figures take time, which a command that was stopped has not."""
         files = {name: write for name, write in self.files.items() if not isinstance(write, FigureFile)}
         return replace(self, files=files, figures=None, pages={})
 
-    def json(self, found: T) -> str:
+    def json(self, result: T) -> str:
         """A result as JSON text."""
         with language("en"):
-            return json_text(self.as_dict(found))
+            return json_text(self.as_dict(result))
 
-    def print(self, found: T, console: Console | None = None) -> None:
+    def print(self, result: T, console: Console | None = None) -> None:
         """Prints a result for people."""
         # rich takes a while to load, and JSON does without it
         from rich.console import Console
 
         with language(None if self.spoken else "en"):
-            (console or Console()).print(self.text(found))
+            (console or Console()).print(self.text(result))
 
     def write(
         self,
-        found: T,
+        result: T,
         folder: str | os.PathLike[str],
         *,
         force: bool = False,
@@ -108,16 +108,16 @@ class Report(Generic[T]):
         called before each file, and within long tables. Raises `OutputError` where the folder cannot be
         written, and where a file exists and `force` is not given.
         """
-        files = self.files_of(found)
+        files = self.files_of(result)
         check_targets([Path(folder) / name for name in files], force=force)
 
         def fill(staging: Path) -> Iterator[Path]:
             for done, (name, write) in enumerate(files.items()):
                 progress(done, len(files), name)
                 if isinstance(write, LongTable):
-                    write(found, staging / name, partial(_within, progress, done, len(files), name))
+                    write(result, staging / name, partial(_within, progress, done, len(files), name))
                 else:
-                    write(found, staging / name)
+                    write(result, staging / name)
                 yield staging / name
             progress(len(files), len(files), "")
 
@@ -132,26 +132,26 @@ def _within(progress: Progress, done: int, total: int, name: str, share: float) 
 def text_file(text: Callable[[T], str]) -> Write[T]:
     """Writes a text in UTF-8, in English: programs read it."""
 
-    def write(found: T, path: Path) -> None:
+    def write(result: T, path: Path) -> None:
         with language("en"):
-            path.write_text(text(found), encoding="utf-8")
+            path.write_text(text(result), encoding="utf-8")
 
     return write
 
 
 def json_file(as_dict: Callable[[T], Any]) -> Write[T]:
     """Writes plain values as JSON."""
-    return text_file(lambda found: json_text(as_dict(found)) + "\n")
+    return text_file(lambda result: json_text(as_dict(result)) + "\n")
 
 
 def columns_file(columns: Callable[[T], Mapping[str, npt.ArrayLike]]) -> Write[T]:
     """Writes columns of one length (n,) as CSV."""
 
-    def write(found: T, path: Path) -> None:
+    def write(result: T, path: Path) -> None:
         from sevenbar.reporting.csv_tables import write_columns
 
         with language("en"):
-            write_columns(path, columns(found))
+            write_columns(path, columns(result))
 
     return write
 
@@ -163,12 +163,12 @@ class FigureFile(Generic[T]):
         self._draw, self._last = draw, last
         self._drawn: list[tuple[T, Figure | None]] = []
 
-    def __call__(self, found: T, path: Path) -> None:
+    def __call__(self, result: T, path: Path) -> None:
         """Writes the figure of a result in the format of the path's ending."""
         from sevenbar.drawing.figure import save
 
-        if not self._drawn or self._drawn[0][0] is not found:
-            self._drawn[:] = [(found, self._draw(found))]
+        if not self._drawn or self._drawn[0][0] is not result:
+            self._drawn[:] = [(result, self._draw(result))]
         figure = self._drawn[0][1]
         if path.suffix == self._last:
             # a figure is large, and this was its last format

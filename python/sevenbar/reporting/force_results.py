@@ -82,38 +82,38 @@ def _(reaction: Reaction) -> str:
 
 
 @text_of.register(Sizing)
-def _(found: Sizing) -> str:
+def _(result: Sizing) -> str:
     def at(peak: Peak | None, unit: str) -> str:
         return "" if peak is None else f"{number(peak.value)} {unit} @ {place(peak.input)}"
 
-    place = Shown(found.input_unit)
+    place = Shown(result.input_unit)
 
     most, in_plane = (
         [
             f"{name} {number(burden.peak.value)} N"
-            for name, bearing in found.bearings.items()
+            for name, bearing in result.bearings.items()
             if math.isfinite((burden := getattr(bearing, part)).peak.value)
         ]
         for part in ("force", "in_plane")
     )
     flywheel = ""
-    if found.flywheel is not None:
-        flywheel = f"{number(found.flywheel)} kg m^2 for an unevenness of {found.unevenness:g}"
+    if result.flywheel is not None:
+        flywheel = f"{number(result.flywheel)} kg m^2 for an unevenness of {result.unevenness:g}"
     return lines(
         "Sizing of a drive",
         [
-            ("peak force" if found.unit == "N" else "peak torque", at(found.peak_torque, found.unit)),
+            ("peak force" if result.unit == "N" else "peak torque", at(result.peak_torque, result.unit)),
             (
                 "rms, mean",
-                f"{number(found.rms_torque)} {found.unit}, {number(found.mean_torque)} {found.unit}",
+                f"{number(result.rms_torque)} {result.unit}, {number(result.mean_torque)} {result.unit}",
             ),
-            ("peak power", at(found.peak_power, "W")),
-            ("braking power", at(found.braking_power, "W")),
-            ("fluctuation", f"{number(found.fluctuation)} J"),
+            ("peak power", at(result.peak_power, "W")),
+            ("braking power", at(result.braking_power, "W")),
+            ("fluctuation", f"{number(result.fluctuation)} J"),
             ("flywheel", flywheel),
             ("peak forces", ", ".join(most)),
             *([("in the plane", ", ".join(in_plane))] if in_plane else []),
-            ("found", force_words.found_text(found)),
+            ("found", force_words.found_text(result)),
         ],
     )
 
@@ -133,9 +133,12 @@ def _(bearing: Bearing) -> str:
 
 
 @text_of.register(Shaking)
-def _(found: Shaking) -> str:
-    both = (("force", found.force, found.rms_force, "N"), ("moment", found.moment, found.rms_moment, "N m"))
-    place = Shown(found.input_unit)
+def _(result: Shaking) -> str:
+    both = (
+        ("force", result.force, result.rms_force, "N"),
+        ("moment", result.moment, result.rms_moment, "N m"),
+    )
+    place = Shown(result.input_unit)
     facts = [
         (word, f"peak {number(peak.value)} {unit} @ {place(peak.input)}, rms {number(rms)} {unit}")
         for word, peak, rms, unit in both
@@ -144,18 +147,18 @@ def _(found: Shaking) -> str:
 
 
 @text_of.register(Balance)
-def _(found: Balance) -> str:
-    return lines("Counterweights", balance_facts(found))
+def _(result: Balance) -> str:
+    return lines("Counterweights", balance_facts(result))
 
 
-def balance_facts(found: Balance) -> list[tuple[str, str]]:
+def balance_facts(result: Balance) -> list[tuple[str, str]]:
     """The counterweights link by link, what they leave of the shaking, and how they were found."""
-    facts = [(f"link {one.link}", _weight(one, found.length_unit)) for one in found.counterweights]
-    after = found.after if found.after > force_words.ROUNDING * found.before else 0.0
-    shaking = f"{found.measure} {number(found.before)} N before, {number(after)} N after"
+    facts = [(f"link {one.link}", _weight(one, result.length_unit)) for one in result.counterweights]
+    after = result.after if result.after > force_words.ROUNDING * result.before else 0.0
+    shaking = f"{result.measure} {number(result.before)} N before, {number(after)} N after"
     facts.append(("shaking", shaking))
-    facts.append(("found", f"{found.status}; {found.rank} of {found.unknowns} numbers act"))
-    facts.append(("idle", "; ".join(found.idle)))
+    facts.append(("found", f"{result.status}; {result.rank} of {result.unknowns} numbers act"))
+    facts.append(("idle", "; ".join(result.idle)))
     return facts
 
 

@@ -239,29 +239,29 @@ def drive_label(forces: Forces) -> str:
     return say("input force") if forces.slides else say("input torque")
 
 
-def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
+def drive_facts(forces: Forces, result: Sizing | None) -> list[tuple[str, str]]:
     """What the drive has to give: torque, power, energy, flywheel."""
     what, unit = drive_label(forces), forces.unit
-    if found is None:
+    if result is None:
         return [(what, no_peak(forces))]
     place = Places(forces)
-    if not found.peak_torque.value:
+    if not result.peak_torque.value:
         idle = [(what, f"0 {unit}"), *([] if forces.at_rest else [(say("power"), "0 W")])]
-        return [*idle, *_flywheel_facts(found)]
-    rms, mean = f"{number(found.rms_torque)} {unit}", f"{number(found.mean_torque)} {unit}"
+        return [*idle, *_flywheel_facts(result)]
+    rms, mean = f"{number(result.rms_torque)} {unit}", f"{number(result.mean_torque)} {unit}"
     facts = [
-        (what, say("peak {value}", value=place.at(found.peak_torque, unit))),
+        (what, say("peak {value}", value=place.at(result.peak_torque, unit))),
         ("", say("rms {rms}, mean {mean}", rms=rms, mean=mean)),
         ("", sign_text(forces)),
     ]
     if forces.at_rest:
         return facts
     braking = say("no braking")
-    if found.braking_power is not None:
-        braking = say("braking {value}", value=place.at(found.braking_power, "W"))
-    peak = say("peak {value}", value=place.at(found.peak_power, "W"))
+    if result.braking_power is not None:
+        braking = say("braking {value}", value=place.at(result.braking_power, "W"))
+    peak = say("peak {value}", value=place.at(result.peak_power, "W"))
     facts.append((say("power"), say(", ").join([peak, braking])))
-    average = _mean_power(forces, found)
+    average = _mean_power(forces, result)
     mean = say("mean {power} W", power=number(average))
     facts.append(("", say("{mean}: the linkage drives its input", mean=mean) if average < 0 else mean))
     # from stop to stop as round a cycle
@@ -269,12 +269,12 @@ def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     energy = say(
         "fluctuates by {energy} J about a drive of constant {steady}: fastest at {fastest}, "
         "slowest at {slowest}",
-        energy=number(found.fluctuation), steady=steady, fastest=place(found.fastest),
-        slowest=place(found.slowest),
+        energy=number(result.fluctuation), steady=steady, fastest=place(result.fastest),
+        slowest=place(result.slowest),
     )  # fmt: skip
-    if found.fluctuation:
+    if result.fluctuation:
         facts.append((say("energy"), energy))
-    return facts + _flywheel_facts(found)
+    return facts + _flywheel_facts(result)
 
 
 def sign_text(forces: Forces) -> str:
@@ -284,22 +284,22 @@ def sign_text(forces: Forces) -> str:
     return say("positive: turns {joint} as its angle counts", joint=forces.driver)
 
 
-def _flywheel_facts(found: Sizing) -> list[tuple[str, str]]:
-    if found.flywheel is None:
+def _flywheel_facts(result: Sizing) -> list[tuple[str, str]]:
+    if result.flywheel is None:
         return []
     wheel = say(
         "{inertia} kg m^2 at the input for an unevenness of {unevenness:g}",
-        inertia=number(found.flywheel), unevenness=found.unevenness,
+        inertia=number(result.flywheel), unevenness=result.unevenness,
     )  # fmt: skip
     return [(say("flywheel"), wheel)]
 
 
-def _mean_power(forces: Forces, found: Sizing) -> float:
+def _mean_power(forces: Forces, result: Sizing) -> float:
     """The mean power [W] by time, 0 where it is rounding."""
     if forces.periodic or forces.part is not None:
         # at one speed that of the mean torque, which sees change points and jumps between the rows
         speed = forces.even_speed * forces.metre
-        mean, most = speed * found.mean_torque, abs(speed * found.peak_torque.value)
+        mean, most = speed * result.mean_torque, abs(speed * result.peak_torque.value)
     else:
         mean, most = float(shares_of(forces.time) @ forces.power), float(np.abs(forces.power).max())
     return heard(mean, most)
@@ -367,13 +367,13 @@ def open_facts(forces: Forces) -> list[tuple[str, str]]:
     return facts
 
 
-def unbounded_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
+def unbounded_facts(forces: Forces, result: Sizing | None) -> list[tuple[str, str]]:
     """Joints whose forces have no bound at the circuit's change points."""
-    if found is None or not forces.through_change_points:
+    if result is None or not forces.through_change_points:
         return []
     lost = [
         name
-        for name, bearing in found.bearings.items()
+        for name, bearing in result.bearings.items()
         if forces.reactions[name].determinate.any()
         and not any(math.isfinite(getattr(bearing, part).peak.value) for part in LISTED)
     ]
@@ -398,13 +398,13 @@ def known_alone(forces: Forces) -> list[str]:
     return result
 
 
-def shaking_facts(forces: Forces, found: Shaking | None) -> list[tuple[str, str]]:
+def shaking_facts(forces: Forces, result: Shaking | None) -> list[tuple[str, str]]:
     """Shaking force and moment, peaks and root mean squares."""
-    if found is None:
+    if result is None:
         return []
     place = Places(forces)
-    force = {"value": place.at(found.force, "N"), "rms": f"{number(found.rms_force)} N"}
-    moment = {"value": place.at(found.moment, "N m"), "rms": f"{number(found.rms_moment)} N m"}
+    force = {"value": place.at(result.force, "N"), "rms": f"{number(result.rms_force)} N"}
+    moment = {"value": place.at(result.moment, "N m"), "rms": f"{number(result.rms_moment)} N m"}
     return [
         (say("shaking force"), say("peak {value}, rms {rms}", **force)),
         (say("moment"), say("about the origin: peak {value}, rms {rms}", **moment)),
@@ -434,22 +434,22 @@ def check_text(forces: Forces) -> str:
     return say("{checks} of the peak", checks=say(", ").join(made)) if made else ""
 
 
-def found_text(found: Sizing | None, *, law: bool = False, part: bool = False) -> str:
+def found_text(result: Sizing | None, *, law: bool = False, part: bool = False) -> str:
     """How peaks were found; `law`: the rows are those of one; `part`: from stop to stop."""
-    if found is None:
+    if result is None:
         return ""
-    match found.found:
+    match result.found:
         case "series":
             return say(
                 "by a series through all rows, peaks between them; what the rows may miss is {tail:.0e} of "
                 "the peak",
-                tail=found.tail,
+                tail=result.tail,
             )
         case "refined":
             return say(
                 "by polynomials over pieces of the cycle, the finer the sharper it is; what they may miss is "
                 "{tail:.0e} of the peak",
-                tail=found.tail,
+                tail=result.tail,
             )
         case "pieces" if part:
             return say("from stop to stop, peaks within, at the stops, and where loads set in or end")

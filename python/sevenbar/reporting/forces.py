@@ -73,7 +73,7 @@ def forces_report(
     """How forces are reported, with figures in these formats; reactions of some joints, or of all."""
     files: Files[CircuitForces] = {
         "forces.json": json_file(as_dict),
-        "forces.csv": columns_file(lambda found: columns(found.forces)),
+        "forces.csv": columns_file(lambda result: columns(result.forces)),
     }
     return Report(
         text, as_dict, files, partial(_figures, figures, look or FigureLook(), tuple(joints)), spoken=True
@@ -81,19 +81,19 @@ def forces_report(
 
 
 def _figures(
-    formats: Sequence[str], look: FigureLook, joints: tuple[str, ...], found: CircuitForces
+    formats: Sequence[str], look: FigureLook, joints: tuple[str, ...], result: CircuitForces
 ) -> Files[CircuitForces]:
     """The figures of a result: torque and power, reactions, bearings, shaking, energies."""
     from sevenbar.drawing import force_figures
 
-    forces, sizing = found.forces, found.sizing
+    forces, sizing = result.forces, result.sizing
     chosen = joints or None
     draw: dict[str, Any] = {
         "torque": partial(force_figures.torque, forces, sizing),
         "reactions": partial(force_figures.reactions, forces, joints=chosen),
         "bearings": partial(force_figures.bearings, forces, joints=chosen),
     }
-    if found.shaking is not None:
+    if result.shaking is not None:
         draw["shaking"] = partial(force_figures.shaking, forces)
     draw["energies"] = partial(force_figures.energies, forces)
     if not force_figures.drawn_bearings(forces, chosen):
@@ -108,9 +108,9 @@ def _drawn(draw: Callable[..., Figure], look: FigureLook, _found: CircuitForces)
     return draw(**look.of_curves)
 
 
-def drive_fact(found: CircuitForces) -> str:
+def drive_fact(result: CircuitForces) -> str:
     """Which circuit, and how it is driven."""
-    motion, circuit, forces = found.motion, found.circuit, found.forces
+    motion, circuit, forces = result.motion, result.circuit, result.forces
     which = say("{number} of {count}", number=circuit.index, count=len(motion.circuits))
     if len(np.unique(circuit.branch)) > 1 and len(np.unique(forces.branch)) == 1:
         which = say("{circuit}, pass {number}", circuit=which, number=int(forces.branch[0]))
@@ -124,34 +124,34 @@ def drive_fact(found: CircuitForces) -> str:
     return say(", ").join([which, driven])
 
 
-def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
+def facts_of_forces(result: CircuitForces) -> list[tuple[str, str]]:
     """All that a report says of forces above the table of joints."""
-    forces, linkage = found.forces, found.motion.linkage
+    forces, linkage = result.forces, result.motion.linkage
     sliding = [column.name for column in linkage.each_column if not column.turns]
-    facts = [(say("circuit"), drive_fact(found)), *force_words.acting_facts(forces, sliding)]
-    facts += force_words.part_facts(forces, found.others)
-    facts += _law_facts(found)
-    facts += force_words.drive_facts(forces, found.sizing)
-    facts += force_words.shaking_facts(forces, found.shaking)
+    facts = [(say("circuit"), drive_fact(result)), *force_words.acting_facts(forces, sliding)]
+    facts += force_words.part_facts(forces, result.others)
+    facts += _law_facts(result)
+    facts += force_words.drive_facts(forces, result.sizing)
+    facts += force_words.shaking_facts(forces, result.shaking)
     facts += force_words.spin_facts(forces)
     facts += force_words.open_facts(forces)
-    facts += force_words.unbounded_facts(forces, found.sizing)
-    how = {"law": found.motion.law is not None, "part": forces.part is not None}
-    facts.append((say("found"), force_words.found_text(found.sizing, **how)))
+    facts += force_words.unbounded_facts(forces, result.sizing)
+    how = {"law": result.motion.law is not None, "part": forces.part is not None}
+    facts.append((say("found"), force_words.found_text(result.sizing, **how)))
     facts.append((say("checks"), force_words.check_text(forces)))
     facts.append((say("rows"), f"{len(forces.status)}: {rows_text(forces.status)}"))
     return [(label, said) for label, said in facts if said]
 
 
-def _law_facts(found: CircuitForces) -> list[tuple[str, str]]:
+def _law_facts(result: CircuitForces) -> list[tuple[str, str]]:
     """How many rows of a law are beyond the stops, which do not end it."""
-    circuit = found.circuit
-    if found.motion.law is None or not found.motion.linkage.stops.stops:
+    circuit = result.circuit
+    if result.motion.law is None or not result.motion.linkage.stops.stops:
         return []
     allowed = known(lambda: circuit.allowed)
     if allowed is None:
         return []
-    by = allowed.stopped_by[np.isin(circuit.branch, found.forces.branch)]
+    by = allowed.stopped_by[np.isin(circuit.branch, result.forces.branch)]
     beyond = by != ""
     if not beyond.any():
         return []
@@ -163,21 +163,21 @@ def _law_facts(found: CircuitForces) -> list[tuple[str, str]]:
     return [(say("within the stops"), text)]
 
 
-def text(found: CircuitForces) -> RenderableType:
+def text(result: CircuitForces) -> RenderableType:
     """The forces on a circuit as a page."""
-    forces = found.forces
+    forces = result.forces
     facts = Facts()
-    facts.add_all(facts_of_forces(found), bold=[force_words.drive_label(forces)])
+    facts.add_all(facts_of_forces(result), bold=[force_words.drive_label(forces)])
     tables = []
-    if found.balance is not None:
+    if result.balance is not None:
         # a reader of its own, which knows these pages
         from sevenbar.reporting.force_results import balance_facts
 
         facts.add(say("counterweights"), say("least squares of the shaking over the cycle"))
-        facts.add_all(balance_facts(found.balance))
-    if found.sizing is not None:
-        planar = found.motion.linkage.is_planar
-        head, rows = bearing_rows(forces, found.sizing, planar=planar)
+        facts.add_all(balance_facts(result.balance))
+    if result.sizing is not None:
+        planar = result.motion.linkage.is_planar
+        head, rows = bearing_rows(forces, result.sizing, planar=planar)
         without = {
             say(IN_PLANE): say("; in plane: the force in the plane of motion"),
             say(KNOWN): say("; known: the force without the component that is not determined"),
@@ -190,7 +190,7 @@ def text(found: CircuitForces) -> RenderableType:
         cells = {cell for row in rows for cell in row}
         without += say("; -: not determined") if force_words.OPEN in cells else ""
         tables.append(Group(number_table(head, rows), Text(meaning + without, style="dim")))
-    return page(found.motion.linkage.heading, facts, *tables)
+    return page(result.motion.linkage.heading, facts, *tables)
 
 
 #: Units in the JSON besides those of every result.
@@ -206,21 +206,23 @@ WHOLE = "force\n[N]"
 IN_PLANE, KNOWN = "in plane\n[N]", "known\n[N]"
 
 
-def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tuple[list[str], list[list[str]]]:
+def bearing_rows(
+    forces: Forces, result: Sizing, *, planar: bool = False
+) -> tuple[list[str], list[list[str]]]:
     """The table of joints: what each bears at most, and the force's place and cubic mean.
 
     Where no joint's whole force is determined, but that in the `planar` loop's plane is, it has the latter.
     """
     place = force_words.Places(forces)
-    whole = any(math.isfinite(one.force.peak.value) for one in found.bearings.values())
-    partly = not whole and any(math.isfinite(one.in_plane.peak.value) for one in found.bearings.values())
+    whole = any(math.isfinite(one.force.peak.value) for one in result.bearings.values())
+    partly = not whole and any(math.isfinite(one.in_plane.peak.value) for one in result.bearings.values())
     first = (IN_PLANE if planar else KNOWN) if partly else WHOLE
     head = [
         say("joint"), say(first), "@", say("cubic mean\n[N]"), say("radial\n[N]"), say("axial\n[N]"),
         say("tilting\n[N m]"), say("turning\n[N m]"),
     ]  # fmt: skip
     rows = []
-    for name, bearing in found.bearings.items():
+    for name, bearing in result.bearings.items():
         force = bearing.in_plane if partly else bearing.force
         known = math.isfinite(force.peak.value)
         met = [place(force.peak.input), number(force.mean_cube)] if known else ["", ""]
@@ -283,19 +285,19 @@ def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
     return result
 
 
-def _weights(found: Balance) -> dict[str, Any]:
+def _weights(result: Balance) -> dict[str, Any]:
     """Counterweights: mass times radius [kg length] in a direction, and the shaking [N] before and after."""
     names = ("link", "pivot", "product", "direction", "mass")
     weights = [
         {name: getattr(one, name) for name in names} | {"direction": one.direction.tolist()}
-        for one in found.counterweights
+        for one in result.counterweights
     ]
-    return {"weights": weights, "before": found.before, "after": found.after, "measure": found.measure}
+    return {"weights": weights, "before": result.before, "after": result.after, "measure": result.measure}
 
 
-def as_dict(found: CircuitForces) -> dict[str, Any]:
+def as_dict(result: CircuitForces) -> dict[str, Any]:
     """Forces as plain values: inputs in radians or lengths, null where nothing is determined."""
-    motion, forces = found.motion, found.forces
+    motion, forces = result.motion, result.forces
     linkage = motion.linkage
     return {
         **head_of(linkage, **UNITS, torque=forces.unit),
@@ -305,21 +307,21 @@ def as_dict(found: CircuitForces) -> dict[str, Any]:
             "law": motion.law is not None,
             "at_rest": forces.at_rest,
         },
-        "circuit": found.circuit.index,
+        "circuit": result.circuit.index,
         "within_stops": None if forces.part is None else vars(forces.part),
         "rows": len(forces.status),
         "acting": _acting(forces),
-        **numbers(found),
-        "counterweights": None if found.balance is None else _weights(found.balance),
+        **numbers(result),
+        "counterweights": None if result.balance is None else _weights(result.balance),
         "not_determined": list(forces.indeterminate),
         "idle_spin": {link: force_words.greatest(moment) for link, moment in forces.spin.items()},
         "checks": force_words.check_values(forces),
     }
 
 
-def numbers(found: CircuitForces) -> dict[str, Any]:
+def numbers(result: CircuitForces) -> dict[str, Any]:
     """What a designer asks first, as plain values: the drive, the joints, the shaking."""
-    forces, sizing, shaken = found.forces, found.sizing, found.shaking
+    forces, sizing, shaken = result.forces, result.sizing, result.shaking
     drive = None
     if sizing is not None:
         drive = {name: value for name, value in vars(sizing).items() if name not in IN_UNITS}

@@ -41,48 +41,48 @@ def _angle(value: float, *, turns: bool, unit: str, scale: float = 0.0) -> str:
     return f"{math.degrees(value):.9g} deg" if turns else f"{value:.9g} {unit}"
 
 
-def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
+def free_facts(result: FreeMotion) -> list[tuple[str, str]]:
     """What there is to say of a free motion: labels and texts."""
-    name = found.columns[found.input_column]
+    name = result.columns[result.input_column]
 
-    way = math.tau if found.input_turns else float(np.nanmax(np.abs(found.input)))
+    way = math.tau if result.input_turns else float(np.nanmax(np.abs(result.input)))
     # compared with which others may be rounding
-    fastest = float(np.abs(found.speed[np.isfinite(found.speed)]).max(initial=0.0))
+    fastest = float(np.abs(result.speed[np.isfinite(result.speed)]).max(initial=0.0))
 
     def value(x: float) -> str:
-        return _angle(float(x), turns=found.input_turns, unit=found.length_unit, scale=way)
+        return _angle(float(x), turns=result.input_turns, unit=result.length_unit, scale=way)
 
     def speed(x: float) -> str:
-        shown = _angle(float(x), turns=found.input_turns, unit=found.length_unit, scale=fastest)
+        shown = _angle(float(x), turns=result.input_turns, unit=result.length_unit, scale=fastest)
         return f"{shown}/s"
 
     facts = [
-        (say("motion"), say(GOES_ON[found.kind])),
-        (say("time"), say("0 to {end:g} s, {count} rows", end=found.duration, count=len(found.time))),
-        (say("start"), f"{name} = {value(found.input[0])}, {speed(found.speed[0])}"),
-        (say("end"), f"{name} = {value(found.input[-1])}, {speed(found.speed[-1])}"),
+        (say("motion"), say(GOES_ON[result.kind])),
+        (say("time"), say("0 to {end:g} s, {count} rows", end=result.duration, count=len(result.time))),
+        (say("start"), f"{name} = {value(result.input[0])}, {speed(result.speed[0])}"),
+        (say("end"), f"{name} = {value(result.input[-1])}, {speed(result.speed[-1])}"),
     ]
-    if found.period is not None:
-        facts.append((say("period"), f"{found.period:.12g} s"))
-    if found.turning:
-        turning = say(", ").join(f"{name} = {value(point.input)}" for point in found.turning)
+    if result.period is not None:
+        facts.append((say("period"), f"{result.period:.12g} s"))
+    if result.turning:
+        turning = say(", ").join(f"{name} = {value(point.input)}" for point in result.turning)
         facts.append((say("turns back at"), turning))
-    facts += _stop_facts(found, name, value, speed)
-    energy = say("{energy:.9g} J, of these rows", energy=np.nanmax(found.kinetic))
+    facts += _stop_facts(result, name, value, speed)
+    energy = say("{energy:.9g} J, of these rows", energy=np.nanmax(result.kinetic))
     facts.append((say("greatest kinetic energy"), energy))
-    if math.isfinite(found.energy_error):
-        facts.append((say("energy"), say("kept to {share:.1e} of that", share=found.energy_error)))
-    if math.isfinite(found.difference):
-        difference = say("two tolerances differ by {share:.1e} of arc length", share=found.difference)
+    if math.isfinite(result.energy_error):
+        facts.append((say("energy"), say("kept to {share:.1e} of that", share=result.energy_error)))
+    if math.isfinite(result.difference):
+        difference = say("two tolerances differ by {share:.1e} of arc length", share=result.difference)
         facts.append((say("accuracy"), difference))
-    facts.append((say("resolution"), say("polynomials along the circuit to {tail:.1e}", tail=found.tail)))
-    if found.through_change_points:
+    facts.append((say("resolution"), say("polynomials along the circuit to {tail:.1e}", tail=result.tail)))
+    if result.through_change_points:
         facts.append((say("note"), say("it passes change points along the circuit's smooth continuation")))
     return facts
 
 
 def _stop_facts(
-    found: FreeMotion, name: str, value: Callable[[float], str], speed: Callable[[float], str]
+    result: FreeMotion, name: str, value: Callable[[float], str], speed: Callable[[float], str]
 ) -> list[tuple[str, str]]:
     """Which stops are met, and how it rests on one."""
     facts = []
@@ -92,23 +92,23 @@ def _stop_facts(
             stop=retold(one.stop), joint=name, value=value(one.input), time=f"{one.time:.6g}",
             speed=speed(one.speed),
         )
-        for one in found.impacts[:MOST_MET]
+        for one in result.impacts[:MOST_MET]
     ]  # fmt: skip
     if met:
-        more = len(found.impacts) - len(met)
+        more = len(result.impacts) - len(met)
         if more:
             met.append(say("{count} more", count=more))
         facts.append((say("meets"), say("; ").join(met)))
-    if (rest := found.rest) is not None:
+    if (rest := result.rest) is not None:
         held = say(
             "its stop at {joint} = {value} with {holding} ({stop})",
             joint=name, value=value(rest.input), holding=holding_text(rest), stop=retold(rest.stop),
         )  # fmt: skip
-        if found.rests_from > 0:
-            held = say("{held}, from {time} s on", held=held, time=f"{found.rests_from:.6g}")
+        if result.rests_from > 0:
+            held = say("{held}, from {time} s on", held=held, time=f"{result.rests_from:.6g}")
         facts.append((say("rests on"), held))
-    if found.impacts:
-        facts.append((say("restitution"), f"{found.restitution:g}"))
+    if result.impacts:
+        facts.append((say("restitution"), f"{result.restitution:g}"))
     return facts
 
 
@@ -120,19 +120,19 @@ def holding_text(place: Equilibrium) -> str:
 
 
 @text_of.register
-def _(found: FreeMotion) -> str:
-    return lines(f"free motion of {found.heading}", [*free_spin_facts(found.spin), *free_facts(found)])
+def _(result: FreeMotion) -> str:
+    return lines(f"free motion of {result.heading}", [*free_spin_facts(result.spin), *free_facts(result)])
 
 
 @figure_of.register
-def _(found: FreeMotion, **options: Any) -> Any:
+def _(result: FreeMotion, **options: Any) -> Any:
     from sevenbar.drawing.free_curves import free_figure
 
-    return free_figure(found, **options)
+    return free_figure(result, **options)
 
 
-def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> Page:
-    fall, places = found
+def _page(result: tuple[FreeMotion, Sequence[Equilibrium]]) -> Page:
+    fall, places = result
     facts = Facts()
     # of the equilibria, too
     spin = {
@@ -178,9 +178,9 @@ def _vibration(place: Equilibrium) -> str:
     return say("none") if place.kind == "stable" else ""
 
 
-def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]:
+def free_dict(result: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]:
     """A free motion and the equilibria of its circuit as plain values, in SI units and radians."""
-    fall, places = found
+    fall, places = result
     rest: dict[str, Any] | None = None
     if fall.rest is not None:
         rest = {"input": fall.rest.input, "potential_J": fall.rest.potential}
@@ -213,8 +213,8 @@ def free_report(formats: Sequence[str]) -> Report[tuple[FreeMotion, Sequence[Equ
         as_dict=free_dict,
         files={
             "free.json": json_file(free_dict),
-            "free.csv": columns_file(lambda found: found[0].table()),
-            **figure_files("free", formats, lambda found: figure_of(found[0])),
+            "free.csv": columns_file(lambda result: result[0].table()),
+            **figure_files("free", formats, lambda result: figure_of(result[0])),
         },
         spoken=True,
     )

@@ -87,8 +87,8 @@ def page(title: str, facts: Facts, *parts: RenderableType) -> Page:
 def page_report(page: Callable[[T], Page], stem: str, files: Files[T], *, spoken: bool = True) -> Report[T]:
     """How a result is reported that is a page: printed as it is, its values as JSON, also in stem.json."""
 
-    def as_dict(found: T) -> dict[str, Any]:
-        return page(found).facts.as_dict
+    def as_dict(result: T) -> dict[str, Any]:
+        return page(result).facts.as_dict
 
     return Report(page, as_dict, {f"{stem}.json": json_file(as_dict), **files}, spoken=spoken)
 
@@ -96,8 +96,8 @@ def page_report(page: Callable[[T], Page], stem: str, files: Files[T], *, spoken
 def prints_its_page(kind: type[T], name: str, page: Callable[[T], Page]) -> None:
     """Lets results of a kind print the title of their page, after a name of the kind, and its facts."""
 
-    def text(found: T) -> str:
-        made = page(found)
+    def text(result: T) -> str:
+        made = page(result)
         console = Console(file=StringIO(), width=WIDTH, color_system=None)
         with console.capture() as printed:
             console.print(Page(made.title, made.facts))

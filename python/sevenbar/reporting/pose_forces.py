@@ -29,13 +29,13 @@ class PoseForces:
 
 def pose_forces_report() -> Report[PoseForces]:
     """How they are reported."""
-    return Report(page_of, lambda found: page_of(found).facts.as_dict, spoken=True)
+    return Report(page_of, lambda result: page_of(result).facts.as_dict, spoken=True)
 
 
-def page_of(found: PoseForces) -> Page:
+def page_of(result: PoseForces) -> Page:
     """The forces in each pose, along the axes of the report frame; null where open."""
-    linkage = found.linkage
-    pose, forces = found.poses[0]
+    linkage = result.linkage
+    pose, forces = result.poses[0]
     sliding = [column.name for column in linkage.each_column if not column.turns]
     units = {"force": "N", "moment": "N m", "power": "W", "torque": forces.unit}
     facts = Facts()
@@ -54,11 +54,11 @@ def page_of(found: PoseForces) -> Page:
         "what the link before a joint puts on the link after it, at the joint's place, along x, y, z of the "
         "report frame"
     )
-    poses = [_facts(linkage, *one) for one in found.poses]
+    poses = [_facts(linkage, *one) for one in result.poses]
     facts.also(poses=[one.as_dict for one in poses], not_determined=list(forces.indeterminate))
     parts = [
         Group(one.grid, number_table(*reaction_rows(list(loads.reactions.values()))))
-        for one, (_, loads) in zip(poses, found.poses, strict=True)
+        for one, (_, loads) in zip(poses, result.poses, strict=True)
     ]
     return page(linkage.heading, facts, *parts, Text(meaning, style="dim"))
 

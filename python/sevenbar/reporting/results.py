@@ -196,28 +196,28 @@ def _(centre: InstantCentre) -> str:
 
 
 @text_of.register(InstantCentres)
-def _(found: InstantCentres) -> str:
-    facts = [(f"{a}-{b}", rows_text(centre.status)) for (a, b), centre in found.centres.items()]
-    return lines(f"{len(found)} instant centres", facts)
+def _(result: InstantCentres) -> str:
+    facts = [(f"{a}-{b}", rows_text(centre.status)) for (a, b), centre in result.centres.items()]
+    return lines(f"{len(result)} instant centres", facts)
 
 
 @text_of.register(Sensitivity)
-def _(found: Sensitivity) -> str:
-    rows, columns, numbers = found.position.shape
+def _(result: Sensitivity) -> str:
+    rows, columns, numbers = result.position.shape
     # each number by what it moves most, its unit and the greatest derivative; 0 where none is known
-    sizes = np.nan_to_num(np.abs(found.position)).max(axis=0, initial=0.0)
-    moved = [found.columns[place] for place in sizes.argmax(axis=0)]
+    sizes = np.nan_to_num(np.abs(result.position)).max(axis=0, initial=0.0)
+    moved = [result.columns[place] for place in sizes.argmax(axis=0)]
     most = [
         f"{name} [{unit}]: " + (f"{column} {value:.3g}" if value else "moves nothing")
         for name, unit, column, value in zip(
-            found.names, found.units, moved, sizes.max(axis=0).tolist(), strict=True
+            result.names, result.units, moved, sizes.max(axis=0).tolist(), strict=True
         )
     ]
     facts = [
-        ("status", rows_text(found.status)),
+        ("status", rows_text(result.status)),
         ("greatest", "; ".join(most[:MOST_CIRCUITS]) + (" .." if len(most) > MOST_CIRCUITS else "")),
-        ("points", ", ".join(found.points)),
-        ("opening", ", ".join(found.opening)),
+        ("points", ", ".join(result.points)),
+        ("opening", ", ".join(result.opening)),
     ]
     return lines(f"Sensitivity of {columns} columns by {numbers} numbers: {rows} rows", facts)
 

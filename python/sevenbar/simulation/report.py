@@ -71,12 +71,12 @@ def _forces_text(run: Simulation) -> str:
     )
 
 
-def _cells(found: Difference, slide: bool, unit: str) -> tuple[str, ...]:
-    name = f"{found.quantity} [{found.unit}]"
-    if math.isnan(found.greatest):
+def _cells(result: Difference, slide: bool, unit: str) -> tuple[str, ...]:
+    name = f"{result.quantity} [{result.unit}]"
+    if math.isnan(result.greatest):
         return name, "-", "-", "-", "-"
-    at = f"{found.at:.6g} {unit}" if slide else f"{math.degrees(found.at):.3f}°"
-    return name, f"{found.greatest:.2e}", at, f"{found.median:.2e}", f"{found.scale:.6g}"
+    at = f"{result.at:.6g} {unit}" if slide else f"{math.degrees(result.at):.3f}°"
+    return name, f"{result.greatest:.2e}", at, f"{result.median:.2e}", f"{result.scale:.6g}"
 
 
 def simulation_report(engine: str, figures: Sequence[str] = ("png",)) -> Report[Simulation]:

@@ -228,22 +228,22 @@ def _applied(name: str, value: Any, *, own: float) -> _Amount:
     return _Amount(number / own, angle=1, turns=True) if name in TO_ANGLES else _Amount(number)
 
 
-def _fitting(found: _Amount, kind: Kind, own: float) -> float:
+def _fitting(result: _Amount, kind: Kind, own: float) -> float:
     """The number of an found that has the unit of its dimension, or none."""
-    number = float(found.number)
-    if kind == "angle" and found.plain and found.mixed:
+    number = float(result.number)
+    if kind == "angle" and result.plain and result.mixed:
         raise WrongFormulaError(
             "it adds a number of pi and another; give each its unit, as in 'pi/3 rad + 5deg'"
         )
-    if kind == "angle" and found.turns and found.plain:
-        found = _Amount(number / own, angle=1, turns=True)
+    if kind == "angle" and result.turns and result.plain:
+        result = _Amount(number / own, angle=1, turns=True)
     wanted = {"length": (1, 0), "pitch": (1, 0), "angle": (0, 1), "number": (0, 0)}[kind]
-    if not found.plain and not found.has(*wanted):
+    if not result.plain and not result.has(*wanted):
         belongs = {"angle": "an angle", "number": "a number without a unit"}.get(kind, "a length")
-        raise WrongFormulaError(f"is {found.what} where {belongs} belongs")
+        raise WrongFormulaError(f"is {result.what} where {belongs} belongs")
     # 60, not 59.99999999999999, of pi/3
-    short = float(f"{found.number:.13g}")
-    return short if found.turns and abs(short - found.number) <= 2e-15 * abs(short) else found.number
+    short = float(f"{result.number:.13g}")
+    return short if result.turns and abs(short - result.number) <= 2e-15 * abs(short) else result.number
 
 
 _SPEED_UNITS = "|".join([*TURNING_SPEEDS, *(f"{unit}/s" for unit in LENGTHS)])

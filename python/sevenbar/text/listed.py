@@ -13,10 +13,10 @@ def listed(values: Any) -> Any:
     return list(values) if isinstance(values, tuple) else values
 
 
-def named(found: object, *keys: str) -> dict[str, Any]:
+def named(result: object, *keys: str) -> dict[str, Any]:
     """Attributes of a result by their names, arrays and tuples as lists.
 
     >>> named(1 + 2j, "real", "imag")
     {'real': 1.0, 'imag': 2.0}
     """
-    return {key: listed(getattr(found, key)) for key in keys}
+    return {key: listed(getattr(result, key)) for key in keys}

@@ -30,8 +30,8 @@ def exact_report(task: ExactTask, source: str, count: int, command: str) -> Repo
     `source` names the table; the heads of the files name the `command`.
     """
 
-    def head(found: ExactAnswers) -> list[str]:
-        return [f"answer to: {found.task} of {source}", f"made by: {command}"]
+    def head(result: ExactAnswers) -> list[str]:
+        return [f"answer to: {result.task} of {source}", f"made by: {command}"]
 
     as_dict = partial(_as_dict, source)
     text = partial(_text, source, task.length_unit, count)
@@ -66,20 +66,20 @@ def _text(source: str, unit: str, count: int, result: ExactAnswers) -> Renderabl
     return page("All answers", facts, *parts)
 
 
-def _answer_facts(found: ExactAnswers) -> list[tuple[str, str]]:
+def _answer_facts(result: ExactAnswers) -> list[tuple[str, str]]:
     """How many answers there are and what they do, by labels."""
-    faults = ", ".join(f"{count} by {fault}" for fault, count in found.faults.items())
-    unjudged = sum(a.verdict is None for a in found.answers)
-    number = "a family" if found.theory is None else f"{found.found} of {found.theory} {found.counted}"
+    faults = ", ".join(f"{count} by {fault}" for fault, count in result.faults.items())
+    unjudged = sum(a.verdict is None for a in result.answers)
+    number = "a family" if result.theory is None else f"{result.found} of {result.theory} {result.counted}"
     return [
         ("over the complex numbers", number),
-        ("real", f"{found.real}"),
-        ("linkages", f"{len(found.answers)}"),
-        ("assemblable", f"{len(found.assemblable)}"),
-        ("free of defects", f"{len(found.defect_free)}"),
+        ("real", f"{result.real}"),
+        ("linkages", f"{len(result.answers)}"),
+        ("assemblable", f"{len(result.assemblable)}"),
+        ("free of defects", f"{len(result.defect_free)}"),
         ("defects", faults or "none"),
         *([("without a verdict", f"{unjudged}: two freedoms")] if unjudged else []),
-        ("how", found.how),
+        ("how", result.how),
     ]
 
 
@@ -121,5 +121,5 @@ def _place(line: Line, size: float, plane: bool) -> str:
 
 
 @text_of.register(ExactAnswers)
-def _(found: ExactAnswers) -> str:
-    return lines(f"Answers to {found.task}", _answer_facts(found))
+def _(result: ExactAnswers) -> str:
+    return lines(f"Answers to {result.task}", _answer_facts(result))

@@ -160,8 +160,8 @@ def map_report(
     return page_report(page_of, "map", files)
 
 
-def _sheet(size: str | None, side: bool, place: int, found: MapFindings) -> Figure:
-    return draw(found.map, found.heights[place - 1] if place else None, size=size, side=side)
+def _sheet(size: str | None, side: bool, place: int, result: MapFindings) -> Figure:
+    return draw(result.map, result.heights[place - 1] if place else None, size=size, side=side)
 
 
 #: Places of lines (n, 2) [shares], each with what the line is.

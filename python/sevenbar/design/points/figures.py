@@ -37,13 +37,13 @@ FARTHEST = 0.75
 MOST_LINES = 6
 
 
-def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figure:
+def least_figure(result: LeastPoint, poles: AccelerationPoles, name: str) -> Figure:
     """The rate over the cycle of the file's points and of the new one, and the poles' path in the link."""
-    cycle, linkage = found.cycle, found.cycle.motion.linkage
+    cycle, linkage = result.cycle, result.cycle.motion.linkage
     with styled():
         figure = page_figure(11.0, 5.0)
-        rms = found.measure == "rms"
-        what = {"link": found.link, "number": cycle.circuit.index, "quantity": say(found.of)}
+        rms = result.measure == "rms"
+        what = {"link": result.link, "number": cycle.circuit.index, "quantity": say(result.of)}
         which = (
             say("link {link}, circuit {number}: least root mean square {quantity}", **what)
             if rms
@@ -52,39 +52,39 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
         heads, top = write_title_over_panels(figure, f"{short(linkage.heading, 60)}\n{which}")
         axes = figure.add_axes((0.065, 0.12, 0.44, top - 0.12))
         across = shown_value(cycle.motion, cycle.motion.input, cycle.rates.input)
-        for i, point in enumerate(found.before[:MOST_LINES]):
+        for i, point in enumerate(result.before[:MOST_LINES]):
             look: dict[str, Any] = {"color": _other(i), "ls": LINE_STYLES[1 + i % 3], "lw": 1.4}
-            sizes = cycle.sizes(found.of, np.array(point.at))
+            sizes = cycle.sizes(result.of, np.array(point.at))
             axes.plot(across, sizes, label=short(point.name, 24), **look)
-        sizes = cycle.sizes(found.of, found.at)
+        sizes = cycle.sizes(result.of, result.at)
         axes.plot(across, sizes, color=FOUND, lw=1.8, label=short(name, 24))
         bound = say("least root mean square") if rms else say("lower bound of the greatest")
-        axes.axhline(found.value, color=BOUND, lw=1.0, ls=(0, (4, 2)), label=bound)
-        if len(found.inputs):
-            marks = shown_value(cycle.motion, cycle.motion.input, found.inputs)
-            axes.plot(marks, np.full(len(marks), found.value), "o", color=FOUND, mfc="white", ms=5)
+        axes.axhline(result.value, color=BOUND, lw=1.0, ls=(0, (4, 2)), label=bound)
+        if len(result.inputs):
+            marks = shown_value(cycle.motion, cycle.motion.input, result.inputs)
+            axes.plot(marks, np.full(len(marks), result.value), "o", color=FOUND, mfc="white", ms=5)
         _input_axis(axes, cycle, across)
         # a point that stands still is at the foot of what others of the box have
-        axes.set_ylim(0, None if found.value > ZERO * found.scale else found.scale)
-        axes.set_ylabel(f"{say(found.of)} [{found.unit.replace('^2', '²').replace('^3', '³')}]")
+        axes.set_ylim(0, None if result.value > ZERO * result.scale else result.scale)
+        axes.set_ylabel(f"{say(result.of)} [{result.unit.replace('^2', '²').replace('^3', '³')}]")
         _head_of_panel(figure, 0.285, heads, "(a) " + say("over the cycle"), 0.44)
         axes.legend(frameon=False, fontsize=letters() - 0.5)
-        _poles_in_the_link(figure, found, poles, name, heads)
+        _poles_in_the_link(figure, result, poles, name, heads)
     return figure
 
 
 def _poles_in_the_link(
-    figure: Figure, found: LeastPoint, poles: AccelerationPoles, name: str, heads: float
+    figure: Figure, result: LeastPoint, poles: AccelerationPoles, name: str, heads: float
 ) -> None:
-    low, high = found.low, found.high
+    low, high = result.low, result.high
     corners = np.array(list(product(*zip(low, high, strict=True))))
     away = np.maximum(low - poles.at, poles.at - high).max(axis=1)
     near = away <= FARTHEST * float((high - low).max())
     path = np.where(near[:, None], poles.at, np.nan)
-    points = np.array([point.at for point in found.before[:MOST_LINES]]).reshape(-1, 3)
+    points = np.array([point.at for point in result.before[:MOST_LINES]]).reshape(-1, 3)
     shown = [corners, points[np.isfinite(points).all(axis=1)], path[near]]
     places = np.concatenate(shown)
-    linkage = found.cycle.motion.linkage
+    linkage = result.cycle.motion.linkage
     width, height = figure.get_size_inches()
     room = (0.54 * width, 0.55, 0.46 * width, heads * height - 0.55)
     # the plane of the linkage is not that of places in a link
@@ -98,10 +98,10 @@ def _poles_in_the_link(
     if near.any():
         single = (poles.status[near] == "pole").any()
         label = say("acceleration poles") if single else say("points of least acceleration")
-        axes.plot(*_closed(path, found.cycle).T, color=CIRCUIT_COLOURS[2], lw=1.3, label=label)
-    for i, point in enumerate(found.before[:MOST_LINES]):
+        axes.plot(*_closed(path, result.cycle).T, color=CIRCUIT_COLOURS[2], lw=1.3, label=label)
+    for i, point in enumerate(result.before[:MOST_LINES]):
         axes.plot(*np.array([point.at]).T, "s", color=_other(i), ms=5, label=short(point.name, 24))
-    axes.plot(*found.at[:, None], "o", color=FOUND, ms=6, label=short(name, 24))
+    axes.plot(*result.at[:, None], "o", color=FOUND, ms=6, label=short(name, 24))
     where = say("in the link: the box")
     if not near.any():
         where = say("in the link: the box; no pole near the box")
@@ -113,18 +113,18 @@ def _poles_in_the_link(
     _legend_below(figure, axes, middle, 3)
 
 
-def nearest_figure(found: NearestPath, name: str) -> Figure:
+def nearest_figure(result: NearestPath, name: str) -> Figure:
     """The path of the point in space on the wanted places, and the distance of each from it."""
-    cycle, linkage = found.cycle, found.cycle.motion.linkage
+    cycle, linkage = result.cycle, result.cycle.motion.linkage
     with styled():
         figure = page_figure(10.6, 4.9)
-        path = cycle.rates.of("position", found.at)
-        both = np.concatenate([path, found.wanted])
+        path = cycle.rates.of("position", result.at)
+        both = np.concatenate([path, result.wanted])
         width, height = figure.get_size_inches()
         view = view_of(None, linkage, both)
         which = say(
             "link {link}, circuit {number}: path nearest the curve, rms {rms:.4g} {unit}",
-            link=found.link, number=cycle.circuit.index, rms=found.rms, unit=linkage.length_unit,
+            link=result.link, number=cycle.circuit.index, rms=result.rms, unit=linkage.length_unit,
         )  # fmt: skip
         heads, top = write_title_over_panels(figure, f"{short(linkage.heading, 60)}\n{which}")
         room = (0.1, 0.3, 0.5 * width - 0.1, top * height - 0.3)
@@ -132,12 +132,12 @@ def nearest_figure(found: NearestPath, name: str) -> Figure:
         space.line(
             _closed(path, cycle), color=FOUND, lw=1.4, label=say("path of {name}", name=short(name, 24))
         )
-        space.line(found.wanted, ls="", marker="o", color=OTHER, mfc="none", ms=4, label=say("wanted"))
+        space.line(result.wanted, ls="", marker="o", color=OTHER, mfc="none", ms=4, label=say("wanted"))
         _legend_below(figure, space.axes, 0.27, 2)
         where = "(a) " + (say("in its plane") if view.flat else say("in space"))
         _head_of_panel(figure, 0.27, heads, where, 0.5)
         below = figure.add_axes((0.59, 0.12, 0.39, top - 0.12))
-        below.plot(np.arange(1, len(found.distances) + 1), found.distances, "o-", color=FOUND, ms=3, lw=1.0)
+        below.plot(np.arange(1, len(result.distances) + 1), result.distances, "o-", color=FOUND, ms=3, lw=1.0)
         below.grid(lw=0.6)
         below.set_ylim(bottom=0)
         below.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -147,30 +147,30 @@ def nearest_figure(found: NearestPath, name: str) -> Figure:
     return figure
 
 
-def inertia_figure(found: Inertia) -> Figure:
+def inertia_figure(result: Inertia) -> Figure:
     """The torque of the input over the cycle, and the sizes of the inertia forces."""
-    cycle, linkage = found.cycle, found.cycle.motion.linkage
+    cycle, linkage = result.cycle, result.cycle.motion.linkage
     with styled():
         figure = page_figure(7.0, 6.6, pads=(0.05, 0.06))
         torque, force = figure.subplots(2, 1, sharex=True)
-        across = shown_value(cycle.motion, cycle.motion.input, found.input)
+        across = shown_value(cycle.motion, cycle.motion.input, result.input)
         torque.axhline(0, color=BOUND, lw=0.8)
-        torque.plot(across, found.torque, color=FOUND, lw=1.7)
-        torque.fill_between(across, found.torque, color=FOUND, alpha=0.15, lw=0)
+        torque.plot(across, result.torque, color=FOUND, lw=1.7)
+        torque.fill_between(across, result.torque, color=FOUND, alpha=0.15, lw=0)
         what = (
-            say("input force [{unit}]", unit=found.unit)
-            if found.slides
-            else say("input torque [{unit}]", unit=found.unit)
+            say("input force [{unit}]", unit=result.unit)
+            if result.slides
+            else say("input torque [{unit}]", unit=result.unit)
         )
         torque.set_ylabel(what)
         torque.grid(lw=0.6)
-        for i, (mass, sizes) in enumerate(zip(found.masses[:MOST_LINES], found.sizes, strict=False)):
+        for i, (mass, sizes) in enumerate(zip(result.masses[:MOST_LINES], result.sizes, strict=False)):
             label = f"{short(mass.name, 24)}, {mass.mass:g} kg"
             force.plot(across, sizes, color=_other(i), ls=LINE_STYLES[i % 4], lw=1.5, label=label)
-        if len(found.masses) > 1:
-            total = np.linalg.norm(found.shaking, axis=1)
+        if len(result.masses) > 1:
+            total = np.linalg.norm(result.shaking, axis=1)
             force.plot(across, total, color="#303030", lw=1.0, label=say("sum of all"))
-        force.set_ylim(0, 1.08 * float(np.linalg.norm(found.force, axis=2).max() or 1.0))
+        force.set_ylim(0, 1.08 * float(np.linalg.norm(result.force, axis=2).max() or 1.0))
         figure.align_ylabels()
         force.set_ylabel(say("inertia force [N]"))
         _input_axis(force, cycle, across)

@@ -27,126 +27,126 @@ from sevenbar.text.words import retold, say
 MOST_LISTED = 6
 
 
-def least_text(found: LeastPoint) -> Page:
+def least_text(result: LeastPoint) -> Page:
     """A point of least rate as a page."""
-    facts, unit = Facts(), found.unit
-    rate = say(found.of)
+    facts, unit = Facts(), result.unit
+    rate = say(result.of)
     word = (
         say("root mean square {rate}", rate=rate)
-        if found.measure == "rms"
+        if result.measure == "rms"
         else say("greatest {rate}", rate=rate)
     )
-    facts.add("link", f"{found.link}{say(', ')}{_whose(found.cycle)}")
-    sides = zip("uvw", found.low, found.high, strict=True)
+    facts.add("link", f"{result.link}{say(', ')}{_whose(result.cycle)}")
+    sides = zip("uvw", result.low, result.high, strict=True)
     box = ", ".join(f"{letter} {a:g}{say(' to ')}{b:g}" for letter, a, b in sides)
-    facts.add("box", box + _length(found.cycle))
-    facts.add("point", _place(found.at) + _length(found.cycle), style="bold")
-    facts.add(word, f"{found.value:.9g} {unit}", style="bold")
-    bound = f"{found.bound:.9g} {unit}"
+    facts.add("box", box + _length(result.cycle))
+    facts.add("point", _place(result.at) + _length(result.cycle), style="bold")
+    facts.add(word, f"{result.value:.9g} {unit}", style="bold")
+    bound = f"{result.bound:.9g} {unit}"
     facts.add("lower bound", say("{bound}: no point of the box has less", bound=bound))
     whole = (
         say("over the whole cycle, between the rows too")
-        if found.cycle.closed
+        if result.cycle.closed
         else say("over the law's rows")
     )
     gap = say(
-        "{gap:.2g} {unit}, {share:.2g} of the value", gap=found.gap, unit=unit, share=found.relative_gap
+        "{gap:.2g} {unit}, {share:.2g} of the value", gap=result.gap, unit=unit, share=result.relative_gap
     )
     facts.add("duality gap", say(", ").join([gap, whole]))
-    if len(found.inputs):
-        facts.add("met at", _met(found))
-    if found.sides:
-        facts.add("on the box", ", ".join(found.sides))
-    for direction in found.free:
+    if len(result.inputs):
+        facts.add("met at", _met(result))
+    if result.sides:
+        facts.add("on the box", ", ".join(result.sides))
+    for direction in result.free:
         free = _numbers(direction)
         facts.add("free", say("along ({direction}) nothing changes; the middle is taken", direction=free))
-    if (solver := found.solver) is not None:
+    if (solver := result.solver) is not None:
         what = say(
             "{status} in {steps} steps, round {round}: primal {primal:.7g}, dual {dual:.7g} {unit} at "
             "{rows} rows; then Newton's method",
-            round=found.rounds, unit=unit, rows=len(solver.duals),
+            round=result.rounds, unit=unit, rows=len(solver.duals),
             **named(solver, "status", "steps", "primal", "dual"),
         )  # fmt: skip
         facts.add("Clarabel", what)
-    facts.add_all(("note", note) for note in notes(found.cycle))
+    facts.add_all(("note", note) for note in notes(result.cycle))
     tables = []
-    if found.before:
+    if result.before:
         # how many times the least; nothing where that is zero
-        times = "{:.3f}" if found.value > 1e-9 * found.scale else ""
+        times = "{:.3f}" if result.value > 1e-9 * result.scale else ""
         rows = [
-            [p.name, _place(p.at), f"{p.value:.6g}", times and times.format(p.value / found.value)]
-            for p in found.before
+            [p.name, _place(p.at), f"{p.value:.6g}", times and times.format(p.value / result.value)]
+            for p in result.before
         ]
-        rows.append([say("found"), _place(found.at), f"{found.value:.6g}", ""])
-        size = say("root mean square") if found.measure == "rms" else say("greatest")
+        rows.append([say("found"), _place(result.at), f"{result.value:.6g}", ""])
+        size = say("root mean square") if result.measure == "rms" else say("greatest")
         head = ["point", "at", f"{size} [{unit}]", "times"]
         tables.append(number_table(head, rows, words=[1]))
-    return page(found.cycle.motion.linkage.heading, facts, *tables)
+    return page(result.cycle.motion.linkage.heading, facts, *tables)
 
 
-def _met(found: LeastPoint) -> str:
-    pairs = zip(found.inputs[:MOST_LISTED], found.weights, strict=False)
+def _met(result: LeastPoint) -> str:
+    pairs = zip(result.inputs[:MOST_LISTED], result.weights, strict=False)
     text = say(", ").join(
-        say("{input} (weight {weight:.3f})", input=input_text(found.cycle.motion, float(x)), weight=w)
+        say("{input} (weight {weight:.3f})", input=input_text(result.cycle.motion, float(x)), weight=w)
         for x, w in pairs
     )
-    text = f"{found.cycle.motion.input} = {text}"
-    more = len(found.inputs) - MOST_LISTED
+    text = f"{result.cycle.motion.input} = {text}"
+    more = len(result.inputs) - MOST_LISTED
     return say("{inputs} and {count} more", inputs=text, count=more) if more > 0 else text
 
 
-def nearest_text(found: NearestPath) -> Page:
+def nearest_text(result: NearestPath) -> Page:
     """A point with a nearest path as a page."""
-    facts, length = Facts(), _length(found.cycle)
-    facts.add("link", f"{found.link}{say(', ')}{_whose(found.cycle)}")
-    places = len(found.wanted)
+    facts, length = Facts(), _length(result.cycle)
+    facts.add("link", f"{result.link}{say(', ')}{_whose(result.cycle)}")
+    places = len(result.wanted)
     timed = (
         say("{count} places, each at its input", count=places)
-        if found.bound is not None
+        if result.bound is not None
         else say("{count} places, at any inputs", count=places)
     )
     facts.add("curve", timed)
-    facts.add("point", _place(found.at) + length, style="bold")
-    distance = say("rms {rms:.6g}, greatest {greatest:.6g}", rms=found.rms, greatest=found.greatest)
+    facts.add("point", _place(result.at) + length, style="bold")
+    distance = say("rms {rms:.6g}, greatest {greatest:.6g}", rms=result.rms, greatest=result.greatest)
     facts.add("distance", distance + length, style="bold")
-    if found.bound is not None:
-        bound = f"{say(found.measure)} {found.bound:.6g}{length}"
+    if result.bound is not None:
+        bound = f"{say(result.measure)} {result.bound:.6g}{length}"
         facts.add("lower bound", say("{bound}: no point of the box is nearer", bound=bound))
     else:
         best = say(
             "local: the best of {starts} starts, {count} of which ended there",
-            starts=found.starts, count=found.agreeing,
+            starts=result.starts, count=result.agreeing,
         )  # fmt: skip
         facts.add("optimum", best)
-    facts.add_all(("note", note) for note in notes(found.cycle))
-    return page(found.cycle.motion.linkage.heading, facts)
+    facts.add_all(("note", note) for note in notes(result.cycle))
+    return page(result.cycle.motion.linkage.heading, facts)
 
 
-def inertia_text(found: Inertia) -> Page:
+def inertia_text(result: Inertia) -> Page:
     """What masses do as a page."""
-    facts, motion = Facts(), found.cycle.motion
-    what = say("force") if found.slides else say("torque")
-    facts.add("circuit", _whose(found.cycle))
-    facts.add("rows", say("{count} over {time:.6g} s", count=len(found.input), time=found.cycle.period))
-    if any(found.gravity):
-        facts.add("gravity", f"({_numbers(found.gravity)}) m/s^2")
-    for word, row in (("highest", int(found.torque.argmax())), ("lowest", int(found.torque.argmin()))):
-        at = input_text(motion, float(found.input[row]))
-        value = f"{found.torque[row]:.6g} {found.unit}"
+    facts, motion = Facts(), result.cycle.motion
+    what = say("force") if result.slides else say("torque")
+    facts.add("circuit", _whose(result.cycle))
+    facts.add("rows", say("{count} over {time:.6g} s", count=len(result.input), time=result.cycle.period))
+    if any(result.gravity):
+        facts.add("gravity", f"({_numbers(result.gravity)}) m/s^2")
+    for word, row in (("highest", int(result.torque.argmax())), ("lowest", int(result.torque.argmin()))):
+        at = input_text(motion, float(result.input[row]))
+        value = f"{result.torque[row]:.6g} {result.unit}"
         label = say("highest {what}", what=what) if word == "highest" else say("lowest {what}", what=what)
         facts.add(label, say("{value} at {input}", value=value, input=f"{motion.input} = {at}"))
-    facts.add(say("mean {what}", what=what), f"{found.mean:.2g} {found.unit}")
-    rms = float(np.sqrt(found.cycle.mean(found.torque**2)))
-    facts.add(say("rms {what}", what=what), f"{rms:.6g} {found.unit}")
-    facts.add_all(("note", note) for note in notes(found.cycle, [mass.link for mass in found.masses]))
+    facts.add(say("mean {what}", what=what), f"{result.mean:.2g} {result.unit}")
+    rms = float(np.sqrt(result.cycle.mean(result.torque**2)))
+    facts.add(say("rms {what}", what=what), f"{rms:.6g} {result.unit}")
+    facts.add_all(("note", note) for note in notes(result.cycle, [mass.link for mass in result.masses]))
     rows = []
-    for mass, sizes in zip(found.masses, found.sizes, strict=True):
+    for mass, sizes in zip(result.masses, result.sizes, strict=True):
         cells = [mass.name, str(mass.link), f"{mass.mass:g}"]
         for place in (int(sizes.argmax()), int(sizes.argmin())):
-            cells += [f"{sizes[place]:.6g}", input_text(motion, float(found.input[place]))]
+            cells += [f"{sizes[place]:.6g}", input_text(motion, float(result.input[place]))]
         rows.append(cells)
     head = ["mass", "link", "kg", "greatest force [N]", "at", "least force [N]", "at"]
-    return page(found.cycle.motion.linkage.heading, facts, number_table(head, rows))
+    return page(result.cycle.motion.linkage.heading, facts, number_table(head, rows))
 
 
 def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
@@ -188,9 +188,9 @@ def _length(cycle: Cycle) -> str:
     return f" {cycle.motion.linkage.length_unit}"
 
 
-def as_dict(found: LeastPoint | NearestPath | Inertia) -> dict[str, Any]:
+def as_dict(result: LeastPoint | NearestPath | Inertia) -> dict[str, Any]:
     """What was found as plain values: inputs in radians or lengths."""
-    cycle = found.cycle
+    cycle = result.cycle
     motion = cycle.motion
     return {
         "format": 1,
@@ -199,54 +199,54 @@ def as_dict(found: LeastPoint | NearestPath | Inertia) -> dict[str, Any]:
         "drive": {"input": motion.input, "speed": None if motion.law is not None else motion.speed},
         "circuit": cycle.circuit.index,
         "branch": cycle.branch,
-        "notes": notes(cycle, [mass.link for mass in found.masses] if isinstance(found, Inertia) else ()),
-        **_OWN[type(found)](found),
+        "notes": notes(cycle, [mass.link for mass in result.masses] if isinstance(result, Inertia) else ()),
+        **_OWN[type(result)](result),
     }
 
 
-def _least_dict(found: LeastPoint) -> dict[str, Any]:
-    solver = found.solver
+def _least_dict(result: LeastPoint) -> dict[str, Any]:
+    solver = result.solver
     return {
-        **named(found, "link", "of", "measure"),
-        "box": np.stack([found.low, found.high], axis=1).tolist(),
-        **named(found, "at", "value"),
-        "lower_bound": found.bound,
-        **named(found, "gap", "relative_gap", "optimal"),
-        "whole_cycle": found.cycle.closed,
-        **named(found, "unit", "inputs", "weights", "sides", "free"),
-        "before": [named(point, "name", "at", "value") for point in found.before],
-        "rounds": found.rounds,
+        **named(result, "link", "of", "measure"),
+        "box": np.stack([result.low, result.high], axis=1).tolist(),
+        **named(result, "at", "value"),
+        "lower_bound": result.bound,
+        **named(result, "gap", "relative_gap", "optimal"),
+        "whole_cycle": result.cycle.closed,
+        **named(result, "unit", "inputs", "weights", "sides", "free"),
+        "before": [named(point, "name", "at", "value") for point in result.before],
+        "rounds": result.rounds,
         "clarabel": solver and named(solver, "status", "steps", "primal", "dual", "residual"),
     }
 
 
-def _nearest_dict(found: NearestPath) -> dict[str, Any]:
+def _nearest_dict(result: NearestPath) -> dict[str, Any]:
     return {
-        **named(found, "link", "measure", "at"),
-        "places": len(found.wanted),
-        **named(found, "rms", "greatest"),
-        "lower_bound": found.bound,
-        **named(found, "starts", "agreeing"),
+        **named(result, "link", "measure", "at"),
+        "places": len(result.wanted),
+        **named(result, "rms", "greatest"),
+        "lower_bound": result.bound,
+        **named(result, "starts", "agreeing"),
     }
 
 
-def _inertia_dict(found: Inertia) -> dict[str, Any]:
-    ends = {"highest": int(found.torque.argmax()), "lowest": int(found.torque.argmin())}
+def _inertia_dict(result: Inertia) -> dict[str, Any]:
+    ends = {"highest": int(result.torque.argmax()), "lowest": int(result.torque.argmin())}
     return {
-        **named(found, "gravity", "unit"),
-        "period": found.cycle.period,
+        **named(result, "gravity", "unit"),
+        "period": result.cycle.period,
         **{
-            word: {"value": float(found.torque[row]), "at": float(found.input[row])}
+            word: {"value": float(result.torque[row]), "at": float(result.input[row])}
             for word, row in ends.items()
         },
-        "mean": found.mean,
+        "mean": result.mean,
         "masses": [
             {
                 **named(mass, "name", "link", "at", "mass"),
                 "greatest_force": float(sizes.max()),
                 "least_force": float(sizes.min()),
             }
-            for mass, sizes in zip(found.masses, found.sizes, strict=True)
+            for mass, sizes in zip(result.masses, result.sizes, strict=True)
         ],
     }
 
@@ -283,7 +283,7 @@ def nearest_report(
         "point.json": json_file(as_dict),
         "path.csv": columns_file(_path_columns),
     }
-    drawn: Files[NearestPath] = figure_files("point", figures, lambda found: nearest_figure(found, name))
+    drawn: Files[NearestPath] = figure_files("point", figures, lambda result: nearest_figure(result, name))
     return Report(nearest_text, as_dict, {**files, **drawn}, spoken=True)
 
 
@@ -311,35 +311,35 @@ def _coordinates(name: str, places: Floats, letters: str = "xyz") -> dict[str, F
     return {name.format(letter): places[:, i] for i, letter in enumerate(letters)}
 
 
-def _rate_columns(found: LeastPoint, name: str) -> dict[str, Floats]:
-    columns = _row_columns(found.cycle)
-    unit = unit_in_column(found.unit)
-    for point, at in [*((p.name, np.array(p.at)) for p in found.before), (name, found.at)]:
-        columns[f"{point}_{found.of}_{unit}"] = found.cycle.sizes(found.of, at)
+def _rate_columns(result: LeastPoint, name: str) -> dict[str, Floats]:
+    columns = _row_columns(result.cycle)
+    unit = unit_in_column(result.unit)
+    for point, at in [*((p.name, np.array(p.at)) for p in result.before), (name, result.at)]:
+        columns[f"{point}_{result.of}_{unit}"] = result.cycle.sizes(result.of, at)
     return columns
 
 
-def _path_columns(found: NearestPath) -> dict[str, Floats]:
-    unit = found.cycle.motion.linkage.length_unit
+def _path_columns(result: NearestPath) -> dict[str, Floats]:
+    unit = result.cycle.motion.linkage.length_unit
     return {
-        **_input_column(found.cycle, found.inputs),
-        **_coordinates(f"wanted_{{}}_{unit}", found.wanted),
-        **_coordinates(f"path_{{}}_{unit}", found.path),
-        f"distance_{unit}": found.distances,
+        **_input_column(result.cycle, result.inputs),
+        **_coordinates(f"wanted_{{}}_{unit}", result.wanted),
+        **_coordinates(f"path_{{}}_{unit}", result.path),
+        f"distance_{unit}": result.distances,
     }
 
 
-def _inertia_columns(found: Inertia) -> dict[str, Floats]:
-    columns = _row_columns(found.cycle)
-    columns["force_N" if found.slides else "torque_Nm"] = found.torque
-    columns |= {"power_W": found.power, "kinetic_energy_J": found.kinetic}
-    for mass, force in zip(found.masses, found.force, strict=True):
+def _inertia_columns(result: Inertia) -> dict[str, Floats]:
+    columns = _row_columns(result.cycle)
+    columns["force_N" if result.slides else "torque_Nm"] = result.torque
+    columns |= {"power_W": result.power, "kinetic_energy_J": result.kinetic}
+    for mass, force in zip(result.masses, result.force, strict=True):
         columns |= {f"{mass.name}_{key}": own for key, own in _coordinates("f{}_N", force).items()}
     return columns
 
 
-def _pole_columns(found: LeastPoint) -> dict[str, Any]:
-    poles = poles_of(found.cycle, found.at)
+def _pole_columns(result: LeastPoint) -> dict[str, Any]:
+    poles = poles_of(result.cycle, result.at)
     unit = poles.cycle.motion.linkage.length_unit
     return {
         **_row_columns(poles.cycle),

@@ -295,21 +295,21 @@ def _too_far(task: SurveyTask, error: float) -> Refusal | None:
     )
 
 
-def swung(want: SwingWish, found: Candidate) -> Candidate:
+def swung(want: SwingWish, result: Candidate) -> Candidate:
     """A crank-rocker with the swing and the time ratio that its circuit has, exactly."""
-    circuit = found.draft.linkage.motion().circuits[found.circuit]
+    circuit = result.draft.linkage.motion().circuits[result.circuit]
     assert circuit.angle is not None
     swing, ratio = circuit.swing or 0.0, circuit.time_ratio or math.inf
     late = abs(math.tau / (1 + 1 / ratio) - want.slow)
     error = max(abs(swing - want.angle), late)
     figures = {
-        **found.claim.figures,
+        **result.claim.figures,
         "swing_deg": math.degrees(swing),
         "time_ratio": ratio,
         "input_at_low_deg": math.degrees(circuit.angle.lowest_at % math.tau),
         "input_at_high_deg": math.degrees(circuit.angle.highest_at % math.tau),
     }
-    return replace(found, claim=replace(found.claim, figures=figures, errors=np.array([error])))
+    return replace(result, claim=replace(result.claim, figures=figures, errors=np.array([error])))
 
 
 def _errors(task: SurveyTask, dense: Floats, angles: Floats) -> tuple[Floats, dict[str, float]]:

@@ -40,67 +40,67 @@ def survey_report(count: int, command: str) -> Report[SurveyResult]:
     return Report(partial(text, count), as_dict, files, spoken=True)
 
 
-def text(count: int, found: SurveyResult) -> RenderableType:
+def text(count: int, result: SurveyResult) -> RenderableType:
     """The answer for people, with the first `count` designs."""
-    assert isinstance(found.task, SurveyTask)
+    assert isinstance(result.task, SurveyTask)
     facts = Facts()
-    facts.add("wanted", retold(found.task.want.title), "bold")
-    facts.add("must hold", retold_parts(found.task.text(), "; "))
-    ends = {name: _ends(*pair) for name, pair in found.task.table.items()}
+    facts.add("wanted", retold(result.task.want.title), "bold")
+    facts.add("must hold", retold_parts(result.task.text(), "; "))
+    ends = {name: _ends(*pair) for name, pair in result.task.table.items()}
     facts.add("drawn", ", ".join(f"{name} {both}" for name, both in ends.items() if name != "angle"))
-    facts.add("axes", retold(f"at {_ends(*map(math.degrees, found.task.table['angle']))} deg"))
-    if found.unfinished:
-        facts.add("unfinished", retold(found.unfinished), "bold yellow")
-    for label, words in tally_facts(found):
+    facts.add("axes", retold(f"at {_ends(*map(math.degrees, result.task.table['angle']))} deg"))
+    if result.unfinished:
+        facts.add("unfinished", retold(result.unfinished), "bold yellow")
+    for label, words in tally_facts(result):
         facts.add(label, _spoken(words), "bold" if label == "answer" else "")
-    facts.add("polished", say("{count} of the best", count=found.polished))
-    if found.refusals:
-        reasons = tally(found.refusals, None)
+    facts.add("polished", say("{count} of the best", count=result.polished))
+    if result.refusals:
+        reasons = tally(result.refusals, None)
         facts.add("of the best", say("{reasons} refused after polishing", reasons=reasons))
-    best = found.candidates[:count]
+    best = result.candidates[:count]
     tables = (columns_table(best, heads) for heads in (PRINTED, NUMBER_COLUMNS)) if best else ()
     return page(say("Survey of RSSRs"), facts, *tables)
 
 
-def tally_facts(found: SurveyResult) -> list[tuple[str, str]]:
+def tally_facts(result: SurveyResult) -> list[tuple[str, str]]:
     """How many do it, why the others do not, and what came nearest, by labels."""
-    facts = [("answer", found.answer)]
-    total = max(found.tally.count, 1)
-    refused = sorted(found.tally.refused.items(), key=lambda pair: -pair[1])
+    facts = [("answer", result.answer)]
+    total = max(result.tally.count, 1)
+    refused = sorted(result.tally.refused.items(), key=lambda pair: -pair[1])
     for place, (verdict, number) in enumerate((v, n) for v, n in refused if n):
         facts.append(("" if place else "refused", f"{verdict}: {number} ({100 * number / total:.3g} %)"))
-    for place, (verdict, words) in enumerate(found.nearest.items()):
+    for place, (verdict, words) in enumerate(result.nearest.items()):
         facts.append(("" if place else "nearest", f"{verdict}: {words}"))
     return facts
 
 
-def tally_dict(found: SurveyResult) -> dict[str, Any]:
+def tally_dict(result: SurveyResult) -> dict[str, Any]:
     """The survey and its tally as plain values."""
     return {
-        **found.task.request(),
-        "judged": found.tally.count,
-        "unfinished": found.unfinished or None,
-        "answer": found.answer,
-        "tally": found.tally.as_dict(),
-        "nearest": found.nearest,
+        **result.task.request(),
+        "judged": result.tally.count,
+        "unfinished": result.unfinished or None,
+        "answer": result.answer,
+        "tally": result.tally.as_dict(),
+        "nearest": result.nearest,
     }
 
 
-def of_task(found: SurveyResult, name: str, source: str) -> TaskDesigns:
+def of_task(result: SurveyResult, name: str, source: str) -> TaskDesigns:
     """The designs of a survey of a design task, as that task reports them, with what the survey says."""
-    assert found.found is not None
-    facts, survey = tally_facts(found), {"survey": tally_dict(found)}
-    designs = replace(found.found, unfinished=found.unfinished)
-    return TaskDesigns(designs, name, source, found.tally.count, found.task.seed, facts, survey)
+    assert result.found is not None
+    facts, survey = tally_facts(result), {"survey": tally_dict(result)}
+    designs = replace(result.found, unfinished=result.unfinished)
+    return TaskDesigns(designs, name, source, result.tally.count, result.task.seed, facts, survey)
 
 
-def as_dict(found: SurveyResult) -> dict[str, Any]:
+def as_dict(result: SurveyResult) -> dict[str, Any]:
     """The answer as plain values: angles in radians but in columns whose names say deg."""
     return {
-        **tally_dict(found),
-        "polished": found.polished,
-        "refused": list(map(vars, found.refusals)),
-        "designs": plain_designs(found),
+        **tally_dict(result),
+        "polished": result.polished,
+        "refused": list(map(vars, result.refusals)),
+        "designs": plain_designs(result),
     }
 
 
@@ -114,12 +114,12 @@ def _ends(low: float, high: float) -> str:
     return f"{low:g}" if low == high else f"{low:g}..{high:g}"
 
 
-def _head(command: str, found: SurveyResult) -> list[str]:
-    assert isinstance(found.task, SurveyTask)
-    zeros = isinstance(found.task.want, Wish)
+def _head(command: str, result: SurveyResult) -> list[str]:
+    assert isinstance(result.task, SurveyTask)
+    zeros = isinstance(result.task.want, Wish)
     return [
-        f"wanted: {found.task.want.title}",
-        f"must hold: {found.task.text()}",
+        f"wanted: {result.task.want.title}",
+        f"must hold: {result.task.text()}",
         f"made by: {command}",
         "drawn where the readings start"
         + ("; each dial reads zero with its joint at input_zero, output_zero" if zeros else ""),

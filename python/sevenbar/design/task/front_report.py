@@ -58,23 +58,23 @@ def front_report(
     return Report(_text, _as_dict, files | dict(task_report(task, count, command, formats).files))
 
 
-def _write_table(found: FrontFound, path: Path) -> None:
-    own = zip(found.values.tolist(), found.front.points, strict=True)
+def _write_table(result: FrontFound, path: Path) -> None:
+    own = zip(result.values.tolist(), result.front.points, strict=True)
     rows = [[i, *pair, p.design.optimality, *p.design.values] for i, (pair, p) in enumerate(own, 1)]
-    write_csv(path, ["design", *found.columns, "kkt_residual", *found.task.names], rows)
+    write_csv(path, ["design", *result.columns, "kkt_residual", *result.task.names], rows)
 
 
-def _text(found: FrontFound) -> RenderableType:
-    front = found.front
+def _text(result: FrontFound) -> RenderableType:
+    front = result.front
     facts = Facts()
     # whatever the goal of the task
-    facts.add_all(task_facts(replace(found.task, goal="minimax")), bold=["wanted"])
+    facts.add_all(task_facts(replace(result.task, goal="minimax")), bold=["wanted"])
     both = " and ".join(str(place + 1) for place in front.wants)
     points, searches = len(front.points), front.solved
     facts.add(
         "front",
         f"of wants {both}: {points} point{'s' * (points != 1)} of {searches} search{'es' * (searches != 1)}, "
-        f"seed {found.seed}",
+        f"seed {result.seed}",
     )
     if points == 1 and not front.unfinished and not front.missing:
         facts.add("", "no design that was met is better in either")
@@ -82,7 +82,7 @@ def _text(found: FrontFound) -> RenderableType:
         facts.add("", f"{front.missing} bound{'s' * (front.missing != 1)} had no design")
     if front.unfinished:
         facts.add("unfinished", front.unfinished, "bold yellow")
-    heads = [f"{name.replace('_', ' ')}\n[{unit}]" if unit else name for name, unit, _ in found.axes]
+    heads = [f"{name.replace('_', ' ')}\n[{unit}]" if unit else name for name, unit, _ in result.axes]
     rows = [
         [
             *(f"{value:.5g}" for value in pair),
@@ -90,41 +90,41 @@ def _text(found: FrontFound) -> RenderableType:
             f"{point.design.candidate.size:.5g}",
             point.design.candidate.motion_type,
         ]
-        for pair, point in zip(found.values, front.points, strict=True)
+        for pair, point in zip(result.values, front.points, strict=True)
     ]
-    unit = found.task.draft.linkage.length_unit
+    unit = result.task.draft.linkage.length_unit
     heads += ["KKT\nresidual", f"size\n[{unit}]", "motion type"]
-    return page(f"Front: {found.name}", facts, design_table(heads, rows, words=heads[-1:]))
+    return page(f"Front: {result.name}", facts, design_table(heads, rows, words=heads[-1:]))
 
 
-def _as_dict(found: FrontFound) -> dict[str, Any]:
-    columns = found.columns
+def _as_dict(result: FrontFound) -> dict[str, Any]:
+    columns = result.columns
     rows = zip(*columns.values(), strict=True)
     points = [{"design": i, **dict(zip(columns, row, strict=True))} for i, row in enumerate(rows, 1)]
-    front = found.front
+    front = result.front
     wants = [place + 1 for place in front.wants]
     own = {"wants": wants, "searches": front.solved, "missing": front.missing, "points": points}
-    return {**as_dict(found), "front": own}
+    return {**as_dict(result), "front": own}
 
 
-def front_figure(found: FrontFound) -> Any:
+def front_figure(result: FrontFound) -> Any:
     """The points of a front, numbered as their files."""
     from matplotlib.ticker import MaxNLocator
 
-    front, values = found.front, found.values
+    front, values = result.front, result.values
     with styled():
         figure = page_figure(6.4, 5.2, pads=(0.05, 0.06))
         axes = figure.subplots()
         axes.plot(values[:, 0], values[:, 1], color=COMPUTED, lw=0.8, ls=":", marker="o", ms=5.0, mfc="white")
         for i, (x, y) in enumerate(values, 1):
             axes.annotate(str(i), (x, y), xytext=(5, 5), textcoords="offset points")
-        pairs = zip(front.wants, found.axes, strict=True)
+        pairs = zip(front.wants, result.axes, strict=True)
         x_label, y_label = (_label(front.task, place, *axis[:2]) for place, axis in pairs)
         axes.set_xlabel(x_label)
         axes.set_ylabel(y_label)
         axes.xaxis.set_major_locator(MaxNLocator(7))
         axes.grid(lw=0.6)
-        headline(figure, f"{short(found.name, 60)}\n{say('none is better in both')}")
+        headline(figure, f"{short(result.name, 60)}\n{say('none is better in both')}")
     return figure
 
 

@@ -108,10 +108,10 @@ def task_report(
     return Report(text, as_dict, files | {name: toml[name] for name in ("summary.csv", "summary.json")})
 
 
-def _drawn(found: TaskDesigns, *, place: int, draw: Callable[[DesignAlong], Any]) -> Any:
+def _drawn(result: TaskDesigns, *, place: int, draw: Callable[[DesignAlong], Any]) -> Any:
     """A figure of a design, if there are as many."""
-    designs = found.found.designs
-    return draw(DesignAlong(found.task, designs[place])) if place < len(designs) else None
+    designs = result.found.designs
+    return draw(DesignAlong(result.task, designs[place])) if place < len(designs) else None
 
 
 def _linkage(along: DesignAlong) -> Any:
@@ -119,38 +119,40 @@ def _linkage(along: DesignAlong) -> Any:
     return configuration(own.draft.linkage.motion(CHECK_SAMPLES), own.circuit)
 
 
-def _facts(found: TaskDesigns) -> list[tuple[str, str]]:
-    facts = task_facts(found.task)
-    if found.survey:
-        facts += [("drawn", f"{found.starts} linkages, seed {found.seed}"), *found.survey]
+def _facts(result: TaskDesigns) -> list[tuple[str, str]]:
+    facts = task_facts(result.task)
+    if result.survey:
+        facts += [("drawn", f"{result.starts} linkages, seed {result.seed}"), *result.survey]
     else:
-        searched = f"{found.found.starts} ways to begin from {found.starts + 1} linkages, seed {found.seed}"
+        searched = (
+            f"{result.found.starts} ways to begin from {result.starts + 1} linkages, seed {result.seed}"
+        )
         facts.append(("searched", searched))
-    if found.found.ended_early:
-        count = found.found.ended_early
+    if result.found.ended_early:
+        count = result.found.ended_early
         early = f"{count} start{'s' * (count != 1)} ended after {WHOLE} measured motions each"
         facts.append(("", early))
-    if found.found.refusals:
-        facts.append(("of the best" if found.survey else "refused", found.found.refused))
+    if result.found.refusals:
+        facts.append(("of the best" if result.survey else "refused", result.found.refused))
     return facts
 
 
-def _head(command: str, found: TaskDesigns) -> list[str]:
-    lines = [f"{label}: {words}" if label else f"  {words}" for label, words in _facts(found)]
-    if found.unfinished:
-        lines.append(f"unfinished: {found.unfinished}")
-    return [f"task: {found.name}", *lines, f"made by: {command}"]
+def _head(command: str, result: TaskDesigns) -> list[str]:
+    lines = [f"{label}: {words}" if label else f"  {words}" for label, words in _facts(result)]
+    if result.unfinished:
+        lines.append(f"unfinished: {result.unfinished}")
+    return [f"task: {result.name}", *lines, f"made by: {command}"]
 
 
-def text(found: TaskDesigns) -> RenderableType:
+def text(result: TaskDesigns) -> RenderableType:
     """The designs for people."""
     facts = Facts()
-    facts.add_all(_facts(found), bold=("wanted", "answer"))
-    if found.unfinished:
-        facts.add("unfinished", found.unfinished, "bold yellow")
-    tables = _tables(found) if found.found.designs else []
-    tables += _reasons(found.found.designs)
-    return page(f"Design: {found.name}", facts, *tables)
+    facts.add_all(_facts(result), bold=("wanted", "answer"))
+    if result.unfinished:
+        facts.add("unfinished", result.unfinished, "bold yellow")
+    tables = _tables(result) if result.found.designs else []
+    tables += _reasons(result.found.designs)
+    return page(f"Design: {result.name}", facts, *tables)
 
 
 #: Why the conditions of an optimum are missed, by how the search ended.
@@ -183,9 +185,9 @@ def _bounded(design: TaskDesign, place: int, low: float, high: float) -> str:
     return f"{value:.5g}"
 
 
-def _tables(found: TaskDesigns) -> list[RenderableType]:
+def _tables(result: TaskDesigns) -> list[RenderableType]:
     """Tables with a line for each design: how well each want is met, what it is, its free numbers."""
-    task, designs, unit = found.task, found.found.designs, found.task.draft.linkage.length_unit
+    task, designs, unit = result.task, result.found.designs, result.task.draft.linkage.length_unit
     met: list[tuple[str, list[str]]] = []
     alongs = [DesignAlong(task, design) for design in designs]
     for number, (place, _) in enumerate(task.sampled):
@@ -230,26 +232,26 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
     return tables
 
 
-def as_dict(found: TaskDesigns) -> dict[str, Any]:
+def as_dict(result: TaskDesigns) -> dict[str, Any]:
     """The designs as plain values; what has a unit has it in its name."""
-    task = found.task
+    task = result.task
     linkage = task.draft.linkage
     return {
         "format": 1,
-        "task": found.name,
-        "source": found.source,
+        "task": result.name,
+        "source": result.source,
         "goal": task.goal,
         "placement": task.placement,
         "limits": task.limits.text(),
         "wanted": [want.words(linkage) for want in task.wants],
         "must_hold": [must.words(linkage) for must in task.musts],
         "free": {one.name: [one.low, one.high] for one in task.free},
-        "starts": found.starts,
-        "begun": found.found.starts,
-        "ended_early": found.found.ended_early,
-        "seed": found.seed,
-        "unfinished": found.unfinished or None,
-        "refused": list(map(vars, found.found.refusals)),
+        "starts": result.starts,
+        "begun": result.found.starts,
+        "ended_early": result.found.ended_early,
+        "seed": result.seed,
+        "unfinished": result.unfinished or None,
+        "refused": list(map(vars, result.found.refusals)),
         "designs": [
             {
                 **own,
@@ -261,9 +263,9 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
                 "ended": design.solution.ended,
                 "values": dict(zip(task.names, map(float, design.values), strict=True)),
             }
-            for own, design in zip(plain_designs(found), found.found.designs, strict=True)
+            for own, design in zip(plain_designs(result), result.found.designs, strict=True)
         ],
-        **found.plain,
+        **result.plain,
     }
 
 

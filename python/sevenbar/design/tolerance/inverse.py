@@ -58,17 +58,17 @@ def tolerances_for(
     if not (is_number(wanted) and math.isfinite(wanted) and wanted > 0):
         raise RequestError(f"wanted: {shown(wanted)} is not an error; give one greater than 0")
     check_word("sum", sum, SUMS)
-    found = of if isinstance(of, Sensitivities) else sensitivities(of)
+    result = of if isinstance(of, Sensitivities) else sensitivities(of)
 
     def estimate(chosen: Tolerances) -> Linear:
-        return linear_estimate(found, chosen, distribution=distribution, output=output, quantity=quantity)
+        return linear_estimate(result, chosen, distribution=distribution, output=output, quantity=quantity)
 
-    chosen = found.tolerances(dict.fromkeys(names, 1.0))
-    widths = np.where(chosen.widths > 0, found.small, 0.0)
+    chosen = result.tolerances(dict.fromkeys(names, 1.0))
+    widths = np.where(chosen.widths > 0, result.small, 0.0)
     for _ in range(MOST_ROUNDS):
         linear = estimate(replace(chosen, widths=widths))
         effects = np.abs(linear.slopes).max(axis=0)
-        small = effects * found.small
+        small = effects * result.small
         matters = small > NO_EFFECT * small.max()
         if not matters.any():
             raise RequestError(

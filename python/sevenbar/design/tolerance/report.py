@@ -108,8 +108,10 @@ def tolerance_report(figures: Sequence[str] = ("png",)) -> Report[Findings]:
             "dimensions.csv": columns_file(_dimensions),
             "deviation.csv": columns_file(_deviation),
             "sensitivities.csv": columns_file(_sensitivities),
-            **figure_files("shares", figures, lambda found: shares_figure(found.linear)),
-            **figure_files("deviation", figures, lambda found: deviation_figure(found.linear, found.exact)),
+            **figure_files("shares", figures, lambda result: shares_figure(result.linear)),
+            **figure_files(
+                "deviation", figures, lambda result: deviation_figure(result.linear, result.exact)
+            ),
         },
     )
 

@@ -265,17 +265,17 @@ def sensitivities(
 
 
 @text_of.register(Sensitivities)
-def _(found: Sensitivities) -> str:
-    names = [dimension.name for dimension in found.dimensions]
-    greatest = [f"{dimension.name} {effect:.3g}" for dimension, effect, _ in found.ranking()[:3]]
+def _(result: Sensitivities) -> str:
+    names = [dimension.name for dimension in result.dimensions]
+    greatest = [f"{dimension.name} {effect:.3g}" for dimension, effect, _ in result.ranking()[:3]]
     return lines(
-        f"Sensitivities of '{found.linkage.name}', circuit {found.circuit.index}",
+        f"Sensitivities of '{result.linkage.name}', circuit {result.circuit.index}",
         [
-            ("slopes", f"{found.slopes.shape}: rows, outputs, dimensions"),
-            ("outputs", ", ".join(dict.fromkeys(output.owner for output in found.outputs))),
+            ("slopes", f"{result.slopes.shape}: rows, outputs, dimensions"),
+            ("outputs", ", ".join(dict.fromkeys(output.owner for output in result.outputs))),
             ("dimensions", ", ".join(names)),
-            ("open the loop", ", ".join(found.opening)),
-            ("greatest", f"of a small change on {found.output_name}: {', '.join(greatest)}"),
-            ("measures", ", ".join(measure.name for measure in found.measures)),
+            ("open the loop", ", ".join(result.opening)),
+            ("greatest", f"of a small change on {result.output_name}: {', '.join(greatest)}"),
+            ("measures", ", ".join(measure.name for measure in result.measures)),
         ],
     )

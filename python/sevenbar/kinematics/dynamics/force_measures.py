@@ -38,11 +38,11 @@ def sized(circuit: Circuit, joints: Sequence[str] = ()) -> CycleLoads | None:
     """
     if not joints and (waves := circuit.force_waves) is not None:
         return waves.loads
-    found = circuit.forces()
+    result = circuit.forces()
     for name in joints:
-        if name not in found.reactions:
-            raise RequestError(f"measure: {no_joint(name, list(found.reactions))}")
-    own = found.within_stops
+        if name not in result.reactions:
+            raise RequestError(f"measure: {no_joint(name, list(result.reactions))}")
+    own = result.within_stops
     if own is None or (own.part is None and not circuit.goes_round):
         return None
     return loads_of(replace(own, reactions={name: own.reactions[name] for name in joints}))
@@ -55,8 +55,8 @@ def peak_shaking(circuit: Circuit) -> float | None:
     own = circuit.forces().within_stops
     if own is None or (own.part is None and not circuit.goes_round):
         return None
-    found = shaking_along(own)
-    return None if found is None else found.force.value
+    result = shaking_along(own)
+    return None if result is None else result.force.value
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,18 +152,18 @@ def _measured(
     def wanted(name: str) -> bool:
         return only is None or name in only
 
-    found = circuit.forces().within_stops
-    if found is None:
+    result = circuit.forces().within_stops
+    if result is None:
         return
     joints = {
         name: one
-        for name, one in found.reactions.items()
+        for name, one in result.reactions.items()
         if one.determinate[3:].all() and wanted(f"peak_force:{name}")
     }
-    loads = loads_of(replace(found, reactions=joints))
+    loads = loads_of(replace(result, reactions=joints))
     if loads is None:
         return
-    names = list(found.reactions)
+    names = list(result.reactions)
 
     def peak_of(
         name: str, unit: str, peak: Peak, of: Callable[[_Slopes], tuple[Floats, Floats]]
@@ -172,7 +172,7 @@ def _measured(
 
         Nor at an end of a part between stops that moves with the dimensions.
         """
-        if found.part is not None and found.part.moves(peak.input, found.driver):
+        if result.part is not None and result.part.moves(peak.input, result.driver):
             return
         q = poses_at(solver.loop, circuit, peak.input)
         values, by = of(slopes(q[:, solver.input], q))
@@ -185,7 +185,7 @@ def _measured(
         sign = math.copysign(1.0, top.value)
         yield from peak_of(
             "peak_torque",
-            found.unit,
+            result.unit,
             replace(top, value=abs(top.value)),
             lambda here: (sign * here.torque, sign * here.torque_by),
         )
@@ -193,14 +193,14 @@ def _measured(
         rows = slopes(circuit.input, solver.numbers.poses(circuit.q))
         if np.isfinite(rows.torque).all():
             mean = (rows.torque[:, None] * rows.torque_by).mean(axis=0)
-            yield MeasureSlopes("rms_torque", found.unit, loads.rms_torque, mean / loads.rms_torque)
+            yield MeasureSlopes("rms_torque", result.unit, loads.rms_torque, mean / loads.rms_torque)
     if wanted("peak_power"):
         # no number changes the speed
-        rate = circuit.speed * (LENGTHS[found.length_unit] if found.slides else 1.0)
+        rate = circuit.speed * (LENGTHS[result.length_unit] if result.slides else 1.0)
         yield from peak_of(
             "peak_power", "W", loads.peak_power, lambda here: (rate * here.torque, rate * here.torque_by)
         )
-    shaken = shaking_along(found) if wanted("peak_shaking") else None
+    shaken = shaking_along(result) if wanted("peak_shaking") else None
     if shaken is not None and shaken.force.value > 0:
         yield from peak_of(
             "peak_shaking", "N", shaken.force, lambda here: _sizes(here.shaking, here.shaking_by)

@@ -236,18 +236,18 @@ def _restitution(given: float | None, stretches: tuple[StopStretch, ...] | None)
     return value
 
 
-def _impacts(course: FreeCourse, begin: float, found: Stages) -> tuple[Impact, ...]:
+def _impacts(course: FreeCourse, begin: float, result: Stages) -> tuple[Impact, ...]:
     """The stops that are met, by the input."""
-    if not found.met:
+    if not result.met:
         return ()
-    places = np.array([begin + one.place for one in found.met])
-    rates = np.array([one.rate for one in found.met])
+    places = np.array([begin + one.place for one in result.met])
+    rates = np.array([one.rate for one in result.met])
     none = np.zeros(len(rates))
     q, dq, *_ = course.rows.at(places, (rates, none, none))
     column = course.path.input
     return tuple(
         Impact(one.time, one.stop, float(value), float(speed))
-        for one, value, speed in zip(found.met, q[:, column], dq[:, column], strict=True)
+        for one, value, speed in zip(result.met, q[:, column], dq[:, column], strict=True)
     )
 
 
@@ -331,21 +331,23 @@ def _states(
     return FreeStates(q, dq, ddq, dddq, kinetic, potential, place, rates[0])
 
 
-def _as_law(found: FreeMotion) -> Law:
+def _as_law(result: FreeMotion) -> Law:
     """The input over time, rows past the end left out."""
-    column, rows = found.input_column, np.isfinite(found.input)
-    value, rate, second, third = (part[rows, column] for part in (found.q, found.dq, found.ddq, found.dddq))
-    return Law.of(found.time[rows], value, rate, second, third if np.isfinite(third).all() else 0.0)
+    column, rows = result.input_column, np.isfinite(result.input)
+    value, rate, second, third = (
+        part[rows, column] for part in (result.q, result.dq, result.ddq, result.dddq)
+    )
+    return Law.of(result.time[rows], value, rate, second, third if np.isfinite(third).all() else 0.0)
 
 
-def _as_table(linkage: Solvable, found: FreeMotion, si: bool) -> dict[str, npt.NDArray[Any]]:
+def _as_table(linkage: Solvable, result: FreeMotion, si: bool) -> dict[str, npt.NDArray[Any]]:
     """Columns by names that end in their units."""
     si = truth("si", si)
-    length, angle = ("m", "rad") if si else (found.length_unit, "deg")
-    scale = LENGTHS[found.length_unit] if si else 1.0
-    rates = (found.q, found.dq, found.ddq)
+    length, angle = ("m", "rad") if si else (result.length_unit, "deg")
+    scale = LENGTHS[result.length_unit] if si else 1.0
+    rates = (result.q, result.dq, result.ddq)
     joints = joint_columns(linkage, rates, length=length, angle=angle, scale=scale)
-    return {"time_s": found.time, **joints, "kinetic_J": found.kinetic, "potential_J": found.potential}
+    return {"time_s": result.time, **joints, "kinetic_J": result.kinetic, "potential_J": result.potential}
 
 
 def _as_motion(
@@ -354,26 +356,26 @@ def _as_motion(
     motor: Motor | None,
     own: EnergyCourse,
     begin: float,
-    found: FreeMotion,
+    result: FreeMotion,
 ) -> Motion:
     """A motion whose one circuit has the rows of a free motion."""
     circuit, linkage = course.circuit, course.linkage
-    place, rates, *_ = _rates(own, state, motor, found.time)
+    place, rates, *_ = _rates(own, state, motor, result.time)
     place = begin + place
-    count = len(found.time)
+    count = len(result.time)
     status: Words = np.where(np.isfinite(place), "ok", "no-solution").astype("<U15")
-    status[(status == "ok") & np.isnan(found.q).any(axis=1)] = "turns-undefined"
+    status[(status == "ok") & np.isnan(result.q).any(axis=1)] = "turns-undefined"
 
     def point(link: int, at: Floats) -> object:
         return course.rows.trace(place, rates, status, link, at)
 
     rows = replace(
         circuit,
-        q=found.q,
-        dq=found.dq,
-        ddq=found.ddq,
-        dddq=found.dddq,
-        time=found.time,
+        q=result.q,
+        dq=result.dq,
+        ddq=result.ddq,
+        dddq=result.dddq,
+        time=result.time,
         status=status,
         branch=np.zeros(count, dtype=np.int64),
         mode=np.full(count, int(circuit.mode[0]) if len(circuit.mode) else 0),
@@ -387,5 +389,5 @@ def _as_motion(
     )
     whole = linkage.motion(36, input=circuit.columns[circuit.input_column])
     return replace(
-        whole, circuits=(rows,), law=_as_law(found), speed=math.nan, samples=count, speed_written=""
+        whole, circuits=(rows,), law=_as_law(result), speed=math.nan, samples=count, speed_written=""
     )

@@ -318,9 +318,9 @@ def sensitivity_of(linkage: Solvable, circuit: Circuit) -> Sensitivity:
     places[:, :, here.idle_points] = np.nan
     joints[..., here.opening] = places[..., here.opening] = np.nan
 
-    def on_all_rows(found: Floats) -> Floats:
-        out = np.full((len(circuit.q), *found.shape[1:]), np.nan)
-        out[rows] = found
+    def on_all_rows(result: Floats) -> Floats:
+        out = np.full((len(circuit.q), *result.shape[1:]), np.nan)
+        out[rows] = result
         out[np.isin(circuit.status, ("dead-centre", "change-point"))] = np.nan
         return out
 

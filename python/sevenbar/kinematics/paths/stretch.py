@@ -116,7 +116,7 @@ def first_place(linkage: Solvable, circuit: Circuit, path: CircuitPath, numbers:
 
 
 def used_stretch(
-    linkage: Solvable, circuit: Circuit, path: CircuitPath, numbers: Numbers, found: tuple[StopStretch, ...]
+    linkage: Solvable, circuit: Circuit, path: CircuitPath, numbers: Numbers, result: tuple[StopStretch, ...]
 ) -> tuple[int, float] | None:
     """The stretch on which a linkage is used, by its number, and the place at which it begins to move.
 
@@ -125,7 +125,7 @@ def used_stretch(
     """
     homes = [drawn_place(linkage, path, numbers), first_place(linkage, circuit, path, numbers)]
     for home in homes:
-        for number, one in enumerate(found):
+        for number, one in enumerate(result):
             if home is not None and (place := one.held(home, path)) is not None:
                 return number, place
-    return (0, found[0].begin) if found else None
+    return (0, result[0].begin) if result else None

@@ -255,21 +255,21 @@ class GeneralLoop:
                 + f"; give another: {', '.join(linkage.drivable(column))}"
             ) from None
 
-    def _mobility(self, found: _core.RawFound | None) -> Mobility:
+    def _mobility(self, result: _core.RawFound | None) -> Mobility:
         from sevenbar.kinematics.loop.mobility import Mobility, redundant_constraints
 
         linkage = self._linkage
         freedoms = len(linkage.columns)
-        finite = None if found is None else found.finite
-        if found is None and not self._core.can_be_driven:
+        finite = None if result is None else result.finite
+        if result is None and not self._core.can_be_driven:
             # rank six at most
             finite = self._core.freedoms - 6
         return Mobility(
             freedoms=freedoms,
             gruebler=freedoms - 6,
-            rank=None if found is None else found.rank,
+            rank=None if result is None else result.rank,
             idle=self.idle(),
-            redundant=() if found is None else redundant_constraints(found.wrenches, self._base),
+            redundant=() if result is None else redundant_constraints(result.wrenches, self._base),
             finite=finite,
         )
 

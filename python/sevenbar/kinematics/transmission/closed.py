@@ -120,14 +120,14 @@ def _stationary(course: AngleCourse, low: float) -> list[tuple[float, float]]:
     return [(angle, low + (x - low) % math.tau) for angle, x in result] if course.turns else result
 
 
-def _ends(found: list[tuple[float, float]]) -> Extremes:
+def _ends(result: list[tuple[float, float]]) -> Extremes:
     """The lowest and the highest of angles and inputs; of those alike the first, and the last."""
-    lowest, highest = min(found)[0], max(found)[0]
+    lowest, highest = min(result)[0], max(result)[0]
     return Extremes(
         lowest,
-        min(x for angle, x in found if angle <= lowest + ALIKE),
+        min(x for angle, x in result if angle <= lowest + ALIKE),
         highest,
-        max(x for angle, x in found if angle >= highest - ALIKE),
+        max(x for angle, x in result if angle >= highest - ALIKE),
     )
 
 

@@ -92,10 +92,10 @@ class ForceArrows:
         self._along, self._unit = [], 0.0
         if forces is None:
             return
-        found = [known_force(reaction) for reaction in forces.reactions.values()]
-        least = ROUNDING * max(greatest_of(force) for force in found)
+        result = [known_force(reaction) for reaction in forces.reactions.values()]
+        least = ROUNDING * max(greatest_of(force) for force in result)
         self._along = [
-            (joint, found[joint][view.path.rows]) for joint in wanted if greatest_of(found[joint]) > least
+            (joint, result[joint][view.path.rows]) for joint in wanted if greatest_of(result[joint]) > least
         ]
         if self._along:
             sizes = np.linalg.norm(np.concatenate([force for _, force in self._along]), axis=1)
@@ -160,12 +160,12 @@ class ForcesPanel:
             return
         forces = acting.forces(view)
         if forces is None:
-            found = [("forces", acting.reason(view))]
+            result = [("forces", acting.reason(view))]
         else:
             own = forces.within_stops or forces
-            found = [*part_facts(own), *drive_facts(own, drive_sizing(forces)), *open_facts(own)]
+            result = [*part_facts(own), *drive_facts(own, drive_sizing(forces)), *open_facts(own)]
         title = f"circuit {view.circuit.index}"
-        self._text = facts_block([fact for fact in found if fact[1]], title=title)
+        self._text = facts_block([fact for fact in result if fact[1]], title=title)
         self._show_facts(stale=bool(self._session.problem))
 
     def _show_facts(self, *, stale: bool) -> None:

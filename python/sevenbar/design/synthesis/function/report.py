@@ -35,42 +35,42 @@ PRINTED = {
 OF_SWING = ("error_greatest_deg", "error_rms_deg")
 
 
-def text(found: Synthesis) -> RenderableType:
+def text(result: Synthesis) -> RenderableType:
     """The designs for people."""
     facts = Facts()
-    facts.add("wanted", retold(found.wanted), "bold")
-    if found.wish is not None and found.wish.dials is not None:
-        facts.add("readings", retold(found.wish.dials.text))
-    if found.wish is not None:
+    facts.add("wanted", retold(result.wanted), "bold")
+    if result.wish is not None and result.wish.dials is not None:
+        facts.add("readings", retold(result.wish.dials.text))
+    if result.wish is not None:
         facts.add("", say("crank = input zero + reading, rocker = output zero + reading"))
-    facts.add("limits", retold_parts(found.limits.text(), "; "))
-    counts = {"searched": found.searched, "refined": found.fitted, "seed": found.seed}
+    facts.add("limits", retold_parts(result.limits.text(), "; "))
+    counts = {"searched": result.searched, "refined": result.fitted, "seed": result.seed}
     facts.add("searched", say("{searched} designs, {refined} refined, seed {seed}", **counts))
-    if found.unfinished:
-        facts.add("unfinished", retold(found.unfinished), "bold yellow")
-    if found.refusals:
-        facts.add("refused", tally(found.refusals, None))
-    unit = found.candidates[0].draft.linkage.length_unit
-    wanted = {n: head for n, head in PRINTED.items() if found.wish is not None or n not in OF_SWING}
+    if result.unfinished:
+        facts.add("unfinished", retold(result.unfinished), "bold yellow")
+    if result.refusals:
+        facts.add("refused", tally(result.refusals, None))
+    unit = result.candidates[0].draft.linkage.length_unit
+    wanted = {n: head for n, head in PRINTED.items() if result.wish is not None or n not in OF_SWING}
     dimensions = {f"{name}_{unit}": f"{name} [{unit}]" for name in NAMES}
-    tables = (columns_table(found.candidates, heads) for heads in (wanted, dimensions))
+    tables = (columns_table(result.candidates, heads) for heads in (wanted, dimensions))
     return page(say("Synthesis of an RSSR"), facts, *tables)
 
 
-def as_dict(found: Synthesis) -> dict[str, Any]:
+def as_dict(result: Synthesis) -> dict[str, Any]:
     """The designs as tables and numbers; readings in radians."""
-    dials = None if found.wish is None else found.wish.dials
+    dials = None if result.wish is None else result.wish.dials
     return {
         "format": 1,
-        "wanted": found.wanted,
+        "wanted": result.wanted,
         "readings": None if dials is None else vars(dials),
-        "limits": found.limits.text(),
-        "unfinished": found.unfinished or None,
-        "seed": found.seed,
-        "searched": found.searched,
-        "refined": found.fitted,
-        "refused": list(map(vars, found.refusals)),
-        "designs": plain_designs(found),
+        "limits": result.limits.text(),
+        "unfinished": result.unfinished or None,
+        "seed": result.seed,
+        "searched": result.searched,
+        "refined": result.fitted,
+        "refused": list(map(vars, result.refusals)),
+        "designs": plain_designs(result),
     }
 
 
@@ -80,13 +80,13 @@ def synthesis_report(count: int, command: str, figures: Sequence[str] = ("png",)
     return Report(text, as_dict, files, spoken=True)
 
 
-def _head(command: str, found: Synthesis) -> list[str]:
-    head = [f"wanted: {found.wanted}", f"limits: {found.limits.text()}", f"made by: {command}"]
-    if found.unfinished:
-        head.append(f"unfinished: {found.unfinished}")
-    if found.wish is not None and found.wish.dials is not None:
-        head.append(f"readings: {found.wish.dials.text}")
-    if found.wish is not None:
+def _head(command: str, result: Synthesis) -> list[str]:
+    head = [f"wanted: {result.wanted}", f"limits: {result.limits.text()}", f"made by: {command}"]
+    if result.unfinished:
+        head.append(f"unfinished: {result.unfinished}")
+    if result.wish is not None and result.wish.dials is not None:
+        head.append(f"readings: {result.wish.dials.text}")
+    if result.wish is not None:
         head += [
             "to use it: fix both dials so that they read 0 with the crank at input_zero and the rocker at",
             "output_zero, the angles below; crank = input_zero + reading, rocker = output_zero + reading",
@@ -94,5 +94,5 @@ def _head(command: str, found: Synthesis) -> list[str]:
     return head
 
 
-def _figure(found: Synthesis, candidate: Candidate) -> Figure:
-    return swing_figure(candidate) if found.wish is None else function_figure(candidate, found.wish)
+def _figure(result: Synthesis, candidate: Candidate) -> Figure:
+    return swing_figure(candidate) if result.wish is None else function_figure(candidate, result.wish)

@@ -67,29 +67,29 @@ def path_report(
     return Report(partial(_text, task, source, seed), as_dict, files, spoken=True)
 
 
-def _figure(task: PathTask, found: DesignsFound, candidate: Candidate) -> Figure:
-    return path_figure(task, next(one for one in found.designs if one.candidate is candidate))
+def _figure(task: PathTask, result: DesignsFound, candidate: Candidate) -> Figure:
+    return path_figure(task, next(one for one in result.designs if one.candidate is candidate))
 
 
-def _head(task: PathTask, source: str, command: str, found: DesignsFound) -> list[str]:
+def _head(task: PathTask, source: str, command: str, result: DesignsFound) -> list[str]:
     lines = [f"{label}: {text}" for label, text in _facts(task, source)]
     if task.design.placement != "fixed" and "joint" not in task.draft.raw:
         lines.append(
             "placed: turned by turn_x, turn_y, turn_z (axis times angle), then shifted, it makes the path"
         )
-    if found.unfinished:
-        lines.append(f"unfinished: {found.unfinished}")
+    if result.unfinished:
+        lines.append(f"unfinished: {result.unfinished}")
     return [*lines, f"made by: {command}"]
 
 
-def _text(task: PathTask, source: str, seed: int, found: DesignsFound) -> RenderableType:
+def _text(task: PathTask, source: str, seed: int, result: DesignsFound) -> RenderableType:
     """The designs for people."""
-    candidates, linkage = found.candidates, task.draft.linkage
+    candidates, linkage = result.candidates, task.draft.linkage
     unit = linkage.length_unit
     facts = Facts()
     facts.add_all([*_facts(task, source), ("seed", str(seed))], bold=["wanted"])
-    if found.unfinished:
-        facts.add("unfinished", retold(found.unfinished), "bold yellow")
+    if result.unfinished:
+        facts.add("unfinished", retold(result.unfinished), "bold yellow")
     transmits = any(c.transmission_lowest is not None for c in candidates)
     heads = {
         f"error_greatest_{unit}": say("greatest\nerror\n[{unit}]", unit=unit),
@@ -108,17 +108,17 @@ def _text(task: PathTask, source: str, seed: int, found: DesignsFound) -> Render
     return page(say("Path generation: {linkage}", linkage=linkage.heading), facts, *tables)
 
 
-def _as_dict(task: PathTask, source: str, seed: int, found: DesignsFound) -> dict[str, Any]:
+def _as_dict(task: PathTask, source: str, seed: int, result: DesignsFound) -> dict[str, Any]:
     """The designs as plain values; what has a unit has it in its name."""
     errors = f"errors_{task.draft.linkage.length_unit}"
     designs = [
         {**own, errors: c.claim.errors.tolist(), "inputs": c.claim.inputs.tolist()}
-        for own, c in zip(plain_designs(found), found.candidates, strict=True)
+        for own, c in zip(plain_designs(result), result.candidates, strict=True)
     ]
     return {
         "format": 1,
         **dict(_facts(task, source)),
         "seed": seed,
-        "unfinished": found.unfinished or None,
+        "unfinished": result.unfinished or None,
         "designs": designs,
     }
