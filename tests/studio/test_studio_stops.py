@@ -36,16 +36,16 @@ def test_each_end_of_a_stretch_is_a_stop_and_none_of_its_poses_lies_beyond(text,
     session = Session(text, "stops.toml")
     assert session.reaches
     for reach in session.reaches:
-        column_at = reach.way.linkage.columns.index(column)
+        column_at = reach.walk.linkage.columns.index(column)
         rows = [reach.rolled(row) for row in np.linspace(reach.low, reach.high, 60)]
-        values = [math.degrees(reach.way.joints(row)[column_at] + math.pi) % 360 - 180 for row in rows]
+        values = [math.degrees(reach.walk.joints(row)[column_at] + math.pi) % 360 - 180 for row in rows]
         # between two rows the joints are on a straight line
         assert min(values) > low - 2e-2
         assert max(values) < high + 2e-2
         for row, stop in ((reach.low, reach.first_stop), (reach.high, reach.last_stop)):
             if stop:
                 assert stop == f"range of {column}"
-                value = math.degrees(reach.way.joints(reach.rolled(row))[column_at] + math.pi) % 360 - 180
+                value = math.degrees(reach.walk.joints(reach.rolled(row))[column_at] + math.pi) % 360 - 180
                 assert min(abs(value - low), abs(value - high)) < 2e-2
                 assert reach.stop_at(reach.rolled(row)) == stop
 

@@ -198,18 +198,18 @@ class _Tree:
             ends = joint.before, joint.after
             if number == where.connection or body not in ends:
                 continue
-            child, way = (joint.after, 1.0) if body == joint.before else (joint.before, -1.0)
+            child, direction = (joint.after, 1.0) if body == joint.before else (joint.before, -1.0)
             if child not in self.elements:
-                self._add(self.elements[body], joint, number, way)
+                self._add(self.elements[body], joint, number, direction)
                 self._grow(child, where)
 
-    def _add(self, parent: Element, joint: Connection, number: int, way: float) -> Element:
-        """Adds the body after a joint, or with `way` -1 the one before it, read as the same joint.
+    def _add(self, parent: Element, joint: Connection, number: int, direction: float) -> Element:
+        """Adds the body after a joint, or with `direction` -1 the one before it, read as the same joint.
 
         Past the last joint a bare body that the ground's frame is welded to.
         """
         child, near, far = joint.after, joint.frame_before, joint.frame_after
-        if way < 0:
+        if direction < 0:
             child, near, far = joint.before, far, near
         elif child in self._rules:
             return self._add_held_ball(parent, joint, self._rules[child])
@@ -217,9 +217,9 @@ class _Tree:
         far = far if child != GROUND else np.eye(4)
         moved = self._moved(joint, number)
         body = self._add_body(
-            parent, name, near @ (moved if way > 0 else inverse(moved)) @ inverse(far), child
+            parent, name, near @ (moved if direction > 0 else inverse(moved)) @ inverse(far), child
         )
-        self._add_freedoms(body, joint, number, far, way)
+        self._add_freedoms(body, joint, number, far, direction)
         if child == GROUND:
             mark(body, "loop_end", far, self._model)
         return body
@@ -244,20 +244,22 @@ class _Tree:
             shape = {"type": "sphere", "size": radius, "pos": numbers(first)}
         add(body, "geom", **shape)
 
-    def _add_freedoms(self, body: Element, joint: Connection, number: int, frame: Floats, way: float) -> None:
+    def _add_freedoms(
+        self, body: Element, joint: Connection, number: int, frame: Floats, direction: float
+    ) -> None:
         """The joints of MuJoCo that make up one of ours, at `frame` of the body, and their start."""
         if joint.row.is_ball:
             add(body, "joint", name=joint.name, type="ball", pos=numbers(frame[:3, 3] * self._metre))
             # counted from the pose in which the bodies lie
             self.qpos += [1.0, 0.0, 0.0, 0.0]
-            own, other = (joint.after, joint.before) if way > 0 else (joint.before, joint.after)
+            own, other = (joint.after, joint.before) if direction > 0 else (joint.before, joint.after)
             rotation = self._model.placed(own)[:3, :3]
             self.qvel += list(rotation.T @ (self._spin(own) - self._spin(other)))
             return
         steps = joint.row.named(joint.name)
-        carried = self._carried([step for _, step in steps], number, way)
+        carried = self._carried([step for _, step in steps], number, direction)
         # a joint of MuJoCo is carried by those before it in its body
-        order = range(len(steps)) if way > 0 else reversed(range(len(steps)))
+        order = range(len(steps)) if direction > 0 else reversed(range(len(steps)))
         for k in order:
             (name, step), at = steps[k], frame @ carried[k]
             turns = step.freedom == "turn"
@@ -269,7 +271,7 @@ class _Tree:
                 name=name,
                 type="hinge" if turns else "slide",
                 **place,
-                axis=numbers(way * at[:3, step.axis]),
+                axis=numbers(direction * at[:3, step.axis]),
                 ref=f"{value:.17g}",
                 **self._flywheel(number, step.number),
                 **joint_spring(self._model, number, step.number),
@@ -292,10 +294,10 @@ class _Tree:
             return pose(before[:3, :3].T @ after[:3, :3], np.zeros(3))
         return reduce(np.matmul, self._moves(joint.row.steps, number), np.eye(4))
 
-    def _carried(self, steps: Sequence[Step], number: int, way: float) -> list[Floats]:
+    def _carried(self, steps: Sequence[Step], number: int, direction: float) -> list[Floats]:
         """The frame (4, 4) of each step at the start, in the joint's frame on the body that it moves."""
         moves = self._moves(steps, number)
-        if way < 0:
+        if direction < 0:
             return [reduce(np.matmul, moves[:k], np.eye(4)) for k in range(len(moves))]
         return [inverse(reduce(np.matmul, moves[k + 1 :], np.eye(4))) for k in range(len(moves))]
 

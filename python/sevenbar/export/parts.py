@@ -160,13 +160,17 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
         else:
             # what is long stands on the ground where it can, a slot on its link
             grounded = graph.between[i][1] == graph.ground
-            way = -1 if (joint.row.slot_on_after if joint.row.has_slot else grounded) else 1
-            pairs = (before, after)[::way], (pose.near[i], pose.far[i])[::way], feet[i][::way]
-            carried = _Carried(*pairs, pose, i, seat, unit, way)
+            direction = -1 if (joint.row.slot_on_after if joint.row.has_slot else grounded) else 1
+            pairs = (
+                (before, after)[::direction],
+                (pose.near[i], pose.far[i])[::direction],
+                feet[i][::direction],
+            )
+            carried = _Carried(*pairs, pose, i, seat, unit, direction)
             shafts, middles = carried.plane() if joint.row.has_plane else carried.axial()
             name, body = f"shaft_{_word(joint.name)}", carried.builds[0].body
             extra += [Part(name, body, (shaft,), (), JOINT) for shaft in shafts]
-            ends[i] = middles[::way]
+            ends[i] = middles[::direction]
     arms = []
     for link, line in zip(graph.links, lines, strict=True):
         first, last = (ends[joint][graph.side(joint, link)] for joint in graph.joints_of(link))
@@ -209,7 +213,7 @@ class _Build:
             leaves = [b - a for a, b in steps if math.dist(a, middle) < near]
             leaves += [a - b for a, b in steps if math.dist(b, middle) < near]
             closed = may_close and any(
-                way @ outward > THROUGH_THE_END * np.linalg.norm(way) for way in leaves
+                direction @ outward > THROUGH_THE_END * np.linalg.norm(direction) for direction in leaves
             )
             inner, outer = middle - 0.5 * unit * outward, middle + 0.5 * unit * outward
             end = outer + LID * unit * outward if closed else outer
@@ -228,13 +232,17 @@ class _Build:
         for middle, outward, _, _ in self._hubs:
             for at_end in (False, True):
                 here, ahead = (places[-1], places[-2]) if at_end else (places[0], places[1])
-                way = ahead - here
-                aslant = way @ outward < PAST_THE_OTHER * np.linalg.norm(way)
+                direction = ahead - here
+                aslant = direction @ outward < PAST_THE_OTHER * np.linalg.norm(direction)
                 if not aslant or math.dist(here, middle) > SAME * unit:
                     continue
-                off = way - (way @ outward) * outward
+                off = direction - (direction @ outward) * outward
                 length = float(np.linalg.norm(off))
-                off = off / length if length > 1e-3 * float(np.linalg.norm(way)) else perpendicular(outward)
+                off = (
+                    off / length
+                    if length > 1e-3 * float(np.linalg.norm(direction))
+                    else perpendicular(outward)
+                )
                 places.insert(len(places) - 1 if at_end else 1, here + ELBOW * unit * off)
         return np.array(places)
 
@@ -261,7 +269,7 @@ class _Carried(NamedTuple):
     """A joint on one axis or in one plane while it is built; of each pair the carrier is first.
 
     `frames` are the joint's on either link, so that parts are in line only as far as the loop closes; `feet`
-    are where the links end. The `way` is 1 where the carrier is the link before, else -1.
+    are where the links end. The `direction` is 1 where the carrier is the link before, else -1.
     """
 
     builds: Sequence[_Build]
@@ -271,7 +279,7 @@ class _Carried(NamedTuple):
     i: int
     seat: Seat
     unit: float
-    way: int
+    direction: int
 
     def axial(self) -> tuple[list[Solid], tuple[Floats, Floats]]:
         """Hubs and shaft of a joint on one axis; returns the shaft and the middles of both hubs."""
@@ -282,20 +290,20 @@ class _Carried(NamedTuple):
         ]
         axis, side_way = frames[0][:3, 2], frames[0][:3, 0]
         # measured along the axis from the carrier's foot
-        low, high = self.way * self.pose.travel[self.i][:: self.way]
+        low, high = self.direction * self.pose.travel[self.i][:: self.direction]
         shift = (seat.shift + seat.side * SPACING / 2) * unit
         stand = (low + shift - SPACING * unit) if seat.side > 0 else (high + shift + SPACING * unit)
         carrier = bases[0] + stand * axis
         sleeve = bases[1] + shift * frames[1][:3, 2]
-        way = seat.side * axis
+        direction = seat.side * axis
         travels = high - low > 1e-9 * unit
         square = shape_of(self.pose.linkage.joints[self.i].row).square
         near, far = self.builds
-        near.hub(carrier, -way, True, side_way if square else None)
+        near.hub(carrier, -direction, True, side_way if square else None)
         far.hub(sleeve, seat.side * frames[1][:3, 2], not travels, frames[1][:3, 0] if square else None)
         reach = (0.5 + (STANDS_OUT if travels else -0.04)) * unit
-        last = bases[0] + ((high if seat.side > 0 else low) + shift) * axis + reach * way
-        first = carrier - 0.46 * unit * way
+        last = bases[0] + ((high if seat.side > 0 else low) + shift) * axis + reach * direction
+        first = carrier - 0.46 * unit * direction
         square_bar = Bar(first, last, 1.7 * SHAFT * unit, side_way)
         return [square_bar if square else Rod(first, last, SHAFT * unit)], (carrier, sleeve)
 
@@ -305,26 +313,26 @@ class _Carried(NamedTuple):
         joint, own = pose.linkage.joints[self.i], pose.linkage.places[self.i]
         q = np.vstack([pose.circuit.q, pose.q])[:, own]
         moves = joint.motion(q[~np.isnan(q).any(axis=1)])
-        places = (moves if self.way > 0 else np.linalg.inv(moves))[:, :2, 3]
+        places = (moves if self.direction > 0 else np.linalg.inv(moves))[:, :2, 3]
         middle = (places.min(axis=0) + places.max(axis=0)) / 2
         radius = np.linalg.norm(places - middle, axis=1).max() + 1.2 * HUB * unit
         foot, slipper = self.feet
-        way = seat.side * frame[:3, 2]
+        direction = seat.side * frame[:3, 2]
         top = foot + frame[:3, :2] @ middle + seat.shift * unit * frame[:3, 2]
         up = unit * seat.side * other[:3, 2]
         face = slipper + seat.shift * unit * other[:3, 2] + GAP * up
         near, far = self.builds
         if joint.row.has_plate:
-            near.add.append(Rod(top - DISC * unit * way, top, float(radius)))
+            near.add.append(Rod(top - DISC * unit * direction, top, float(radius)))
         else:
-            under = top - HUB * unit * way
+            under = top - HUB * unit * direction
             near.add.append(
                 Bar(
                     under - radius * frame[:3, 1], under + radius * frame[:3, 1], 2 * HUB * unit, frame[:3, 0]
                 )
             )
         far.add.append(Rod(face, face + SLIPPER * up, HUB * unit))
-        return [], (top - 0.5 * DISC * unit * way, face + 0.5 * SLIPPER * up)
+        return [], (top - 0.5 * DISC * unit * direction, face + 0.5 * SLIPPER * up)
 
 
 def _universal(
@@ -335,10 +343,10 @@ def _universal(
     near, far = pose.near[i], pose.far[i]
     centre, axes = near[:3, 3], (near[:3, 2], far[:3, 2])
     for build, frame, side in ((before, near, seat.side), (after, far, seat.other)):
-        way = side * frame[:3, 2]
-        middle = frame[:3, 3] + (REACH + seat.shift) * unit * way
-        build.hub(middle, way, True, None)
-        pins.append(Rod(centre, middle + 0.46 * unit * way, SHAFT * unit))
+        direction = side * frame[:3, 2]
+        middle = frame[:3, 3] + (REACH + seat.shift) * unit * direction
+        build.hub(middle, direction, True, None)
+        pins.append(Rod(centre, middle + 0.46 * unit * direction, SHAFT * unit))
         middles.append(middle)
     square = unit_vector(np.cross(*axes))
     frame = matrix(np.stack([square, np.cross(axes[0], square), axes[0]], axis=1), centre)

@@ -65,14 +65,14 @@ class StudioServer:
 
     def _connected(self, client: viser.ClientHandle) -> None:
         heed_values_that_fit(client)
-        tab = Tab(client, *self._begun())
+        tab = Tab(client, *self._started())
         with self._lock:
             self._tabs[client.client_id] = tab
         tab.start()
         if client.client_id not in self._server.get_clients():  # left while all this was made
             self._left(client)
 
-    def _begun(self) -> tuple[Session, Shelf | None]:
+    def _started(self) -> tuple[Session, Shelf | None]:
         """What a tab begins with; a file that was saved, or changed, since is read anew if it can be."""
         shelf = None if self._folder is None else Shelf(self._folder)
         if shelf is not None and is_file(self._source):

@@ -25,7 +25,7 @@ PROGRAMS, FEWER = 200, 80
 STALLED, FALLS, GAINED = 12, 0.98, 1e-8
 
 
-def programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
+def programmed(start: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
     """The unknowns after sequential quadratic programs, which hold the slacks: better ones, or the same.
 
     Where fewer heights are equal to the greatest than there are unknowns, linear programs go from side to
@@ -33,16 +33,16 @@ def programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
     """
     from scipy.optimize import minimize
 
-    # what was begun stays at its poses, which may not be found again from others
-    minimax = begun.minimax
-    problem = TaskProblem(begun.model, begun.seed(z), minimax=minimax)
+    # the start stays at its poses, which may not be found again from others
+    minimax = start.minimax
+    problem = TaskProblem(start.model, start.seed(z), minimax=minimax)
     x = problem.within(problem.start)
     if minimax:
         x = np.append(x, 1.0)
-    now, unit = begun.at(z), cost_of(begun, z)
+    now, unit = start.at(z), cost_of(start, z)
     first = conditions(problem, x, unit)
     if now is None or first is None:
-        return begun, z
+        return start, z
     last = first
     ends = list(zip(problem.low, problem.high, strict=True))
     # bounds are no slacks here; of squares the whole sum counts
@@ -99,7 +99,7 @@ def programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
     end = course.z
     then = problem.at(end)
     better = then is not None and (lack_of(then), cost_of(problem, end)) < (lack_of(now), unit)
-    return (problem, end) if better else (begun, z)
+    return (problem, end) if better else (start, z)
 
 
 class _StopsError(Exception):

@@ -122,7 +122,7 @@ def solved(
     model.effort.begin(effort.WHOLE if whole else effort.LOOK)
     # where measures must hold the programs know better from the first step on
     alone = whole and model.task.goal == "minimax" and bool(model.figure_musts) and model.searched.measured
-    result = _begun(model, seed) if alone else _least_squares(model, seed, evaluations, FIRST[0])
+    result = _started(model, seed) if alone else _least_squares(model, seed, evaluations, FIRST[0])
     if whole and not alone and (result is None or (result.stuck and not _ended(result.problem, result.z))):
         # a first step too far may have led into a corner where the linkage hardly closes
         other = _least_squares(model, seed, evaluations, FIRST[1])
@@ -212,7 +212,7 @@ class _Squares:
         return self.problem.size(self.z)
 
 
-def _begun(model: TaskModel, seed: TaskSeed) -> _Squares | None:
+def _started(model: TaskModel, seed: TaskSeed) -> _Squares | None:
     """A problem at its seed as it is; `None` where the linkage does not close."""
     problem = TaskProblem(model, seed)
     z = problem.within(problem.start)

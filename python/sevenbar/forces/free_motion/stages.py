@@ -186,10 +186,10 @@ def staged(
             raise RequestError(
                 f"duration: the motion meets its stops more than {MOST_IMPACTS} times; give a shorter one"
             )
-        stop, way = walls.at(place, course)
+        stop, direction = walls.at(place, course)
         if stop:
-            place = course.length if way > 0 else 0.0
-        if stop and way * speed > 0:
+            place = course.length if direction > 0 else 0.0
+        if stop and direction * speed > 0:
             energy = float(course.at(np.array([place]))[0][0]) * speed**2 / 2
             greatest = max(greatest, energy)
             met.append(StopMet(time, place, stop, speed))
@@ -198,13 +198,13 @@ def staged(
             lost += energy - after
             speed = -walls.restitution * speed if after else 0.0
         if stop and speed == 0:
-            until = _held_until(course, place, way, time, motor)
+            until = _held_until(course, place, direction, time, motor)
             if until > time:
                 add(Held(place), until - time)
                 time, kind = until, "on its stop" if until == math.inf else kind
                 continue
         # steps begin within
-        here = place - 2 * way * PUSH * course.length if motor is not None else place
+        here = place - 2 * direction * PUSH * course.length if motor is not None else place
         flown = fly(here, speed, time, duration - time)
         add(flown.flight, flown.time)
         if flown.time == math.inf:
@@ -229,11 +229,13 @@ def staged(
     )
 
 
-def _held_until(course: EnergyCourse, place: float, way: int, time: float, motor: Motor | None) -> float:
-    """Until when [s] a stop on the `way` holds what rests at it; now where it is left at once."""
+def _held_until(
+    course: EnergyCourse, place: float, direction: int, time: float, motor: Motor | None
+) -> float:
+    """Until when [s] a stop on the `direction` holds what rests at it; now where it is left at once."""
 
     def pressed(at: Floats) -> Floats:
-        return way * force_at(course, place, at, motor)
+        return direction * force_at(course, place, at, motor)
 
     if pressed(np.array([time]))[0] <= BALANCED * course.steepest:
         return time
@@ -254,25 +256,25 @@ def _held_until(course: EnergyCourse, place: float, way: int, time: float, motor
 def elastic(course: EnergyCourse, walls: Walls, start: tuple[float, float]) -> Stages | None:
     """The motion between stops that take no energy, to and fro for ever; `None` where it is another one."""
     place, speed = start
-    stop, way = walls.at(place, course)
+    stop, direction = walls.at(place, course)
     if stop:
-        place = course.length if way > 0 else 0.0
+        place = course.length if direction > 0 else 0.0
         # thrown back at once
-        speed = -way * abs(speed)
-        if not speed and _held_until(course, place, way, 0.0, None):
+        speed = -direction * abs(speed)
+        if not speed and _held_until(course, place, direction, 0.0, None):
             return None
     result = swing_between(course, place, speed)
     if result is None:
         return None
     flight, turns = result
     met = []
-    for way, end, turned in zip((-1, 1), flight.turning, turns, strict=True):
+    for direction, end, turned in zip((-1, 1), flight.turning, turns, strict=True):
         stop = walls.at(end, course)[0]
         if not turned and not stop:
             # the circuit ends there
             return None
         if not turned:
-            leg = next(leg for leg in flight.legs if leg.way == way)
+            leg = next(leg for leg in flight.legs if leg.way == direction)
             met.append(StopMet(leg.end, end, stop, float(leg.at(np.array([leg.end]))[1][0])))
     if not met:
         return None

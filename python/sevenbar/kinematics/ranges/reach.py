@@ -27,7 +27,7 @@ class Reach:
     where the circuit itself ends.
     """
 
-    way: TimedWalk
+    walk: TimedWalk
     low: float
     high: float
     first_stop: str
@@ -36,7 +36,7 @@ class Reach:
     @property
     def _cycle(self) -> float:
         """Rows of a whole cycle of a closed circuit."""
-        return float(len(self.way.path.rows) - 1)
+        return float(len(self.walk.path.rows) - 1)
 
     def holds(self, row: float) -> bool:
         """Whether a row of the path lies on the stretch, its ends with it."""
@@ -44,7 +44,7 @@ class Reach:
 
     def unrolled(self, row: float) -> float:
         """A row counted on from the stretch's first, over the end of a closed circuit."""
-        if not self.way.circuit.closed or row >= self.low - SAME_ROW:
+        if not self.walk.circuit.closed or row >= self.low - SAME_ROW:
             return row
         return row + self._cycle
 
@@ -59,7 +59,7 @@ class Reach:
     def time_at(self, row: float) -> float:
         """The time [s] of a row as `unrolled` counts it."""
         over = row > self._cycle
-        return self.way.time_at(self.rolled(row)) + (self.way.period if over else 0.0)
+        return self.walk.time_at(self.rolled(row)) + (self.walk.period if over else 0.0)
 
     @cached_property
     def times(self) -> tuple[float, float]:
@@ -71,7 +71,7 @@ class Reach:
         first, last = self.times
         if not first < time < last:
             return self.rolled(self.low if time <= first else self.high)
-        return self.way.row_at(time)
+        return self.walk.row_at(time)
 
     def forth_and_back(self, pictures: int) -> tuple[Floats, Floats]:
         """The rows of so many pictures, evenly in time, from stop to stop and back; and their times [s]."""
@@ -89,39 +89,39 @@ class Reach:
         return self.first_stop if abs(place - self.low) <= SAME_ROW else ""
 
 
-def within(way: TimedWalk) -> Flags:
+def within(walk: TimedWalk) -> Flags:
     """Whether the rows of a walk are within the stops of its linkage (n,); where unknown they are."""
     try:
-        return np.asarray(way.circuit.allowed.within[way.path.rows])
+        return np.asarray(walk.circuit.allowed.within[walk.path.rows])
     except NotFollowedError:
-        return np.ones(len(way.path.rows), dtype=bool)
+        return np.ones(len(walk.path.rows), dtype=bool)
 
 
-def stopped_by(way: TimedWalk, row: float) -> str:
+def stopped_by(walk: TimedWalk, row: float) -> str:
     """Which stops forbid the row of the circuit nearest to a row of a walk; empty where none does."""
     try:
-        return str(way.circuit.allowed.stopped_by[way.path.rows[round(row)]])
+        return str(walk.circuit.allowed.stopped_by[walk.path.rows[round(row)]])
     except NotFollowedError:
         return ""
 
 
-def reaches(way: TimedWalk) -> tuple[Reach, ...]:
+def reaches(walk: TimedWalk) -> tuple[Reach, ...]:
     """The stretches of a walk within all stops, none where nothing, or everything, is stopped."""
-    if not way.linkage.stops.stops or (free := within(way)).all() or not free.any():
+    if not walk.linkage.stops.stops or (free := within(walk)).all() or not free.any():
         return ()
-    allowed, last = way.circuit.allowed, len(free) - 1
+    allowed, last = walk.circuit.allowed, len(free) - 1
     ends = [
         (row, stop)
         for span in allowed.spans
         for value, stop in ((span.start, span.first_stop), (span.end, span.last_stop))
-        for row in (way.rows_at(value) if stop else ())
+        for row in (walk.rows_at(value) if stop else ())
     ]
 
     def end(inside: int, outside: int) -> tuple[float, str]:
         """Where the path leaves the stops between two neighbouring rows, and by which stop."""
         if not 0 <= outside <= last:
             return float(inside), ""
-        names = str(allowed.stopped_by[way.path.rows[outside]])
+        names = str(allowed.stopped_by[walk.path.rows[outside]])
         low = min(inside, outside)
         # several stops may end it at one place; one of them may forbid more rows than the others
         forbidding = set(names.split(", "))
@@ -133,40 +133,40 @@ def reaches(way: TimedWalk) -> tuple[Reach, ...]:
         return next(met, (float(inside), names))
 
     result = []
-    for first, past in _runs(free, closed=way.circuit.closed):
+    for first, past in _runs(free, closed=walk.circuit.closed):
         # a run over the end of a closed circuit is counted on from there
         over = last if past - 1 > last else 0
         low, first_stop = end(first, first - 1)
         high, last_stop = end(past - 1 - over, past - over)
-        result.append(Reach(way, low, high + over, first_stop, last_stop))
+        result.append(Reach(walk, low, high + over, first_stop, last_stop))
     return tuple(result)
 
 
-def used_reach(way: TimedWalk) -> Reach | None:
+def used_reach(walk: TimedWalk) -> Reach | None:
     """The stretch on which the linkage is used: of the drawn pose, else of the first row, else the first.
 
     `None` where no stop ends the walk. The same rule as `used_stretch` of its path.
     """
-    result = reaches(way)
-    for home in (drawn_row(way), 0.0):
+    result = reaches(walk)
+    for home in (drawn_row(walk), 0.0):
         for one in result:
             if home is not None and one.holds(home):
                 return one
     return result[0] if result else None
 
 
-def drawn_row(way: TimedWalk) -> float | None:
+def drawn_row(walk: TimedWalk) -> float | None:
     """The row of a walk in the drawn pose; `None` where it has none."""
-    if way.linkage.form != "drawn":
+    if walk.linkage.form != "drawn":
         return None
-    circuit, turning = way.circuit, way.linkage.turning
+    circuit, turning = walk.circuit, walk.linkage.turning
     scales = np.where(turning, 1.0, circuit.size)
     best, nearest = None, DRAWN_NEAR
-    pose = way.linkage.drawn_pose
-    for row in way.rows_at(float(pose[way.linkage.columns.index(way.motion.input)])):
+    pose = walk.linkage.drawn_pose
+    for row in walk.rows_at(float(pose[walk.linkage.columns.index(walk.motion.input)])):
         # a pose between two rows is near the line between them
-        low = min(int(row), len(way.path.rows) - 2)
-        a, b = circuit.q[way.path.rows[low]], circuit.q[way.path.rows[low + 1]]
+        low = min(int(row), len(walk.path.rows) - 2)
+        a, b = circuit.q[walk.path.rows[low]], circuit.q[walk.path.rows[low + 1]]
         step = b - a
         step[turning] -= math.tau * np.round(step[turning] / math.tau)
         off = a + (row - low) * step - pose

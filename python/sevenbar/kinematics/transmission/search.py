@@ -123,16 +123,16 @@ class _Search:
         wanted = math.ceil(ON_A_PASS * math.tau / least)
         return self.rows(min(max(SAMPLES, wanted), MANY))
 
-    def brackets(self, way: Walk, sizes: Floats) -> list[tuple[int, _Stretch, float, float]]:
+    def brackets(self, walked: Walk, sizes: Floats) -> list[tuple[int, _Stretch, float, float]]:
         """About each row of a walk where a size (n,) is lower or higher than its neighbours, and the ends."""
         result: list[tuple[int, _Stretch, float, float]] = []
-        for number, part in enumerate(way.passes):
-            known = np.isfinite(way.input[part])
+        for number, part in enumerate(walked.passes):
+            known = np.isfinite(walked.input[part])
             # a row without a solution has no place
-            x, s = way.input[part][known], sizes[part][known]
+            x, s = walked.input[part][known], sizes[part][known]
             if len(x) < 3:
                 continue
-            stretch = _Stretch.of(x, turns_back=len(way.passes) > 1)
+            stretch = _Stretch.of(x, turns_back=len(walked.passes) > 1)
             if stretch.round and len(x) > 3:
                 # once more over the start, which may be an extreme itself
                 x, s = np.append(x, x[-1] + x[1] - x[0]), np.append(s, s[1])
@@ -202,8 +202,8 @@ class _AngleSearch(_Search):
         limits = rows.status == "dead-centre"
         on_rows = limits | ~(made.share < NEAR_LIMIT)
         result = list(zip(angle[on_rows], rows.input[on_rows], strict=True))
-        way = walk(rows)
-        result += self.between(way, np.sin(angle)[way.rows], rows.input[rows.status == "change-point"])
+        walked = walk(rows)
+        result += self.between(walked, np.sin(angle)[walked.rows], rows.input[rows.status == "change-point"])
         dead = [centre.input for centre in self.like.dead_centres if centre.kind == "input"]
         # of a circuit of which no row is there, all that is known is that it is a dead centre
         exact = [
@@ -226,15 +226,15 @@ class _AngleSearch(_Search):
             lowest_at, highest_at = (start + (x - start) % whole for x in (lowest_at, highest_at))
         return Extremes(lowest, lowest_at, highest, highest_at)
 
-    def between(self, way: Walk, sine: Floats, touched: Floats) -> list[tuple[float, float]]:
+    def between(self, walked: Walk, sine: Floats, touched: Floats) -> list[tuple[float, float]]:
         """Angles and inputs where the sine (n,) along a walk is stationary, passes zero, or ends `touched`.
 
         Those are the inputs of change points.
         """
         places: list[tuple[int, float]] = []
         zeros: list[tuple[float, float]] = []
-        left = self.brackets(way, sine)
-        near = SAME_PLACE * float(np.ptp(way.input[np.isfinite(way.input)]))
+        left = self.brackets(walked, sine)
+        near = SAME_PLACE * float(np.ptp(walked.input[np.isfinite(walked.input)]))
         for _ in range(ROUNDS):
             if not left:
                 break
@@ -317,8 +317,8 @@ class _VelocitySearch(_Search):
         if not dead.size or not np.isfinite(velocity[dead]).all():
             return None
         result = list(zip(velocity, rows.input, strict=True))
-        way = walk(rows)
-        left = self.brackets(way, velocity[way.rows])
+        walked = walk(rows)
+        left = self.brackets(walked, velocity[walked.rows])
         if left:
             passes = [number for number, *_ in left]
             inputs = [stretch.input(nodes_between(a, b)) for _, stretch, a, b in left]

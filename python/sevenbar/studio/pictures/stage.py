@@ -257,14 +257,16 @@ class Stage:
             labels.put([], np.empty((0, 3)))
             return
         origins, vectors, names, texts = zip(*rows, strict=True)
-        start, way = self.in_scene(np.array(origins, float)), np.array(vectors, float) * self.scale
-        length = np.linalg.norm(way, axis=1, keepdims=True)
-        neck = start + way * (1 - np.minimum(HEAD_LENGTH / np.where(length > 0, length, 1.0), HEAD_MOST))
+        start, direction = self.in_scene(np.array(origins, float)), np.array(vectors, float) * self.scale
+        length = np.linalg.norm(direction, axis=1, keepdims=True)
+        neck = start + direction * (
+            1 - np.minimum(HEAD_LENGTH / np.where(length > 0, length, 1.0), HEAD_MOST)
+        )
         colours = self._shade(np.array([rgb(name) for name in names]))
         shafts = stretched(start, neck, stout * SHAFT)
-        heads = stretched(neck, start + way, stout * HEAD)
+        heads = stretched(neck, start + direction, stout * HEAD)
         arrows.put({"cylinder": shafts, "cone": heads}, {"cylinder": colours, "cone": colours})
-        labels.put(list(texts), start + way + ABOVE / 2)
+        labels.put(list(texts), start + direction + ABOVE / 2)
 
     def marks(self, points: Floats, labels: Sequence[str]) -> None:
         """Little marks at points (n, 3) [length], with a text each; none clears them."""
@@ -353,11 +355,11 @@ class Stage:
         if not self._axes_on or self._plan is None or self._places is None:
             return
         start, end = np.moveaxis(self.in_scene(self._plan.known(self._places)[self._plan.axes]), 1, 0)
-        way = end - start
-        length = np.linalg.norm(way, axis=1, keepdims=True)
-        beyond = self._size * OVERHANG * self.scale * way / np.where(length > 0, length, 1.0)
-        start, way = start - beyond, way + 2 * beyond
-        dashes = start[:, None, None] + DASHES[..., None] * way[:, None, None]
+        direction = end - start
+        length = np.linalg.norm(direction, axis=1, keepdims=True)
+        beyond = self._size * OVERHANG * self.scale * direction / np.where(length > 0, length, 1.0)
+        start, direction = start - beyond, direction + 2 * beyond
+        dashes = start[:, None, None] + DASHES[..., None] * direction[:, None, None]
         self._draw_lines("axes", dashes.reshape(-1, 2, 3), AXIS_COLOUR, AXIS_LINE)
 
     def _draw_lines(self, name: str, steps: Floats, colours: Colours, thickness: float) -> None:

@@ -85,7 +85,7 @@ def swing_generation(
     check_count(count)
     most = max(FITTED_LEAST, FITTED_EACH * count)
     search: DesignSearch[Candidate] = DesignSearch(1 + most, progress, count=count, mirrored=True)
-    started = _begun(want, limits, most, seed)
+    started = _started(want, limits, most, seed)
     search.step()
     ends: list[Floats] = []
 
@@ -130,7 +130,7 @@ def _task(want: SwingWish, limits: Limits, held: float | None) -> SurveyTask:
     return SurveyTask(want, bounds, transmission_lowest=0.0, ratio=ratio ** (1 - MARGIN), rank="transmission")
 
 
-def _begun(want: SwingWish, limits: Limits, most: int, seed: int) -> list[tuple[Floats, int]]:
+def _started(want: SwingWish, limits: Limits, most: int, seed: int) -> list[tuple[Floats, int]]:
     """The crank-rockers of a survey that are nearest to the wish, each of another part of the space.
 
     Each as the numbers (8,) of `skew_closure`, the input's start at its low end, and the branch.

@@ -114,19 +114,19 @@ class LineWanted(Wanted):
 
     def residuals(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         p, by = here.points[:, self.numbers[0]], here.points_by[:, self.numbers[0]]
-        a, way = u[:3], u[3:] - u[:3]
-        square = float(way @ way)
+        a, direction = u[:3], u[3:] - u[:3]
+        square = float(direction @ direction)
         off = p - a
-        t = off @ way / square
-        across = np.eye(3) - np.outer(way, way) / square
-        apart = (off - t[:, None] * way).ravel()
+        t = off @ direction / square
+        across = np.eye(3) - np.outer(direction, direction) / square
+        apart = (off - t[:, None] * direction).ravel()
         if not by.shape[-1]:
             return apart / self.unit, np.empty((len(apart), 0))
         slopes = np.einsum("ij,njk->nik", across, by)
-        t_a = (-way - off + 2 * t[:, None] * way) / square
-        t_b = (off - 2 * t[:, None] * way) / square
-        slopes[:, :, -6:-3] += (t[:, None, None] - 1) * np.eye(3) - np.einsum("i,nj->nij", way, t_a)
-        slopes[:, :, -3:] += -t[:, None, None] * np.eye(3) - np.einsum("i,nj->nij", way, t_b)
+        t_a = (-direction - off + 2 * t[:, None] * direction) / square
+        t_b = (off - 2 * t[:, None] * direction) / square
+        slopes[:, :, -6:-3] += (t[:, None, None] - 1) * np.eye(3) - np.einsum("i,nj->nij", direction, t_a)
+        slopes[:, :, -3:] += -t[:, None, None] * np.eye(3) - np.einsum("i,nj->nij", direction, t_b)
         return apart / self.unit, slopes.reshape(3 * len(p), -1) / self.unit
 
     def heights(self, residuals: Floats, by: Floats) -> tuple[Floats, Floats]:
@@ -150,16 +150,16 @@ class LineWanted(Wanted):
         for rows in one.begins(self.stations.fixed, free=False)[1][:1]:
             p = curve[rows]
             middle = p.mean(axis=0)
-            way = np.linalg.svd(p - middle)[2][0]
-            along = (p - middle) @ way
-            error = float(((p - middle - along[:, None] * way) ** 2).sum() / p.size / self.unit**2)
-            u = np.concatenate([middle + along.min() * way, middle + along.max() * way])
+            direction = np.linalg.svd(p - middle)[2][0]
+            along = (p - middle) @ direction
+            error = float(((p - middle - along[:, None] * direction) ** 2).sum() / p.size / self.unit**2)
+            u = np.concatenate([middle + along.min() * direction, middle + along.max() * direction])
             result.append(TaskStart(u, rows, error, placing))
         return result
 
     def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
-        way = (u[3:] - u[:3]) / np.linalg.norm(u[3:] - u[:3])
-        off = np.cross(circuit.point(self._name).position[rows] - u[:3], way)
+        direction = (u[3:] - u[:3]) / np.linalg.norm(u[3:] - u[:3])
+        off = np.cross(circuit.point(self._name).position[rows] - u[:3], direction)
         return np.asarray(np.linalg.norm(off, axis=1))
 
     def _taken(self, used: Used, q: Floats) -> Floats:
