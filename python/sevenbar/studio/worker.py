@@ -69,7 +69,7 @@ class Worker(threading.Thread):
                 return
             now, played = time.monotonic(), self.playing
             for key, one in asked:
-                if self._started(key, one):
+                if self._takes(key, one):
                     self._guarded(one[1])
             # the time before a motion plays is none of its own
             if played and self.playing:
@@ -88,7 +88,7 @@ class Worker(threading.Thread):
                 if not self._ended:
                     self._fault()
 
-    def _started(self, key: Hashable, one: _Asked) -> bool:
+    def _takes(self, key: Hashable, one: _Asked) -> bool:
         """Takes an action out of what is asked for, unless another has taken its place."""
         with self._wake:
             if self._asked.get(key) is not one:
