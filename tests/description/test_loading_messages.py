@@ -68,7 +68,10 @@ KNOWN = (
         ),
         (
             BODY + "mass = 2\ncentre = [1, 2, 3]\ninertia = [1, 2, 4, 0, 0, 0]\n",
-            ["body[1].inertia: principal moments 1, 2, 4: no body has one greater than the sum of the others"],
+            [
+                "body[1].inertia: principal moments 1, 2, 4: no body has one greater than the sum of the others; "
+                "give the entries of the tensor about the centre"
+            ],
         ),
         (
             BODY + "mass = 2\ncentre = [1, 2, 3]\ninertia = [1, 1, 1, 2, 0, 0]\n",

@@ -92,3 +92,15 @@ def test_one_number_is_refused_of_a_linkage_in_space_and_about_another_axis() ->
 def test_what_is_no_inertia_is_refused_with_both_forms(inertia: str, message: str) -> None:
     with pytest.raises(DescriptionError, match=message):
         sb.loads(FOUR_BAR.format(inertia=inertia))
+
+
+@pytest.mark.parametrize(
+    ("inertia", "message"),
+    [
+        ([[1, 2], [3]], r"inertia: \[\[1, 2\], \[3\]\] is not an inertia; give 3 x 3 numbers"),
+        ([[1, 0.1, 0], [0, 1, 0], [0, 0, 1]], "not symmetric; give each product of inertia twice"),
+    ],
+)
+def test_what_is_no_tensor_is_refused_in_python(inertia: list[list[float]], message: str) -> None:
+    with pytest.raises(RequestError, match=message):
+        sb.Body(1.0, centre=(0, 0, 0), inertia=inertia)

@@ -143,6 +143,16 @@ def test_python_files_and_what_is_written_of_a_linkage_agree():
     assert sum(body.mass for body in linkage.motion(12)[0].forces().bodies.values()) > 0.2
 
 
+@pytest.mark.parametrize("size", [5e-324, 1e-200, 1.0, 1e200])
+def test_a_direction_of_a_box_may_be_of_any_size(size):
+    given = sb.Body(1.0, (0, 0, 0), solid="box", size=(1, 2, 3), along=(0, size, size), side=(size, size, 0))
+    tensor = shaped(given, 1.0, (np.zeros(3), np.zeros(3))).tensor
+    along, across = np.array([0, 1, 1]) / np.sqrt(2), np.array([1, 0.5, -0.5]) / np.sqrt(1.5)
+    # moments of a box: m (b^2 + c^2) / 12 about the edge a
+    assert along @ tensor @ along == pytest.approx((4 + 9) / 12, rel=1e-12)
+    assert across @ tensor @ across == pytest.approx((1 + 9) / 12, rel=1e-12)
+
+
 def test_a_cube_of_water_weighs_a_kilogram_whatever_the_unit():
     for unit, edge in (("mm", 100.0), ("cm", 10.0), ("m", 0.1), ("in", 100 / 25.4)):
         body = in_file(
@@ -157,7 +167,10 @@ def test_a_cube_of_water_weighs_a_kilogram_whatever_the_unit():
     [
         ({"diameter": 3}, "mass: 0.0 is not a mass; give kilograms > 0, or a density"),
         ({"mass": 1}, "diameter: is missing; give that of the cylinder"),
-        ({"mass": 1, "diameter": 3, "bore": 3}, "bore: 3.0 is not below the diameter 3"),
+        (
+            {"mass": 1, "diameter": 3, "bore": 3},
+            "bore: 3.0 is not below the diameter 3; give less, or leave it out",
+        ),
         ({"mass": 1, "diameter": -3}, "diameter: -3 is not a length; give a number > 0"),
         ({"mass": 1, "diameter": 3, "density": 2}, "density: mass is given; leave one of them out"),
         (
@@ -196,6 +209,10 @@ def test_a_cube_of_water_weighs_a_kilogram_whatever_the_unit():
                 "side": (2, 0, 0),
             },
             "side: lies along the first edge; give a direction across it",
+        ),
+        (
+            {"solid": "box", "mass": 1, "size": (1, 2, 3), "centre": (0, 0, 0), "side": (0, 0, 0)},
+            "side: (0, 0, 0) has no direction; give three numbers, not all 0",
         ),
     ],
 )

@@ -120,7 +120,10 @@ class Body:
                 if getattr(self, key) is not None:
                     object.__setattr__(self, key, positive_length(key, getattr(self, key)))
             if self.bore is not None and self.bore >= self.diameter:
-                raise RequestError(f"bore: {shown(self.bore)} is not below the diameter {self.diameter:g}")
+                raise RequestError(
+                    f"bore: {shown(self.bore)} is not below the diameter {self.diameter:g}; "
+                    "give less, or leave it out of a solid bar"
+                )
             if self.ends is not None:
                 if not isinstance(self.ends, (tuple, list, np.ndarray)) or len(self.ends) != 2:
                     raise RequestError("ends: give two places, the middles of the cylinder's ends")
@@ -209,19 +212,26 @@ def density_of(value: object) -> float:
 
 def _axes_of_box(body: Body) -> Floats:
     """The directions (3, 3) of a box's edges, rows; `RequestError` for two that span no plane."""
-    first = np.array(body.along if body.along is not None else (1.0, 0.0, 0.0))
-    if not first.any():
-        raise RequestError("along: (0, 0, 0) has no direction; give three numbers, not all 0")
-    first = first / np.linalg.norm(first)
+    first = _unit_vector("along", (1.0, 0.0, 0.0) if body.along is None else body.along)
     # y of the points, or where the first edge lies along it, z
-    otherwise = np.eye(3)[1 if abs(first[1]) < ALONG_Y else 2]
-    second = otherwise if body.side is None else np.array(body.side)
-    size = float(np.linalg.norm(second))
+    otherwise = (0.0, 1.0, 0.0) if abs(first[1]) < ALONG_Y else (0.0, 0.0, 1.0)
+    second = _unit_vector("side", otherwise if body.side is None else body.side)
     second = second - (second @ first) * first
-    if float(np.linalg.norm(second)) <= ONE_LINE * size:
+    sine = float(np.linalg.norm(second))
+    if sine <= ONE_LINE:
         raise RequestError("side: lies along the first edge; give a direction across it")
-    second = second / np.linalg.norm(second)
+    second = second / sine
     return np.stack([first, second, np.cross(first, second)])
+
+
+def _unit_vector(name: str, direction: Three) -> Floats:
+    """The unit vector (3,) of a direction of any size, or `RequestError`."""
+    vector = np.array(direction)
+    if not vector.any():
+        raise RequestError(f"{name}: (0, 0, 0) has no direction; give three numbers, not all 0")
+    # squares of very small and very large numbers are no longer finite numbers > 0
+    vector = vector / np.abs(vector).max()
+    return np.asarray(vector / np.linalg.norm(vector))
 
 
 def is_alone(tensor: Floats) -> bool:
@@ -240,7 +250,10 @@ def flaw_of_inertia(tensor: Floats) -> str:
     if principal[0] < -slack:
         return f"principal moments {listed}: one is negative; give the entries of the tensor about the centre"
     if principal[0] + principal[1] < principal[2] - slack:
-        return f"principal moments {listed}: no body has one greater than the sum of the others"
+        return (
+            f"principal moments {listed}: no body has one greater than the sum of the others; "
+            "give the entries of the tensor about the centre"
+        )
     return ""
 
 
@@ -273,7 +286,11 @@ def flaw_alone(body: Body) -> str:
 
 def _inertia(values: npt.ArrayLike) -> float | Floats:
     """One number of a planar body, or the tensor (3, 3)."""
-    if np.ndim(values):
+    try:
+        is_one_number = np.ndim(values) == 0
+    except ValueError:  # rows of different lengths
+        is_one_number = False
+    if not is_one_number:
         return _tensor(values)
     moment = finite_number("inertia", values)
     if moment < 0:
@@ -289,7 +306,9 @@ def _tensor(values: npt.ArrayLike) -> Floats:
     if tensor.shape != (3, 3) or not np.isfinite(tensor).all():
         raise RequestError(f"inertia: {shown(values)} is not an inertia; give 3 x 3 numbers [kg m^2], or one")
     if np.abs(tensor - tensor.T).max() > ROUNDING * np.abs(tensor).max():
-        raise RequestError("inertia: the tensor is not symmetric")
+        raise RequestError(
+            "inertia: the tensor is not symmetric; give each product of inertia twice, as in Ixy = Iyx"
+        )
     flaw = flaw_of_inertia(tensor)
     if flaw:
         raise RequestError(f"inertia: {flaw}")
