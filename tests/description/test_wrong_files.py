@@ -48,3 +48,14 @@ def test_an_old_workbook_by_its_ending_is_refused_too(tmp_path):
     assert mistake("analyze", "dh.xls", cwd=tmp_path) == (
         "dh.xls: is a workbook of the old kind (.xls); save it as .xlsx or CSV"
     )
+
+
+def test_a_line_too_long_has_the_number_that_an_editor_shows():
+    with pytest.raises(DescriptionError, match=r"^f.toml: line 2 has 3000 characters"):
+        sb.loads("# a sign \u2028 that ends no line of TOML\n" + "x" * 3000, "f.toml")
+
+
+def test_a_folder_named_as_a_linkage_of_the_gallery_does_not_hide_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rssr").mkdir()
+    assert sb.load("rssr").kind == "RSSR"

@@ -24,7 +24,7 @@ from sevenbar.errors import (
 )
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.encodings import wide_text
-from sevenbar.text.paths import is_file
+from sevenbar.text.paths import is_file, is_folder, is_there
 
 if TYPE_CHECKING:
     from sevenbar.description.table_reader import TableDescription
@@ -119,7 +119,8 @@ def checked(raw: Mapping[str, Any], source: str) -> Linkage:
 
 def toml_tables(content: str, source: str) -> dict[str, Any]:
     """The tables of a TOML text; `DescriptionError` with the line where it is none."""
-    for number, line in enumerate(content.splitlines(), 1):
+    lines = content.split("\n")  # as TOML counts them: its texts may hold other ends of lines
+    for number, line in enumerate(lines, 1):
         if len(line) > LONGEST_LINE:
             raise DescriptionError.of_all(
                 source, f"line {number} has {len(line)} characters; a linkage file has at most {LONGEST_LINE}"
@@ -127,7 +128,7 @@ def toml_tables(content: str, source: str) -> dict[str, Any]:
     try:
         return tomllib.loads(content)
     except ValueError as error:  # not TOML, or an integer of thousands of digits
-        raise DescriptionError.of_all(source, _syntax_problem(error, content.split("\n"))) from None
+        raise DescriptionError.of_all(source, _syntax_problem(error, lines)) from None
     except RecursionError:
         raise DescriptionError.of_all(
             source, "nested too deep; a linkage file has tables of plain keys only"
@@ -207,8 +208,8 @@ def _syntax_problem(error: ValueError, lines: list[str]) -> str:
 
 
 def _in_gallery(source: str | os.PathLike[str]) -> bool:
-    """Whether a source is the name of a linkage of the gallery, and no file."""
-    return isinstance(source, str) and source in names() and not Path(source).exists()
+    """Whether a source is the name of a linkage of the gallery, and no file; a folder may have that name."""
+    return isinstance(source, str) and source in names() and (is_folder(source) or not is_there(source))
 
 
 def _read(path: Path) -> bytes:
