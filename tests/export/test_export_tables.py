@@ -152,6 +152,7 @@ def test_a_file_is_replaced_by_force_only(motion, tmp_path):
         (("glb", "m.glb", {"units": "si"}), "units: the units of glb are fixed; leave it out"),
         (("glb", "m.glb", {"circuit": 9}), "circuit: 9 is not a circuit of this motion; give 0"),
         (("glb", "m.glb", {"branch": 2}), "branch: 2 is not a pass of circuit 0; give 0 to 1"),
+        (("glb", "m.glb", {"at": float("nan")}), "at: nan is not a finite number"),
         (
             ("glb", "m.glb", {"at": 99.0}),
             "at: circuit 0 has no pose of definite joint values at slider = 99 in; give a value from ",

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, finite_number
 from sevenbar.drawing.skeleton import Skeleton, skeleton_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits.circuit import Circuit
@@ -64,7 +64,9 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
     """
     chosen = chosen_circuit(motion, circuit)
     linkage = motion.linkage
-    if at is None:
+    if at is not None:
+        at = finite_number("at", at)
+    else:
         ends = chosen.pass_range(branch or 0)
         at = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
     passes = sorted({int(b) for b in chosen.branch})
