@@ -111,6 +111,16 @@ def test_a_line_of_many_columns_is_no_row_of_a_table(tmp_path):
             read(path)
 
 
+@pytest.mark.parametrize("filling", [" ", "[", "_a", ",a/"])
+def test_a_name_as_long_as_a_line_is_read_at_once(tmp_path, filling):
+    """A search for the unit behind it would take minutes."""
+    path = tmp_path / "long.csv"
+    name = f"a{filling * (99_000 // len(filling))}b"
+    path.write_text(f'time [s],"{name}"\n0,1\n1,2\n')
+    with pytest.raises(TableError, match=r"long.csv"):
+        sb.load_law(path, sb.load("rssr"))
+
+
 def test_quotes_that_are_never_closed_are_a_mistake_of_the_table(tmp_path):
     path = tmp_path / "open.csv"
     path.write_text('length [mm],twist [deg]\n"' + ("6" * 70 + "\n") * 2_000)

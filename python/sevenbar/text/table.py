@@ -29,6 +29,10 @@ LARGEST_FILE = 200_000_000
 #: Longest line [characters]: a row has some dozen cells, so a longer line is no row of a table.
 LONGEST_LINE = 100_000
 
+#: Longest name of a column that may have a unit behind it [characters]: the search for one in a longer text,
+#: as of a damaged line, would take minutes.
+LONGEST_NAME = 1_000
+
 #: Most lines of a file: a million take ten seconds and a gigabyte, and a thousand are plenty.
 MOST_LINES = 1_000_000
 
@@ -221,6 +225,8 @@ def name_and_unit(text: str) -> tuple[str, str]:
     >>> name_and_unit("rocker_rad_s2")
     ('rocker', 'rad/s2')
     """
+    if len(text) > LONGEST_NAME:
+        return text.strip(), ""
     bracket = re.fullmatch(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*", text)
     # Craig's a_(i-1) and a [i-1] have an index there
     if bracket is not None and not INDEX_BEFORE.fullmatch(bracket[2]):
