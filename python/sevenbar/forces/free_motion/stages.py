@@ -274,7 +274,7 @@ def elastic(course: EnergyCourse, walls: Walls, start: tuple[float, float]) -> S
             # the circuit ends there
             return None
         if not turned:
-            leg = next(leg for leg in flight.legs if leg.way == direction)
+            leg = next(leg for leg in flight.legs if leg.direction == direction)
             met.append(StopMet(leg.end, end, stop, float(leg.at(np.array([leg.end]))[1][0])))
     if not met:
         return None
