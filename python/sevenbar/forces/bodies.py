@@ -83,13 +83,15 @@ class Body:
             raise RequestError(f"mass: {shown(self.mass)} is not a mass; give kilograms > 0{more}")
         object.__setattr__(self, "mass", mass)
         self._check_shape()
-        made = self.solid in ("rod", "drawn", "cylinder")
-        if (made and self.centre is not None) or ((self.is_shaped or made) and self.inertia is not None):
+        has_own_place = self.solid in ("rod", "drawn", "cylinder")
+        if (has_own_place and self.centre is not None) or (
+            (self.is_shaped or has_own_place) and self.inertia is not None
+        ):
             what = "inertia; leave it" if self.solid == "box" else "centre and inertia; leave both"
             raise RequestError(f"solid: {self.solid} has its own {what} out")
         if self.solid == "point" and self.inertia is not None:
             raise RequestError("solid: a point has no inertia about itself; leave inertia out")
-        if not made:
+        if not has_own_place:
             if self.centre is None:
                 raise RequestError("centre: is missing; give three lengths, or solid")
             object.__setattr__(self, "centre", place_of_link("centre", self.centre))
@@ -104,34 +106,40 @@ class Body:
 
     def _check_shape(self) -> None:
         """Refuses what does not belong to the solid, and shapes that are none."""
-        own = SHAPES.get(self.solid or "", ())
+        keys_of_solid = SHAPES.get(self.solid or "", ())
         for key in ("density", "diameter", "bore", "ends", "size", "along", "side"):
-            if getattr(self, key) is not None and key not in own:
+            if getattr(self, key) is not None and key not in keys_of_solid:
                 where = " or ".join(f"'{solid}'" for solid, keys in SHAPES.items() if key in keys)
                 raise RequestError(f"{key}: belongs to solid = {where}; leave it out, or give that solid")
-        if not own:
+        if not keys_of_solid:
             return
         if self.density is not None and self.mass:
             raise RequestError("density: mass is given; leave one of them out")
         if self.solid == "cylinder":
-            if self.diameter is None:
-                raise RequestError("diameter: is missing; give that of the cylinder")
-            for key in ("diameter", "bore"):
-                if getattr(self, key) is not None:
-                    object.__setattr__(self, key, positive_length(key, getattr(self, key)))
-            if self.bore is not None and self.bore >= self.diameter:
-                raise RequestError(
-                    f"bore: {shown(self.bore)} is not below the diameter {self.diameter:g}; "
-                    "give less, or leave it out of a solid bar"
-                )
-            if self.ends is not None:
-                if not isinstance(self.ends, (tuple, list, np.ndarray)) or len(self.ends) != 2:
-                    raise RequestError("ends: give two places, the middles of the cylinder's ends")
-                ends = place_of_link("ends[0]", self.ends[0]), place_of_link("ends[1]", self.ends[1])
-                if ends[0] == ends[1]:
-                    raise RequestError("ends: both are one place; give two")
-                object.__setattr__(self, "ends", ends)
-            return
+            self._check_cylinder()
+        else:
+            self._check_box()
+
+    def _check_cylinder(self) -> None:
+        if self.diameter is None:
+            raise RequestError("diameter: is missing; give that of the cylinder")
+        for key in ("diameter", "bore"):
+            if getattr(self, key) is not None:
+                object.__setattr__(self, key, positive_length(key, getattr(self, key)))
+        if self.bore is not None and self.bore >= self.diameter:
+            raise RequestError(
+                f"bore: {shown(self.bore)} is not below the diameter {self.diameter:g}; "
+                "give less, or leave it out of a solid bar"
+            )
+        if self.ends is not None:
+            if not isinstance(self.ends, (tuple, list, np.ndarray)) or len(self.ends) != 2:
+                raise RequestError("ends: give two places, the middles of the cylinder's ends")
+            ends = place_of_link("ends[0]", self.ends[0]), place_of_link("ends[1]", self.ends[1])
+            if ends[0] == ends[1]:
+                raise RequestError("ends: both are one place; give two")
+            object.__setattr__(self, "ends", ends)
+
+    def _check_box(self) -> None:
         if self.size is None:
             raise RequestError("size: is missing; give the three edges of the box")
         size = triple("size", self.size)
@@ -146,8 +154,8 @@ class Body:
     @property
     def tensor(self) -> Floats:
         """The inertia (3, 3) [kg m^2]; of one number, that about the axis of the zs alone."""
-        own = np.asarray(self.inertia, dtype=np.float64)
-        return own if own.ndim else float(own) * np.diag([0.0, 0.0, 1.0])
+        inertia = np.asarray(self.inertia, dtype=np.float64)
+        return inertia if inertia.ndim else float(inertia) * np.diag([0.0, 0.0, 1.0])
 
     @property
     def alone(self) -> tuple[float, Floats | None] | None:
@@ -155,11 +163,11 @@ class Body:
 
         `None` of a body with a whole inertia.
         """
-        own = np.asarray(self.inertia, dtype=np.float64)
-        if not own.ndim:
-            return float(own), None
-        moments, axes = np.linalg.eigh(own)
-        return (float(moments[2]), axes[:, 2]) if is_alone(own) else None
+        inertia = np.asarray(self.inertia, dtype=np.float64)
+        if not inertia.ndim:
+            return float(inertia), None
+        moments, axes = np.linalg.eigh(inertia)
+        return (float(moments[2]), axes[:, 2]) if is_alone(inertia) else None
 
     def about(self, normal: Floats) -> Body:
         """The same as a lamina: half of what is given alone about all axes square to it."""
@@ -176,16 +184,16 @@ def shaped(body: Body, metre: float, joints: tuple[Floats, Floats]) -> Body:
     """
     if body.solid == "box":
         assert body.size is not None
-        own = box(np.array(body.centre), np.array(body.size), _axes_of_box(body))
+        solid = box(np.array(body.centre), np.array(body.size), _axes_of_box(body))
     else:
         start, end = joints if body.ends is None else (np.array(place) for place in body.ends)
         if not np.any(end - start):
             raise RequestError("ends: is missing; both joints of the link are at one place, so give two")
         assert body.diameter is not None
-        own = cylinder(start, end, body.diameter, body.bore or 0.0)
+        solid = cylinder(start, end, body.diameter, body.bore or 0.0)
     # of very small and very large units, too
-    mass = body.mass or float(body.density or 0.0) * metre**3 * own.volume
-    return Body(mass, triple("centre", own.centre), mass * metre**2 * own.inertia)
+    mass = body.mass or float(body.density or 0.0) * metre**3 * solid.volume
+    return Body(mass, triple("centre", solid.centre), mass * metre**2 * solid.inertia)
 
 
 def density_of(value: object) -> float:
