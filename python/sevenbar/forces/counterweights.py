@@ -117,44 +117,45 @@ def counterweights(
     if most_mass is not None and radius is None:
         raise RequestError("radius: is missing; give the farthest that a counterweight may be from its pivot")
     weights = np.array([float(moment)] * 3 + [float(force)] * 3)
-    kept = weights > 0
-    weights = weights[kept]
-    part = np.full(len(shaking), 1 / len(shaking)) if shares is None else shares
-    constant = shaking[:, kept] * weights
-    columns = [mount.columns[:, kept] * weights[:, None] for mount in mounts]
-    roots = np.sqrt(part)[:, None]
-    stacked = [(roots[:, :, None] * own).reshape(-1, 4) / [1, 1, 1, size] for own in columns]
-    result = Acting.of(stacked)
+    counted = weights > 0
+    weights = weights[counted]
+    shares = np.full(len(shaking), 1 / len(shaking)) if shares is None else shares
+    constant = shaking[:, counted] * weights
+    columns = [mount.columns[:, counted] * weights[:, None] for mount in mounts]
+    roots = np.sqrt(shares)[:, None]
+    # a mass counts by its size times the length, so that all four numbers of a link have one unit
+    stacked = [(roots[:, :, None] * column).reshape(-1, 4) / [1, 1, 1, size] for column in columns]
+    acting = Acting.of(stacked)
     target = (roots * constant).ravel()
     if most_mass is None:
-        values = result.least_squares(target)
+        values = acting.least_squares(target)
         status, bound = "least squares", None
     else:
         limits = np.array([[radii[m.link], masses[m.link]] for m in mounts], dtype=np.float64)
-        values, bound, status = _within(constant, columns, limits, roots, measure, result)
+        values, bound, status = _within(constant, columns, limits, roots, measure, acting)
     products, added = values[:, :3], values[:, 3] / (size if most_mass is None else 1.0)
-    left = shaking.copy()
+    remaining = shaking.copy()
     chosen = []
     scale = float(np.linalg.norm(products, axis=1).max(initial=0.0))
-    for mount, product, mass, acts in zip(mounts, products, added, result.mass_acts, strict=True):
-        left += mount.columns @ np.append(product, mass)
+    for mount, product, mass, acts in zip(mounts, products, added, acting.mass_acts, strict=True):
+        remaining += mount.columns @ np.append(product, mass)
         chosen.append(_counterweight(mount, product, mass, acts, radii[mount.link], scale))
 
     def value(wrench: Floats) -> float:
-        squares = ((wrench[:, kept] * weights) ** 2).sum(axis=1)
-        return math.sqrt(float(part @ squares if measure == "rms" else squares.max()))
+        squares = ((wrench[:, counted] * weights) ** 2).sum(axis=1)
+        return math.sqrt(float(shares @ squares if measure == "rms" else squares.max()))
 
-    after = value(left)
+    after = value(remaining)
     return Balance(
         counterweights=tuple(chosen),
-        shaking=left,
+        shaking=remaining,
         measure=measure,
         before=value(shaking),
         after=after,
         bound=after if bound is None else min(bound, after),
-        rank=result.rank,
-        unknowns=int(result.used.sum()),
-        idle=tuple(result.names(mounts)),
+        rank=acting.rank,
+        unknowns=int(acting.used.sum()),
+        idle=tuple(acting.names(mounts)),
         status=status,
         length_unit=length_unit,
     )
@@ -166,7 +167,7 @@ def _within(
     limits: Floats,
     roots: Floats,
     measure: Literal["rms", "greatest"],
-    found: Acting,
+    acting: Acting,
 ) -> tuple[Floats, float, str]:
     """Numbers (links, 4) within limits (links, 2) of radius and mass, the lower bound, Clarabel's status.
 
@@ -174,7 +175,7 @@ def _within(
     """
     # y = g / (r m_most) and z = m / m_most, so that the cones are |y| <= z <= 1
     reach = np.column_stack([np.repeat(limits.prod(axis=1)[:, None], 3, axis=1), limits[:, 1]])
-    slopes = np.concatenate([own * row for own, row in zip(columns, reach, strict=True)], axis=2)
+    slopes = np.concatenate([column * row for column, row in zip(columns, reach, strict=True)], axis=2)
     if measure == "rms":
         # one vector of all rows, turned into its few coordinates that matter
         flat = np.column_stack(
@@ -200,7 +201,7 @@ def _within(
     with np.errstate(divide="ignore", invalid="ignore"):
         numbers[:, :3] *= np.where(lengths > numbers[:, 3], numbers[:, 3] / lengths, 1.0)[:, None]
     # where the mass itself does nothing, no more than is needed at the full radius
-    for i, acts in enumerate(found.mass_acts):
+    for i, acts in enumerate(acting.mass_acts):
         if not acts:
             numbers[i, 3] = np.linalg.norm(numbers[i, :3])
     return numbers * reach, lower_bound(constant, slopes, optimum.duals), optimum.status
@@ -224,26 +225,27 @@ def _counterweight(
     amount = float(np.linalg.norm(product))
     none = amount <= NONE * scale and not (acts and mass)
     direction = np.zeros(3) if none or not amount else product / amount
-    own: float | None = mass
+    added: float | None = mass
     if none:
-        own, amount = 0.0, 0.0
+        added, amount = 0.0, 0.0
     elif not acts:
-        own = None if radius is None else amount / radius
+        # any mass will do
+        added = None if radius is None else amount / radius
     body = None
-    if own is not None and own > 0:
-        x, y, z = (float(v) for v in np.asarray(mount.pivot) + product / own)
-        body = Body(own, (x, y, z), solid="point")
-    return Counterweight(mount.link, mount.pivot, amount, direction, own, body)
+    if added is not None and added > 0:
+        x, y, z = (float(v) for v in np.asarray(mount.pivot) + product / added)
+        body = Body(added, (x, y, z), solid="point")
+    return Counterweight(mount.link, mount.pivot, amount, direction, added, body)
 
 
 def _by_link(
-    name: str, given: float | Mapping[int, float] | None, mounts: Sequence[Mount]
+    name: str, values: float | Mapping[int, float] | None, mounts: Sequence[Mount]
 ) -> dict[int, float | None]:
     """A number > 0 for each link, or none for any."""
     links = [mount.link for mount in mounts]
-    if given is None:
+    if values is None:
         return dict.fromkeys(links)
-    values = given if isinstance(given, Mapping) else dict.fromkeys(links, given)
+    values = values if isinstance(values, Mapping) else dict.fromkeys(links, values)
     for link in links:
         if link not in values:
             raise RequestError(f"{name}: none for link {link}; give one for each link")
