@@ -1,4 +1,4 @@
-"""Formulas in the place of numbers of a description, which keeps the number of each."""
+"""Formulas in the place of numbers of a description, which then holds the number of each."""
 
 from __future__ import annotations
 
@@ -138,13 +138,12 @@ def _table(table: Any, head: str, context: Mapping[str, Any]) -> Any:
     reads = {key: partial(value_in_file, kind=kind, context=context) for key, kind in kinds.items()}
     result = {key: _numbers(value, reads[key]) if key in reads else value for key, value in table.items()}
     if head == "load" and isinstance(result.get("table"), list):
-        result["table"] = [_row(row, reads["between"]) for row in result["table"]]
+        # each row a value of the input, which may be a formula, and a factor
+        result["table"] = [
+            [_numbers(row[0], reads["between"]), *row[1:]] if isinstance(row, list) and row else row
+            for row in result["table"]
+        ]
     return result
-
-
-def _row(row: Any, read: Any) -> Any:
-    """A row of a load's table: a value of the input, a factor."""
-    return [_numbers(row[0], read), *row[1:]] if isinstance(row, list) and row else row
 
 
 def _numbers(value: Any, read: Any) -> Any:
@@ -155,5 +154,5 @@ def _numbers(value: Any, read: Any) -> Any:
         return value
     try:
         return read(value)
-    except RequestError:
+    except RequestError:  # no formula: the schema has its message
         return value
