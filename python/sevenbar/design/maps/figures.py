@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
@@ -49,9 +50,13 @@ OTHERS = ("#c7b8dd", "#e9c3d3", "#bfe0dc", "#d9d9d9", "#dfe3b4", "#b9bfd9")
 #: How much lighter each further count of circuits of one type is than the one before, or darker.
 SHADE = -0.16
 
+#: No fill is darkened to less than this part, so that letters on it can be read.
+DARKEST = 0.35
+
 #: How much lighter all fills are below contours.
 FAINT = 0.55
 
+#: Colours of hatches, of contours with their values, and of the design with its arms.
 HATCH = "#c4c4c4"
 CONTOUR = "#7a1f5c"
 MARK = "#c1121f"
@@ -123,10 +128,10 @@ def draw(
 
 def look(of: Map, kind: Kind, *, faint: bool = False) -> dict[str, Any]:
     """Fill and hatch of a kind on a map; `faint` below contours."""
-    types = list(dict.fromkeys(k.motion_type for k in of.areas))
     if kind.motion_type in LOOKS:
         fill, hatch = LOOKS[kind.motion_type]
     else:
+        types = dict.fromkeys(k.motion_type for k in of.areas)
         others = [t for t in types if t not in LOOKS]
         fill, hatch = OTHERS[others.index(kind.motion_type) % len(OTHERS)], ""
     counts = sorted(k.circuits for k in of.areas if k.motion_type == kind.motion_type)
@@ -139,10 +144,8 @@ def look(of: Map, kind: Kind, *, faint: bool = False) -> dict[str, Any]:
 
 def _shaded(colour: str | tuple[float, float, float], by: float) -> tuple[float, float, float]:
     """A colour moved towards white, or for a number below 0 towards black."""
-    from matplotlib.colors import to_rgb
-
     rgb = np.array(to_rgb(colour))
-    red, green, blue = (rgb + (1 - rgb) * by if by > 0 else rgb * max(0.35, 1 + by)).tolist()
+    red, green, blue = (rgb + (1 - rgb) * by if by > 0 else rgb * max(DARKEST, 1 + by)).tolist()
     return red, green, blue
 
 
@@ -279,9 +282,9 @@ def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: f
     left = box.x1 + 0.18 * scale / figure.get_figwidth()
     keys: list[Any] = []
     for kind, share in of.areas.items():
-        own = look(of, kind, faint=heights is not None) | {"lw": 0.8 * scale}
+        style = look(of, kind, faint=heights is not None) | {"lw": 0.8 * scale}
         percent = f"{100 * share:.1f} %" if share >= 5e-4 else "< 0.1 %"
-        keys.append(Patch(label=f"{of.name(kind)}  {percent}", **own))
+        keys.append(Patch(label=f"{of.name(kind)}  {percent}", **style))
 
     def line(label: str, **look: Any) -> None:
         keys.append(Line2D([], [], label=label, **look))
