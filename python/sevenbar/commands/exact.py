@@ -67,18 +67,20 @@ def exact(
 
     need_scipy()
     options.checked_designs(designs)
-    given: dict[str, Any] = {
+    arguments: dict[str, Any] = {
         "twist": None if twist is None else angle("--twist", twist),
         "zeros": None if zeros is None else _zeros(zeros),
         "samples": samples,
         "seed": None if seed is None else whole_number("--seed", seed, 0, None, "a seed"),
     }
     task = read_exact_task(table)
-    given["moving"] = [_pivot(text, task) for text in moving] if moving else None
+    arguments["moving"] = [_pivot(text, task) for text in moving] if moving else None
     report = exact_report(task, table.name, designs, command_line())
     check_out(report, out, force=force)
     with progress_bar(f"all answers to {table.name}"):
-        result = task.answers(linkage, **{name: value for name, value in given.items() if value is not None})
+        result = task.answers(
+            linkage, **{name: value for name, value in arguments.items() if value is not None}
+        )
     deliver(result, report, out, json=json, force=force)
 
 
@@ -100,7 +102,7 @@ def _pivot(text: str, task: ExactTask) -> list[float]:
 
 
 def _zeros(text: str) -> tuple[float, float]:
-    parts = text.split(",")
+    parts = split_list(text)
     if len(parts) != 2:
         raise RequestError(
             f"--zeros: {shown(text)} is not two angles; give those of crank and rocker, as in 30deg,90deg"

@@ -16,7 +16,7 @@ MOST_NAMED = 8
 
 @dataclass(frozen=True)
 class HeldDimensions:
-    """The dimensions that stay, those of them that the file leaves out, and those that follow.
+    """The dimensions that stay, the names of those that the file leaves out, and the dimensions that follow.
 
     >>> import sevenbar as sb
     >>> draft = Draft.of_linkage(sb.load("rssr"))
@@ -33,10 +33,10 @@ class HeldDimensions:
     @property
     def text(self) -> str:
         """The dimensions in a line; empty where all change."""
-        given = [d.name for d in self.stay if d.name not in self.left_out]
-        rest = len(given) - MOST_NAMED
-        given = [*given[:MOST_NAMED], *([say("{count} more", count=rest)] if rest > 0 else [])]
-        named = [*given, *(_with_value(d.name, d) for d in self.stay if d.name in self.left_out)]
+        names = [d.name for d in self.stay if d.name not in self.left_out]
+        more = len(names) - MOST_NAMED
+        names = [*names[:MOST_NAMED], *([say("{count} more", count=more)] if more > 0 else [])]
+        named = [*names, *(_with_value(d.name, d) for d in self.stay if d.name in self.left_out)]
         follow = (say("{dimension} follows", dimension=d.name) for d in self.follow)
         lines = [", ".join(named), *map(_with_value, follow, self.follow)]
         return say("; ").join(line for line in lines if line)
@@ -61,17 +61,17 @@ def held_of(draft: Draft, moved: Collection[str]) -> HeldDimensions:
 
     Points and the speed are not among it: they move no joint.
     """
-    every = [d for d in draft.dimensions if d.kind != "speed" and d.place[0] != "point"]
-    lengths = [d for d in (*draft.lengths, *every) if d.drawn]
+    dimensions = [d for d in draft.dimensions if d.kind != "speed" and d.place[0] != "point"]
+    lengths = [d for d in (*draft.lengths, *dimensions) if d.drawn]
     if any(d.name in moved for d in lengths):
-        # of a drawing whose lengths change, what other joints are drawn for
-        ends = draft.linkage.graph.standing
-        every = [*lengths, *(d for d in every if d.place[1] in ends and not d.drawn)]
-    own = [d for d in every if d.name not in moved]
+        # lengths say where the moving joints are; only joints of the ground have numbers of their own besides
+        standing = draft.linkage.graph.standing
+        dimensions = [*lengths, *(d for d in dimensions if d.place[1] in standing and not d.drawn)]
+    staying = [d for d in dimensions if d.name not in moved]
     return HeldDimensions(
-        tuple(d for d in own if not d.follows),
-        tuple(d.name for d in own if d.name in draft.held),
-        tuple(d for d in own if d.follows),
+        tuple(d for d in staying if not d.follows),
+        tuple(d.name for d in staying if d.name in draft.held),
+        tuple(d for d in staying if d.follows),
     )
 
 

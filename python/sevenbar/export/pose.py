@@ -16,6 +16,9 @@ from sevenbar.kinematics.circuits.motion import Motion, Solvable, chosen_circuit
 from sevenbar.kinematics.circuits.poses import joint_frames, poses_along
 from sevenbar.kinematics.loop.law import Law
 
+#: A link shorter than this part of the longest has no length: its joints are at one place up to rounding.
+NO_LENGTH = 1e-6
+
 #: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.
 SAMPLED = 12
 
@@ -80,9 +83,9 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
         law=Law.of([0.0], [at], 0.0, 0.0),
         agree=motion.agree,
     ).circuits[circuit]
-    rows = np.flatnonzero(exact.branch == (branch or 0))
-    frames = poses_along(linkage, exact, rows[:1])
-    q = exact.q[rows[0]] if rows.size else np.array([math.nan])
+    on_pass = np.flatnonzero(exact.branch == (branch or 0))
+    frames = poses_along(linkage, exact, on_pass[:1])
+    q = exact.q[on_pass[0]] if on_pass.size else np.array([math.nan])
     if np.isnan(frames).any() or np.isnan(q).any():
         raise _no_pose(motion, chosen, at)
     valid = poses_along(linkage, chosen, np.arange(len(chosen.time)))
@@ -90,8 +93,10 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
     valid = np.concatenate([frames, valid[~np.isnan(valid).any(axis=(1, 2, 3))]])
     picked = np.unique(np.linspace(0, len(valid) - 1, SAMPLED).astype(int))
     near, far = (each[0] for each in joint_frames(linkage, frames))
-    every = np.vstack([chosen.q, q])
-    slid = [joint.slid(every[:, own]) for joint, own in zip(linkage.joints, linkage.places, strict=True)]
+    rows = np.vstack([chosen.q, q])
+    slid = [
+        joint.slid(rows[:, columns]) for joint, columns in zip(linkage.joints, linkage.places, strict=True)
+    ]
     return Pose(
         motion=motion,
         circuit=chosen,
@@ -127,7 +132,7 @@ def _no_pose(motion: Motion, circuit: Circuit, at: float) -> RequestError:
 
 
 def shortest_link(pose: Pose) -> float:
-    """The length of the shortest link that has one [length]; links of no length aside."""
+    """The length [length] of the shortest link that has one; 1 where none has."""
     lengths = [sum(float(np.linalg.norm(b - a)) for a, b in pairwise(line)) for line in pose.polylines()]
-    small = 1e-6 * max(lengths, default=0.0)
+    small = NO_LENGTH * max(lengths, default=0.0)
     return min((length for length in lengths if length > small), default=1.0)

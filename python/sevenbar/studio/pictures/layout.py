@@ -20,7 +20,7 @@ class JointPlaces:
     """A joint: its kind and pitch, and the places of its feet on the link before and the link after.
 
     `axes` are the ends of its drawn axes, the first fixed in the link before, the last in the link after;
-    `spin` two places along the axis, the same way in every pose, where there are such.
+    `spin` two places along the axis, from and to alike in every pose; `NOWHERE` where there are none.
     """
 
     kind: JointKind
@@ -40,13 +40,13 @@ class Layout:
     count: int
 
     def rigid(self, link: int) -> list[Pair]:
-        """Pairs of places that keep their distance and turn with a link."""
-        way, graph = self.frame.along(link), self.frame.graph
-        result = [(way[0], place) for place in way[1:]] + list(pairwise(way))
-        on = [(self.joints[joint], graph.side(joint, link)) for joint in graph.joints_of(link)]
+        """Pairs of places that keep their distance and turn with a link, counted from 1."""
+        places, graph = self.frame.along(link), self.frame.graph
+        result = [(places[0], place) for place in places[1:]] + list(pairwise(places))
+        sides = [(self.joints[joint], graph.side(joint, link)) for joint in graph.joints_of(link)]
         # what rides on a joint is after it
-        result += [joint.spin for joint, side in on if side or not joint.kind.rides]
-        result += [joint.axes[-side] for joint, side in on if joint.kind.has_cross]
+        result += [joint.spin for joint, side in sides if side or not joint.kind.rides]
+        result += [joint.axes[-side] for joint, side in sides if joint.kind.has_cross]
         return [pair for pair in result if pair != NOWHERE]
 
 
