@@ -50,9 +50,11 @@ NO_NUMBER = frozenset(
 #: A line of only these characters counts as empty; spreadsheets leave such lines, and \x1a ends files of DOS.
 NOTHING = " \t\r\f\x1a,;"
 
+#: A number with a decimal comma.
 COMMA_NUMBER = re.compile(r"[-+]?\d+,\d+(?:[eEdD][-+]?\d+)?")
 #: The index of the row before, in Craig's convention; in brackets behind a name it is no unit: `a_(i-1)`.
 INDEX_BEFORE = re.compile(r"\s*[ijn]\s*[-\u2212]\s*1\s*", re.IGNORECASE)
+#: A name of a header with the unit in brackets behind it, where blanks separate the names; or one in quotes.
 NAME_AND_UNIT = re.compile(r'"[^"]*"|\S+(?:[ \t]?(?:\[[^\]]*\]|\([^)]*\)))?')
 
 
@@ -104,8 +106,8 @@ class TextTable:
 
     def column(self, *names: str) -> int | None:
         """The column with the first of these names that the table has; `None` if it has none of them."""
-        own = self.plain_names
-        return next((own.index(plain_name(name)) for name in names if plain_name(name) in own), None)
+        known = self.plain_names
+        return next((known.index(plain_name(name)) for name in names if plain_name(name) in known), None)
 
     def unit(self, column: int) -> MeasuredUnit | None:
         """The unit of a column; `None` where it has none, or an unknown one."""
@@ -261,6 +263,7 @@ def number(cell: str, *, decimal_comma: bool = False) -> float | None:
     text = cell.replace(",", ".") if decimal_comma else cell
     if NUMBER.fullmatch(text) is None:
         return None
+    # Fortran writes 1d5
     return float(text.replace("d", "e").replace("D", "e"))
 
 
@@ -309,7 +312,7 @@ def text_of_bytes(content: bytes, path: str) -> str:
             continue
         if any(c < " " and c not in "\t\n\r\f\x1a" for c in text):
             break
-        # for its errors alone
+        # for its messages alone: too many lines, or too long ones
         _lines(text, path)
         return text
     raise TableError(
@@ -435,6 +438,7 @@ def _header_cells(line: str, delimiter: str, width: int) -> list[str] | None:
     """The cells of a header, read in the first way that gives as many as there are columns."""
     if not line:
         return None
+    # names with units in brackets separated by blanks, or by two blanks or tabs
     readings = [[cell.strip('" ') for cell in NAME_AND_UNIT.findall(line)], re.split(r"\s{2,}|\t", line)]
     if delimiter:
         cells = _cells(line, delimiter)
