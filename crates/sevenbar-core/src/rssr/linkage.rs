@@ -41,6 +41,16 @@ impl Circle {
     }
 }
 
+/// The greatest of some lengths, rounded down to a power of two; 1 where all are zero.
+fn power_of_two(lengths: [f64; 4]) -> f64 {
+    let greatest = lengths.into_iter().fold(0.0, f64::max);
+    if greatest > 0.0 {
+        greatest.log2().floor().exp2()
+    } else {
+        1.0
+    }
+}
+
 /// A spatial four-bar of two turning joints and two balls, in units of `unit`.
 ///
 /// Inside, lengths are divided by `unit`, a power of two near the greatest dimension: nothing overflows and no bit
@@ -77,7 +87,7 @@ impl Rssr {
         }
         let to_b = links[2].inverse().translation;
         let to_a = links[0].translation;
-        let greatest = [
+        let unit = power_of_two([
             to_a[0].hypot(to_a[1]),
             to_b[0].hypot(to_b[1]),
             norm(links[1].translation),
@@ -85,14 +95,7 @@ impl Rssr {
                 base.carry([0.0, 0.0, to_a[2]]),
                 ground.carry([0.0, 0.0, to_b[2]]),
             )),
-        ]
-        .into_iter()
-        .fold(0.0, f64::max);
-        let unit = if greatest > 0.0 {
-            greatest.log2().floor().exp2()
-        } else {
-            1.0
-        };
+        ]);
         let shrink = |pose: Pose| Pose { translation: pose.translation.map(|x| x / unit), ..pose };
         let (base, ground, links) = (shrink(base), shrink(ground), links.map(shrink));
         let (to_a, to_b) = (to_a.map(|x| x / unit), to_b.map(|x| x / unit));
@@ -118,7 +121,7 @@ impl Rssr {
         Ok(Self { unit, crank, rocker, coupler, base, links, ground })
     }
 
-    /// From M, N, L1, L2, L3, D of the paper's square axes: the crank about z at height N, the rocker about x at (M, D, 0).
+    /// From M, N, L1, L2, L3, D of the paper, whose axes are square: the crank about z at height N, the rocker about x at (M, D, 0).
     ///
     /// # Errors
     /// As of [`Rssr::new`].
@@ -133,8 +136,8 @@ impl Rssr {
     /// # Errors
     /// As of [`Rssr::new`].
     pub fn skew([m, n, l1, l2, l3, d]: [f64; 6], [s, c]: [f64; 2]) -> Result<Self, Error> {
-        let straight = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        // joint 4 turns the ground against the rocker, about the axis reversed
+        let straight = Pose::STILL.rotation;
+        // joint 4 turns the ground against the rocker, about the axis reversed; 0.0 - c, so that square axes have no -0.0
         let towards_rocker = [[0.0, 0.0 - c, -s], [-1.0, 0.0, 0.0], [0.0, s, 0.0 - c]];
         let half_turn = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
         let pose = |rotation, translation| Pose { rotation, translation };
