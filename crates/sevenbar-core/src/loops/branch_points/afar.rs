@@ -18,7 +18,7 @@ use num_complex::Complex64;
 /// `ln |e^(i tau)|` below which an input is real: roots that stand alone are known to rounding.
 const REAL_INPUT: f64 = 1e-9;
 
-/// A slide or a rate below this part of the others is zero.
+/// A slide or a rate below this part of the others is zero up to rounding.
 const NOTHING: f64 = 1e-7;
 
 /// Solutions that run to infinity together at a real input.
@@ -32,33 +32,35 @@ pub(crate) struct Afar {
     pub slides: i64,
 }
 
-/// Where slides are infinite at real inputs; empty if such places do not stand alone.
-pub(super) fn afar(finder: &ModeFinder, algebraic: &Algebraic, turned_out: &Chain) -> Vec<Afar> {
+/// Where slides are infinite at real inputs; empty if such places do not stand alone. The chain is the finder's with the input first
+/// (`turned_out`).
+pub(super) fn afar(finder: &ModeFinder, algebraic: &Algebraic, chain: &Chain) -> Vec<Afar> {
     let slides: Vec<usize> = (0..UNKNOWNS).filter(|&i| finder.slides[i]).collect();
     // one slide alone would have to be matched by finite lengths
     if slides.len() < 2 {
         return Vec::new();
     }
-    let links = turned_out.links.iter().map(|l| Pose::turning(l.rotation));
-    let chain = Chain::new(turned_out.joints.clone(), links.collect());
+    let links = chain.links.iter().map(|l| Pose::turning(l.rotation));
+    let chain_afar = Chain::new(chain.joints.clone(), links.collect());
     let closure = algebraic.closure(None);
-    let from_afar = closure.without_lengths();
+    let closure_afar = closure.without_lengths();
     let mut random = Random(0xfa2);
-    let mut found = Vec::new();
+    let mut places = Vec::new();
     for (n, &slide) in slides.iter().enumerate() {
         // all slides by one factor are the same place
         let length = random.phase();
-        for (x, input) in solutions_with(&chain, finder, &algebraic.zeros, (slide, length)) {
+        for (x, input) in solutions_with(&chain_afar, finder, &algebraic.zeros, (slide, length)) {
             let infinite = |i: usize| x[i].norm() > NOTHING * length.norm();
             if input.norm().ln().abs() > REAL_INPUT || slides[..n].iter().any(|&i| infinite(i)) {
                 continue;
             }
-            let mut near = x;
-            slides.iter().for_each(|&i| near[i] = Complex64::ZERO);
+            // the closure's error with no slide at all is that of the links' lengths
+            let mut without_slides = x;
+            slides.iter().for_each(|&i| without_slides[i] = Complex64::ZERO);
             let turned = closure.zero() * input;
             let (Some(local), Some(offset)) = (
-                linearised(&from_afar, &[(x, turned)]).pop(),
-                linearised(&closure, &[(near, turned)]).pop(),
+                linearised(&closure_afar, &[(x, turned)]).pop(),
+                linearised(&closure, &[(without_slides, turned)]).pop(),
             ) else {
                 continue;
             };
@@ -77,17 +79,19 @@ pub(super) fn afar(finder: &ModeFinder, algebraic: &Algebraic, turned_out: &Chai
                 return Vec::new();
             }
             let greatest = rates.iter().fold(0.0, |m: f64, r| m.max(r.norm()));
+            // b of (20): where the input stands still at first, two solutions meet there
             let meeting = if rates[slide].norm() > NOTHING * greatest {
                 1
             } else {
                 2
             };
-            found.push(Afar {
+            places.push(Afar {
                 input: input.arg(),
+                // (20), with all slides of the loop for k
                 order: slides.len() as i64 + meeting - 3,
                 slides: slides.iter().filter(|&&i| infinite(i)).count() as i64,
             });
         }
     }
-    found
+    places
 }
