@@ -23,15 +23,15 @@ const SEEDS: usize = 24;
 /// The same where modes are searched for.
 const SEARCHED_SEEDS: usize = 4;
 
-/// Curves are followed piece by piece between the modes at every so many of the seeds, if they can be; then those that are left
-/// between the modes at all: the first of the seeds, and each how many.
+/// Before the modes are followed one after another, curves through many of them are followed piece by piece, side by side: in rounds, each
+/// through the modes at every so many of the seeds, from the first of them on. A few seeds have most curves; the last round takes all.
 const AHEAD: [(usize, usize); 2] = [(0, 4), (1, 1)];
 
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
 
-/// Where the loop closes at fewer of these values, the other joints follow: those two may stand still while others move, at a value that is
-/// a seed by chance.
+/// Where the loop closes at fewer values of the first joints than this, other joints have seeds, too: the first may stand still while others
+/// move, at a value that is a seed by chance.
 const MOVING_SEEDS: usize = 2;
 
 /// An open range narrower than this [rad] in which two branch points are missing is that of one singular pose, and open with any
@@ -39,7 +39,7 @@ const MOVING_SEEDS: usize = 2;
 /// fails: another joint may have an account of them.
 const WIDE_RANGE: f64 = 1e-4;
 
-/// Imaginary parts [rad] that solutions which are real at one input may have beside it, as a part of the distance.
+/// Imaginary parts [rad] that solutions which are real at one input may have next to it, as a part of the distance.
 const NEARLY_REAL: f64 = 20.0;
 
 /// Two branch points, one on each side of the real inputs, become one in an isolated pose.
@@ -68,6 +68,7 @@ fn seed_columns(chain: &Chain, wished: &[usize], drawn: bool) -> Vec<usize> {
 
 /// The curves through all modes at the seeds, or the first.
 pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
+    let rising = wished[0];
     let drawn = chain.residual(&chain.place(&chain.drawn)) < CLOSED;
     let seeds = seed_columns(chain, wished, drawn);
     // the pose of a drawing first
@@ -96,10 +97,10 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         let count = if searched { SEARCHED_SEEDS } else { SEEDS };
         out.search.values = count;
         if first_only {
-            out.take(chain, &std::mem::take(&mut drawings), wished[0]);
+            out.take(chain, &std::mem::take(&mut drawings), rising);
             for k in 0..count {
                 if out.is_empty() {
-                    out.take(chain, &finder.at(TAU * k as f64 / count as f64).modes, wished[0]);
+                    out.take(chain, &finder.at(TAU * k as f64 / count as f64).modes, rising);
                 }
             }
             continue;
@@ -112,27 +113,27 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         let (rough, circle) = finder.around(count, survey.as_ref().map(|s| &s.watch));
         met += rough.iter().filter(|modes| !modes.is_empty()).count();
         look_ahead(&mut out, &finder, &rough, &drawings);
-        out.take(chain, &std::mem::take(&mut drawings), wished[0]);
+        out.take(chain, &std::mem::take(&mut drawings), rising);
         for modes in &rough {
             let polished = finder.polished(&out.unknown(chain, modes));
             out.search.open_by.extend(polished.open_by);
-            out.take(chain, &polished.modes, wished[0]);
+            out.take(chain, &polished.modes, rising);
         }
         out.ahead.clear();
         for value in survey.iter().flat_map(|s| s.unseeded(count)) {
             let modes = finder.at(value).modes;
-            out.take(chain, &modes, wished[0]);
+            out.take(chain, &modes, rising);
         }
         if let (Some(survey), Some(circle)) = (survey, circle) {
-            let mut count = counted(&mut out, &survey, circle, wished[0]);
+            let mut count = counted(&mut out, &survey, circle, rising);
             if finder.has_free_axes() && is_open(&count) {
                 let other = ModeFinder::about_other_axes(chain, seed);
-                count = counted_again(&mut out, &other, wished[0], count);
+                count = counted_again(&mut out, &other, rising, count);
             }
             if seed == out.search.columns[0] || !is_open(&count) {
                 out.search.count = count;
             }
-            // a joint that stands still on some is told of, so that another need not be asked
+            // where motions leave this joint at rest the count fails, so after one that succeeds no other need be asked
             if seed == out.search.columns[0] && out.search.is_counted() && !chain.is_redundant() {
                 out.search.columns.truncate(1);
                 break;
@@ -140,7 +141,7 @@ pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         }
     }
     // where nothing turns
-    out.take(chain, &drawings, wished[0]);
+    out.take(chain, &drawings, rising);
     // the first joints' account says nothing of a pose that a seed of a further one is by chance
     if out.search.columns.len() > SEED_JOINTS && out.is_empty() && out.search.found.is_some() {
         out.search.completeness = Completeness::Searched;
@@ -306,7 +307,7 @@ fn known_zeros(curves: &Curves, chain: &Chain, survey: &Survey, column: usize) -
     known
 }
 
-/// The same, the curves ahead aside too.
+/// Those modes that lie on no curve yet, nor on one of those ahead.
 fn unforeseen(curves: &Curves, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
     not_on_any(chain, &curves.ahead, curves.unknown(chain, modes))
 }
