@@ -204,7 +204,7 @@ impl Start {
         let places: Vec<Place> = self
             .solutions
             .iter()
-            .map(|x| Place::begun(x, Complex64::ZERO))
+            .map(|x| Place::start(x, Complex64::ZERO))
             .collect();
         let reached = follow(way, &places, &[&ways], pace);
         let (mut arrived, mut infinite) = (Vec::new(), 0);
@@ -244,7 +244,7 @@ fn straight(from: f64, to: f64, settle: bool) -> Way {
 
 /// The solutions that arrive at the end of a way between general members.
 fn arriving<H: Homotopy>(way: &H, starts: &[Solution]) -> Vec<Solution> {
-    let places: Vec<Place> = starts.iter().map(|x| Place::begun(x, Complex64::ZERO)).collect();
+    let places: Vec<Place> = starts.iter().map(|x| Place::start(x, Complex64::ZERO)).collect();
     let ends = follow(way, &places, &[&[straight(0.0, 1.0, true)]], BRISK);
     ends.iter().flatten().map(|place| *place.solution()).collect()
 }

@@ -87,7 +87,7 @@ impl<'a> InputClosure<'a> {
             end: zero * Complex64::from_polar(radius, at(k)),
             settle: k == 0 || k == count,
         }));
-        let starts: Vec<Place> = solutions.iter().map(|x| Place::begun(x, zero * from)).collect();
+        let starts: Vec<Place> = solutions.iter().map(|x| Place::start(x, zero * from)).collect();
         let reached = follow(self, &starts, &[ways.as_slice()], pace);
         let each = ways.len();
         let places = (0..=count)
@@ -98,24 +98,25 @@ impl<'a> InputClosure<'a> {
             })
             .collect();
         let mut circle = Circle { radius, first, count, places, ends: Vec::new() };
-        let mut begun = Vec::with_capacity(reached.len());
-        let mut owner = Vec::with_capacity(reached.len());
+        let mut starts = Vec::with_capacity(reached.len());
+        // of each start, which place of the circle it is and on which path
+        let mut indices = Vec::with_capacity(reached.len());
         // value by value, so that neighbours in the lanes are likely to take as long
         for k in 0..count {
             for (path, place) in circle.places[k].iter().enumerate() {
                 if let Some(place) = place {
-                    begun.push(*place);
-                    owner.push((k, path));
+                    starts.push(*place);
+                    indices.push((k, path));
                 }
             }
         }
         let downward: Vec<Way> = (0..count).map(|k| self.down(at(k), radius.ln(), 0.0)).collect();
-        let ways: Vec<&[Way]> = owner
+        let ways: Vec<&[Way]> = indices
             .iter()
             .map(|&(k, _)| std::slice::from_ref(&downward[k]))
             .collect();
         circle.ends = vec![vec![None; solutions.len()]; count];
-        for (end, (k, path)) in follow(self, &begun, &ways, pace).into_iter().zip(owner) {
+        for (end, (k, path)) in follow(self, &starts, &ways, pace).into_iter().zip(indices) {
             circle.ends[k][path] = end;
         }
         circle
@@ -123,7 +124,7 @@ impl<'a> InputClosure<'a> {
 
     /// Where places above an angle arrive straight below, at a height that is less; both as `ln |e^(i tau)|`.
     pub fn lowered(&self, places: &[Place], angle: f64, (height, to): (f64, f64)) -> Option<Vec<Place>> {
-        self.all(places, self.down(angle, height, to))
+        self.arrivals(places, self.down(angle, height, to))
     }
 
     /// Where places at a height arrive after an arc from one angle to another.
@@ -134,15 +135,16 @@ impl<'a> InputClosure<'a> {
             end: self.zero() * Complex64::from_polar(height.exp(), to),
             settle: true,
         };
-        self.all(places, way)
+        self.arrivals(places, way)
     }
 
     /// Where all places arrive by a way; in short steps if one is lost in long ones.
-    fn all(&self, places: &[Place], way: Way) -> Option<Vec<Place>> {
+    fn arrivals(&self, places: &[Place], way: Way) -> Option<Vec<Place>> {
         let at = |pace| -> Option<Vec<Place>> { follow(self, places, &[&[way]], pace).into_iter().collect() };
         at(BRISK).or_else(|| at(CAREFUL))
     }
 
+    /// The way at an angle from a height straight to another, both as `ln |e^(i tau)|`.
     fn down(&self, angle: f64, height: f64, to: f64) -> Way {
         Way {
             direction: Complex64::I * (height - to).signum(),

@@ -135,7 +135,7 @@ pub(crate) fn follow<H: Homotopy>(
 
 impl Place {
     /// Where a way begins.
-    pub fn begun(x: &Solution, at: Complex64) -> Self {
+    pub fn start(x: &Solution, at: Complex64) -> Self {
         let zero = [Complex64::ZERO; UNKNOWNS];
         Self {
             x: *x,
@@ -426,7 +426,7 @@ impl<V: Vector> Walk<V> {
     /// The place of a lane.
     #[inline(always)]
     fn place(&self, lane: usize) -> Place {
-        let mut out = Place::begun(&[Complex64::ZERO; UNKNOWNS], get(self.at, lane));
+        let mut out = Place::start(&[Complex64::ZERO; UNKNOWNS], get(self.at, lane));
         for i in 0..UNKNOWNS {
             out.x[i] = get(self.x[i], lane);
             out.rate[i] = get(self.rate[i], lane);

@@ -27,7 +27,7 @@ pub(super) fn carried(
     starts: &[Solution],
     pace: Pace,
 ) -> Vec<Option<Solution>> {
-    let starts: Vec<Place> = starts.iter().map(|x| Place::begun(x, Complex64::ZERO)).collect();
+    let starts: Vec<Place> = starts.iter().map(|x| Place::start(x, Complex64::ZERO)).collect();
     let way = Way {
         direction: Complex64::ONE,
         length: 1.0,
