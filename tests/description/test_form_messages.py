@@ -12,12 +12,14 @@ EXAMPLE = (EXAMPLES / "seven_r.toml").read_text(encoding="utf-8")
 
 
 def complaints(text):
+    """Each line of the refusal of a file, without the file's name."""
     with pytest.raises(DescriptionError) as caught:
         sb.loads(text, "f.toml")
     return [line.removeprefix("f.toml: ") for line in str(caught.value).splitlines()]
 
 
 def rows(*lines, drive=""):
+    """A file of rows, each with these lines of keys."""
     return "\n".join(["format = 1", "[drive]", drive, *(f"[[link]]\n{line}" for line in lines)])
 
 
@@ -119,6 +121,7 @@ def test_each_mistake_in_rows_has_its_own_message(text, messages):
     assert complaints(text) == messages
 
 
+#: A loop as drawn with a joint of each number of freedoms.
 RUSR = [
     {"kind": "R", "at": [0, 0, 0], "axis": [0, 0, 1]},
     {"name": "u", "kind": "U", "at": [1, 0, 0], "axes": [[1, 0, 0], [0, 1, 0]]},
@@ -128,6 +131,7 @@ RUSR = [
 
 
 def with_changes(index, **changes):
+    """The joints of `RUSR`, one of them with other keys, without those that are `None`."""
     joints = [dict(joint) for joint in RUSR]
     joints[index] |= changes
     return [{key: value for key, value in joint.items() if value is not None} for joint in joints]
@@ -372,6 +376,7 @@ joint = [
 """
 
 
+#: The end of a message about lengths too far apart.
 LOST = "is lost in rounding beside that; give lengths of which the greatest is at most 1e+11 times the others"
 
 

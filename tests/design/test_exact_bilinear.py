@@ -12,22 +12,23 @@ from sevenbar.kinematics.loop.rigid import about
 
 
 def residual(forms, a, b):
-    """The greatest `|a^T T_k b|` relative to the forms and the points."""
+    """The greatest `|a^T T_k b|` relative to the forms (k, 3, 3) and the points (3,)."""
     sizes = np.linalg.norm(forms, axis=(1, 2)) * np.linalg.norm(a) * np.linalg.norm(b)
     return float((np.abs(np.einsum("i,kij,j->k", a, forms, b)) / np.where(sizes > 0, sizes, 1.0)).max())
 
 
 def spherical_forms(seed):
+    """The forms `R_k - 1` (4, 3, 3) of four random orientations."""
     return Rotation.random(5, random_state=np.random.default_rng(seed)).as_matrix()[1:] - np.eye(3)
 
 
 def test_a_hundred_random_tasks_have_six_solutions_each_and_an_even_number_of_real_ones():
     for seed in range(100):
         forms = spherical_forms(seed)
-        found = solutions(forms)
-        assert found.multiplicity.tolist() == [1] * 6
-        assert found.real.sum() % 2 == 0
-        assert max(residual(forms, a, b) for a, b in zip(found.a, found.b, strict=True)) < 1e-13
+        result = solutions(forms)
+        assert result.multiplicity.tolist() == [1] * 6
+        assert result.real.sum() % 2 == 0
+        assert max(residual(forms, a, b) for a, b in zip(result.a, result.b, strict=True)) < 1e-13
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -43,18 +44,19 @@ def test_two_of_the_cubics_meet_in_nine_points_three_of_which_are_poles(seed):
         roots = mpmath.polyroots(interpolated(places, heights), maxsteps=300, extraprec=200)
         assert len(roots) == 9
         ours = [complex(b[0] / b[2]) for b in solutions(forms).b]
-        left = [complex(r) for r in roots]
+        remaining = [complex(r) for r in roots]
         for x in ours:
-            nearest = min(left, key=lambda r: abs(r - x))
+            nearest = min(remaining, key=lambda r: abs(r - x))
             assert abs(nearest - x) < 1e-9 * (1 + abs(x))
-            left.remove(nearest)
+            remaining.remove(nearest)
     # the other three are the poles: the axes of the rotations between the three orientations of both minors
     first, second = forms[0] + np.eye(3), forms[1] + np.eye(3)
     poles = [Rotation.from_matrix(turn).as_rotvec() for turn in (first, second, first.T @ second)]
-    assert sorted(p[0] / p[2] for p in poles) == pytest.approx(sorted(r.real for r in left), rel=1e-9)
+    assert sorted(p[0] / p[2] for p in poles) == pytest.approx(sorted(r.real for r in remaining), rel=1e-9)
 
 
 def det(rows, which, x, y):
+    """The minor of three of the forms, `det (T_k b)` with b = (x, y, 1)."""
     n = [[r[0] * x + r[1] * y + r[2] for r in rows[k]] for k in which]
     return (
         n[0][0] * (n[1][1] * n[2][2] - n[1][2] * n[2][1])
@@ -64,11 +66,13 @@ def det(rows, which, x, y):
 
 
 def cubic_in_y(minor, x):
+    """Coefficients of a minor at x, a polynomial of degree three in y."""
     places = [mpmath.mpf(k) for k in (-1, 0, 1, 2)]
     return interpolated(places, [minor(x, y) for y in places])
 
 
 def resultant(first, second, x):
+    """The determinant of Sylvester's matrix, zero where both minors are zero at one y."""
     p, q = cubic_in_y(first, x), cubic_in_y(second, x)
     sylvester = mpmath.zeros(6)
     for i in range(3):
@@ -90,11 +94,11 @@ def interpolated(places, heights):
 @pytest.mark.parametrize("seed", range(3))
 def test_newton_in_40_digits_keeps_six_different_solutions(seed):
     forms = spherical_forms(seed)
-    found = solutions(forms)
+    result = solutions(forms)
     with mpmath.workdps(40):
         exact = [[[mpmath.mpf(x) for x in row] for row in form] for form in forms.tolist()]
         ends = []
-        for a, b in zip(found.a, found.b, strict=True):
+        for a, b in zip(result.a, result.b, strict=True):
             # charts in which both points are finite
             i, j = int(np.abs(a).argmax()), int(np.abs(b).argmax())
             others = [k for k in range(3) if k != i], [k for k in range(3) if k != j]
@@ -139,6 +143,6 @@ def test_forms_with_a_curve_of_solutions_have_no_list_of_them():
 def test_a_double_solution_counts_twice():
     back = (about(0, 0.4) @ about(2, -0.6)).T
     turns = np.array([about(0, 0.1 * i * i) @ about(2, 0.3 * i) for i in (-1, 0, 1, 2)]) @ back
-    found = solutions(turns - np.eye(3))
-    assert sorted(found.multiplicity.tolist()) == [1, 1, 1, 1, 2]
-    assert found.real.sum() == 3
+    result = solutions(turns - np.eye(3))
+    assert sorted(result.multiplicity.tolist()) == [1, 1, 1, 1, 2]
+    assert result.real.sum() == 3

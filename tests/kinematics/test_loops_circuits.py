@@ -20,6 +20,7 @@ from evidence.fuzz.random_linkages import Dimensions, mixed
 from evidence.fuzz.random_loops import OVERCONSTRAINED, SPECIAL, Case, bennett, drawn, general
 from gallery_sample import sampled
 from sevenbar.errors import RequestError
+from strategies import wrapped
 
 #: Random linkages whose circuits are compared under half the step.
 HALVED = {"few": 12, "many": 1_000}
@@ -64,10 +65,6 @@ def amount(request: pytest.FixtureRequest) -> str:
 def family_members(family: str, count: int) -> Iterator[tuple[int, sb.Linkage]]:
     for seed in range(count):
         yield seed, FAMILIES[family](np.random.default_rng([11, seed])).linkage()
-
-
-def wrapped(angle: np.ndarray) -> np.ndarray:
-    return (np.asarray(angle) + np.pi) % (2 * np.pi) - np.pi
 
 
 def idle_links(loop: Loop, q: np.ndarray, column: int) -> np.ndarray:

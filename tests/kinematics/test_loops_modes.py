@@ -38,6 +38,7 @@ from evidence.fuzz.random_loops import (
     step,
 )
 from places import REFERENCES
+from strategies import wrapped
 
 #: Loops of each family, and starts of the search for each loop.
 GENERAL_LOOPS = {"few": 100, "all": 10_000}
@@ -49,6 +50,9 @@ DEEP_STARTS = 20_000
 
 #: Closure error of a mode: radians, lengths in parts of the longest link.
 CLOSURE = 1e-10
+
+#: Poses stiffer than this are modes of one solution each, known to nearly all digits.
+FAR_FROM_SINGULAR = 1e-3
 
 
 @pytest.fixture(
@@ -88,7 +92,7 @@ def faults(linkage: sb.Linkage, loop: Loop, found: Found, theta: float, *, even:
             wrong.append("an angle is not in (-pi, pi]")
         apart = modes.q[:, 0] - theta
         if loop.periodic[0]:
-            apart = (apart + np.pi) % (2 * np.pi) - np.pi
+            apart = wrapped(apart)
         if np.abs(apart).max() > 1e-10 * loop.scales[0]:
             wrong.append("the input is not the one asked for")
         if doubles(loop, modes.q):
@@ -204,7 +208,7 @@ def test_the_drawn_pose_is_the_mode_with_all_joints_at_zero() -> None:
         held = loop.stiffness(q, 0)[0]
         count, _, idle_links = loop.idle(q, 0)
         # with a freedom that is not idle by its geometry the joint cannot drive
-        if held[len(held) - count - 1] < 1e-3 or count != len(linkage.mobility().idle):
+        if held[len(held) - count - 1] < FAR_FROM_SINGULAR or count != len(linkage.mobility().idle):
             continue
         _axes_stand_where_they_were_drawn(case, linkage, loop)
         modes = linkage.assembly_modes(0.0)
@@ -225,9 +229,9 @@ def _axes_stand_where_they_were_drawn(case: Drawn, linkage: sb.Linkage, loop: Lo
         start, end = end + 1, after
         wanted = joint.get("axes") or [joint["axis"]] * (end - start + 1) if joint["kind"] != "S" else []
         # the last joint moves the ground about its axes reversed
-        way = -1 if joint is case.joints[-1] else 1
+        direction = -1 if joint is case.joints[-1] else 1
         for column, want in zip(range(start, end + 1), wanted, strict=False):
-            assert np.abs(axes[column] - way * want / np.linalg.norm(want)).max() < 1e-12
+            assert np.abs(axes[column] - direction * want / np.linalg.norm(want)).max() < 1e-12
         if joint["kind"] != "P":
             for column in range(start, end + 1):
                 if loop.turns[column]:
@@ -244,7 +248,7 @@ def test_the_known_pose_of_a_loop_with_screws_is_found_and_all_close() -> None:
         q = np.zeros(loop.count)
         modes = linkage.assembly_modes(0.0)
         assert loop.errors(modes.q).max() < CLOSURE, seed
-        if loop.stiffness(q, 0)[0].min() > 1e-3:
+        if loop.stiffness(q, 0)[0].min() > FAR_FROM_SINGULAR:
             still = np.zeros(len(loop.ends) - 1, bool)
             assert nearest(loop, loop.poses(q), modes.q, still) < 1e-8, seed
 
@@ -261,7 +265,7 @@ def test_a_mode_is_one_at_the_value_of_any_of_its_joints() -> None:
         still = np.zeros(len(loop.ends) - 1, bool)
         for q in linkage.assembly_modes(case.theta).q:
             column = int(rng.integers(loop.count))
-            if loop.stiffness(q, column)[0].min() > 1e-3:
+            if loop.stiffness(q, column)[0].min() > FAR_FROM_SINGULAR:
                 other = linkage.assembly_modes(q[column], input=linkage.columns[column])
                 assert nearest(loop, loop.poses(q), other.q, still) < 1e-8
 
@@ -288,7 +292,7 @@ def test_cutting_the_loop_elsewhere_gives_the_same_modes() -> None:
         there = linkage.assembly_modes(case.theta, input=linkage.columns[7 - shift])
         assert len(here) == len(there)
         apart = np.roll(here.q, -shift, axis=1)[:, None] - there.q
-        apart = np.abs((apart + np.pi) % (2 * np.pi) - np.pi).max(axis=2)
+        apart = np.abs(wrapped(apart)).max(axis=2)
         assert apart.min(axis=1).max() < 1e-7
 
 
@@ -298,7 +302,7 @@ def test_the_unit_of_length_changes_no_angle() -> None:
         grown = Rows(case.kinds, 1e3 * case.length, case.twist, 1e3 * case.offset, case.angle, case.pose)
         here, there = (c.linkage().assembly_modes(case.theta).q for c in (case, grown))
         assert len(here) == len(there)
-        apart = np.abs((here[:, None] - there + np.pi) % (2 * np.pi) - np.pi).max(axis=2)
+        apart = np.abs(wrapped(here[:, None] - there)).max(axis=2)
         assert apart.min(axis=1).max() < 1e-7
 
 
@@ -312,7 +316,7 @@ def test_modes_in_which_a_ball_stands_in_a_gimbal_throughout_are_found_in_any_fr
         ("R", (-2, 1, -2), (0, 1, 0)),
     ]
     quarter = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
-    found = []
+    modes_in_frames = []
     for turn in (np.eye(3), quarter):
         drawn = [
             {"kind": kind, "at": turn @ at} | ({} if axis is None else {"axis": turn @ axis})
@@ -321,7 +325,9 @@ def test_modes_in_which_a_ball_stands_in_a_gimbal_throughout_are_found_in_any_fr
         linkage = sb.from_axes(drawn)
         motion = linkage.motion(24)
         assert (motion.completeness, len(motion.circuits)) == ("counted", 3)
-        found.append([sorted(linkage.assembly_modes(value).q[:, -1]) for value in (-0.93, 0.31, 2.8)])
-    assert [len(modes) for modes in found[0]] == [4, 2, 4]
-    for one, other in zip(*found, strict=True):
+        modes_in_frames.append(
+            [sorted(linkage.assembly_modes(value).q[:, -1]) for value in (-0.93, 0.31, 2.8)]
+        )
+    assert [len(modes) for modes in modes_in_frames[0]] == [4, 2, 4]
+    for one, other in zip(*modes_in_frames, strict=True):
         np.testing.assert_allclose(one, other, atol=1e-9)
