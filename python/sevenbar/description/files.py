@@ -41,6 +41,62 @@ LONGEST_LINE = 2_000
 LARGEST_TABLE = 20_000_000
 
 
+#: How files of other programs begin, and what to do with them.
+_OTHER_KINDS = {
+    b"MATLAB 5.0 MAT-file": "a MATLAB file; write the table as CSV, as in writetable(T, 'loop.csv')",
+    b"\x89HDF": "a file of HDF5 or MATLAB 7.3; write the table as CSV, as in writetable(T, 'loop.csv')",
+    b"ISO-10303-21": "a STEP file; 'sevenbar axes' lists the axes of its cylinders, as a table to begin with",
+    b"\xd0\xcf\x11\xe0": "an old Excel or Office file; save it as .xlsx or CSV",
+    b"%PDF": "a PDF file; give a TOML file of format 1, or a table (.csv, .xlsx)",
+}
+
+#: Files of other programs by the ends of their names, as texts begin alike.
+_OTHER_ENDINGS = {
+    ".urdf": "URDF",
+    ".xacro": "URDF",
+    ".sdf": "SDF",
+    ".mjcf": "MJCF",
+    ".xml": "XML (MJCF, Simscape)",
+    ".fcstd": "a FreeCAD file",
+    ".sldasm": "a SolidWorks file",
+    ".slx": "a Simulink file",
+    ".cmd": "an ADAMS file",
+}
+
+#: The same by the heads of their texts.
+_OTHER_HEADS = {b"<robot": "URDF", b"<sdf": "SDF", b"<mujoco": "MJCF", b"<?xml": "XML"}
+
+#: Bytes of a file that give its kind.
+_HEAD = 2000
+
+#: Of the words of TOML's reader a message has at most so many characters: they may hold a text of the file.
+_LONGEST_REASON = 200
+
+#: What TOML's reader says of a place.
+_PLACE = r"(.*) \(at (?:line (\d+), column \d+|end of document)\)"
+
+#: Tables of which a file may have several.
+LISTED = ("joint", "pin", "link", "point", "body", "load", "spring", "stop", "rod")
+
+#: Slips that people make in TOML, by how the line looks: a unit next to a number, a decimal comma, a text or
+#: a sign of another language.
+_SLIPS = (
+    (
+        "[^#]*[\u201c\u201d\u201e\u2018\u2019\u00ab\u00bb].*",
+        'write straight quotes, as in name = "RSSR"',
+    ),
+    (
+        r"[^=]+=\s*[-+\d.]+\s*[A-Za-z\u00b0/]+.*",
+        "write a number without its unit, which length_unit and angle_unit give for the whole file, "
+        'or both in quotes, as in "25 cm"',
+    ),
+    (r"[^=]+=\s*[-+]?\d+,\d+\s*(#.*)?", "write a decimal point, as in 0.5"),
+    (r"\s*[A-Za-z_]\w*\s*=\s*[A-Za-z_][^\"']*", 'write a text in quotes, as in kind = "R"'),
+    (r"\s*\w+\s*:.*", "write a key and its value with '=', as in M = 700"),
+    (r"\s*\[+[^\]]*", "close the head of a table, as in [rssr] or [[joint]]"),
+)
+
+
 @ends_here
 def load(source: str | os.PathLike[str], *, agree: float | None = None) -> Linkage:
     """The linkage of a TOML file, of a table (CSV or Excel), or of the gallery by its name.
@@ -135,66 +191,13 @@ def toml_tables(content: str, source: str) -> dict[str, Any]:
         ) from None
 
 
-#: How files of other programs begin, and what to do with them.
-_OTHER_KINDS = {
-    b"MATLAB 5.0 MAT-file": "a MATLAB file; write the table as CSV, as in writetable(T, 'loop.csv')",
-    b"\x89HDF": "a file of HDF5 or MATLAB 7.3; write the table as CSV, as in writetable(T, 'loop.csv')",
-    b"ISO-10303-21": "a STEP file; 'sevenbar axes' lists the axes of its cylinders, as a table to begin with",
-    b"\xd0\xcf\x11\xe0": "an old Excel or Office file; save it as .xlsx or CSV",
-    b"%PDF": "a PDF file; give a TOML file of format 1, or a table (.csv, .xlsx)",
-}
-
-#: Files of other programs by the ends of their names, as texts begin alike.
-_OTHER_ENDINGS = {
-    ".urdf": "URDF",
-    ".xacro": "URDF",
-    ".sdf": "SDF",
-    ".mjcf": "MJCF",
-    ".xml": "XML (MJCF, Simscape)",
-    ".fcstd": "a FreeCAD file",
-    ".sldasm": "a SolidWorks file",
-    ".slx": "a Simulink file",
-    ".cmd": "an ADAMS file",
-}
-
-#: The same by the heads of their texts.
-_OTHER_HEADS = {b"<robot": "URDF", b"<sdf": "SDF", b"<mujoco": "MJCF", b"<?xml": "XML"}
-
-#: Bytes of a file that give its kind.
-_HEAD = 2000
-
-#: What TOML's reader says of a place.
-_PLACE = r"(.*) \(at (?:line (\d+), column \d+|end of document)\)"
-
-#: Tables of which a file may have several.
-LISTED = ("joint", "pin", "link", "point", "body", "load", "spring", "stop", "rod")
-
-#: Slips that people make in TOML, by how the line looks: a unit next to a number, a decimal comma, a text or
-#: a sign of another language.
-_SLIPS = (
-    (
-        "[^#]*[\u201c\u201d\u201e\u2018\u2019\u00ab\u00bb].*",
-        'write straight quotes, as in name = "RSSR"',
-    ),
-    (
-        r"[^=]+=\s*[-+\d.]+\s*[A-Za-z\u00b0/]+.*",
-        "write a number without its unit, which length_unit and angle_unit give for the whole file, "
-        'or both in quotes, as in "25 cm"',
-    ),
-    (r"[^=]+=\s*[-+]?\d+,\d+\s*(#.*)?", "write a decimal point, as in 0.5"),
-    (r"\s*[A-Za-z_]\w*\s*=\s*[A-Za-z_][^\"']*", 'write a text in quotes, as in kind = "R"'),
-    (r"\s*\w+\s*:.*", "write a key and its value with '=', as in M = 700"),
-    (r"\s*\[+[^\]]*", "close the head of a table, as in [rssr] or [[joint]]"),
-)
-
-
 def _syntax_problem(error: ValueError, lines: list[str]) -> str:
     """What is wrong with a text that is not TOML: the line, the reader's words, and what to do."""
     match = re.fullmatch(_PLACE, str(error))
     example = "'sevenbar gallery rssr' prints a file that is right"
     if match is None:
-        return f"not valid TOML: {str(error)[:200]}; {example}"
-    reason = match[1][:1].lower() + match[1][1:200]
+        return f"not valid TOML: {str(error)[:_LONGEST_REASON]}; {example}"
+    reason = match[1][:1].lower() + match[1][1:_LONGEST_REASON]
     if match[2] is None:
         return f"not valid TOML: {reason}, at the end of the file; {example}"
     line = lines[int(match[2]) - 1]
