@@ -11,6 +11,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.design.maps.atlas import motion_map
 from sevenbar.design.maps.contours import EXACT, EXACT_FORCES, MOST_READ, Net, traced
+from sevenbar.design.maps.figures import sheet
 from sevenbar.design.maps.heights import measure_heights
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.measures import MEASURES
@@ -173,3 +174,8 @@ def test_what_has_no_contours_is_refused_with_what_has(of, arguments, message):
     names, options = (*arguments, {})[:2]
     with pytest.raises(RequestError, match=f"^{message}"):
         measure_heights(of, names, **options)
+
+
+def test_a_size_that_is_no_text_is_no_sheet() -> None:
+    with pytest.raises(RequestError, match="size: 3 is not a sheet; give A4, A3, A2 or A1"):
+        sheet(3)  # type: ignore[arg-type]

@@ -79,7 +79,7 @@ LABEL = (0.03, 0.02)
 
 def sheet(size: str) -> tuple[float, float]:
     """Width and height [inch] of a sheet of this name; raises `RequestError` for another."""
-    name = size.strip().upper()
+    name = size.strip().upper() if isinstance(size, str) else size
     check_word("size", name, SIZES, "a sheet")
     return SIZES[name]
 
