@@ -62,14 +62,8 @@ def at_edges(image):
 
 
 def picture(page):
-    """The 3D canvas on the page once the camera stays where it is, and where the canvas is."""
-    image, end = settled(page), time.monotonic() + CAMERA
-    while time.monotonic() < end:
-        page.wait_for_timeout(PUT_TOGETHER)
-        before, image = image, settled(page)
-        if np.array_equal(before, image):
-            break
-    return image, page.locator("canvas[data-engine]").bounding_box()
+    """The 3D canvas on the page, and where it is."""
+    return settled(page), page.locator("canvas[data-engine]").bounding_box()
 
 
 @pytest.mark.parametrize(("width", "height"), SIZES)

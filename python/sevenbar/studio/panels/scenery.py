@@ -25,7 +25,7 @@ POSITIONS = 8
 #: The longest arrow, as a share of the linkage's extent.
 LONGEST_ARROW = 0.35
 #: When, after the page has opened, the browser is asked what shape the picture has [s].
-QUESTIONS = (0.3, 0.6, 1.0, 1.5, *map(float, range(2, 31)))
+QUESTIONS = (0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 20.0, 30.0)
 #: Changes of the field of view that make the browser answer, of the camera's place in the scene that are a
 #: person's, and of the picture's shape that are none; shares, and [1].
 NUDGE, MOVED, SAME_SHAPE = 1e-4, 1e-3, 0.01
