@@ -84,7 +84,9 @@ def test_the_linkage_is_seen_whole_between_the_panels(opened, width, height):
     click_button(page, "Look at it all")
     page.wait_for_timeout(PUT_TOGETHER)
     again = settled(page)
-    assert tinted(again, OUTPUT) == pytest.approx(tinted(image, OUTPUT), rel=0.05)
+    # the browser draws fewer pixels where it is slow
+    assert again.shape[0] / again.shape[1] == pytest.approx(image.shape[0] / image.shape[1], rel=0.01)
+    assert tinted(again, OUTPUT) / again.size == pytest.approx(tinted(image, OUTPUT) / image.size, rel=0.1)
 
 
 def test_a_camera_that_a_person_has_turned_stays(opened):
