@@ -74,11 +74,11 @@ class _Commands(typer.core.TyperGroup):
         if cmd_name not in _ELSEWHERE:
             return super().get_command(ctx, cmd_name)
         module, _, name = _ELSEWHERE[cmd_name].partition(":")
-        result = getattr(importlib.import_module(module), name)
-        if isinstance(result, typer.Typer):
-            return typer.main.get_command(result)
+        command = getattr(importlib.import_module(module), name)
+        if isinstance(command, typer.Typer):
+            return typer.main.get_command(command)
         alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-        alone.command(cmd_name, cls=Command)(result)
+        alone.command(cmd_name, cls=Command)(command)
         return typer.main.get_command(alone)
 
     def invoke(self, ctx: Any) -> Any:
@@ -349,7 +349,7 @@ def plot_(
         min(sample_count("samples", samples), MOST_DRAWN),
         input=input_joint, output=output, speed=speed,
     )  # fmt: skip
-    if "transmission" in kinds and all(result.transmission_angle is None for result in motion):
+    if "transmission" in kinds and all(one.transmission_angle is None for one in motion):
         if kind is not None and "transmission" in kind:
             raise RequestError("--kind: this linkage has no transmission angle; leave transmission out")
         kinds.remove("transmission")

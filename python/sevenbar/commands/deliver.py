@@ -40,6 +40,7 @@ def deliver(
     `also` are files elsewhere, each with what writes it. A result of a search that Ctrl+C stopped is
     `unfinished`: it is written without its figures, and the command ends as Ctrl+C does.
     """
+    whole = report
     if unfinished:
         report = report.without_figures()
     if out is not None:
@@ -64,7 +65,7 @@ def deliver(
     else:
         tell_written(written)
     if unfinished:
-        if out is not None:
+        if out is not None and report != whole:
             typer.echo("figures are left out: the search was stopped", err=True)
         raise typer.Exit(stopped())
 

@@ -141,16 +141,16 @@ def _places(table: TextTable, linkage: Linkage, column: int, joint: str | None) 
     return result
 
 
-def _refuse_what_is_missing(table: TextTable, result: Mapping[str, int], name: str, *, turns: bool) -> None:
+def _refuse_what_is_missing(table: TextTable, columns: Mapping[str, int], name: str, *, turns: bool) -> None:
     value, moves, unit = ("an angle", "turns", "deg") if turns else ("a position", "slides", "mm")
-    if "time" not in result or "value" not in result:
-        what = f"with {value} of {name}, which {moves}" if "time" in result else "for the time"
+    if "time" not in columns or "value" not in columns:
+        what = f"with {value} of {name}, which {moves}" if "time" in columns else "for the time"
         raise table.wrong(f"no column {what}; {table.header}; name them as in 'time [s],{name} [{unit}]'")
-    given = [quantity in result for quantity in QUANTITIES]
+    given = [quantity in columns for quantity in QUANTITIES]
     if given != sorted(given, reverse=True):
         gap = given.index(False)
-        higher = next(quantity for quantity in QUANTITIES[gap:] if quantity in result)
-        alone = f"{table.labels[result[higher]]} is given without a column of {QUANTITIES[gap]}"
+        higher = next(quantity for quantity in QUANTITIES[gap:] if quantity in columns)
+        alone = f"{table.labels[columns[higher]]} is given without a column of {QUANTITIES[gap]}"
         raise table.wrong(f"{alone}; add that, or leave this out")
 
 

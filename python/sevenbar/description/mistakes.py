@@ -58,7 +58,8 @@ class FileForms:
                 home = not_covered(location[-1], of_joint=location[0] == "joint" and len(location) > 1)
                 home = home or ROW_READS * (location[0] == "link" and location[-1] == "value")
                 home = home or RANGE * (location[0] == "stop" and location[-1] in STOP_ENDS)
-                home = home or INPUT * (location in (["input"], ["drive", "input"]))
+                if "drive" in self.tables and location in (["input"], ["drive", "input"]):
+                    home = INPUT
                 home = home or ("" if near else self._home(str(location[-1])))
                 message = home or f"is not known here; {near}allowed: {keys}"
             case "literal_error" | "int_parsing_size":

@@ -117,16 +117,18 @@ def described(grid: CellTable, source: str, name: str, ground: str = "") -> Tabl
     return result
 
 
-def add_points(result: TableDescription, grid: CellTable, source: str) -> None:
+def add_points(description: TableDescription, grid: CellTable, source: str) -> None:
     """Adds the points of a sheet of their own."""
     reader = _Reader(grid, source)
-    reader.length_unit = str(result.raw["length_unit"])
-    reader.by_name = "ground" in result.raw
-    reader.places, reader.problems = result.places, [*reader.problems, *result.problems]
-    points = [reader.point(row, len(result.raw.get("point", [])) + k) for k, row in enumerate(reader.filled)]
-    result.problems = reader.problems
+    reader.length_unit = str(description.raw["length_unit"])
+    reader.by_name = "ground" in description.raw
+    reader.places, reader.problems = description.places, [*reader.problems, *description.problems]
+    points = [
+        reader.point(row, len(description.raw.get("point", [])) + k) for k, row in enumerate(reader.filled)
+    ]
+    description.problems = reader.problems
     if points:
-        result.raw["point"] = [*result.raw.get("point", []), *points]
+        description.raw["point"] = [*description.raw.get("point", []), *points]
 
 
 class _Reader(LinkCells):

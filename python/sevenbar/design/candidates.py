@@ -183,10 +183,10 @@ def checked(
     nothing for a design that cannot be a linkage: that is a refusal, too.
     """
     limits = Limits() if limits is None else limits
-    try:
-        motion = draft.linkage.motion(samples) if motion is None else motion
-    except (DescriptionError, RequestError) as error:
-        return Refusal("assembly", str(error))
+    result = analysed(draft, samples) if motion is None else motion
+    if isinstance(result, Refusal):
+        return result
+    motion = result
     if not motion.circuits:
         return Refusal("assembly", "cannot be assembled at any input")
     ways = located(motion, claim.inputs, claim.outputs, poses)
@@ -204,6 +204,14 @@ def checked(
         lowest = used_transmission(draft.linkage, circuit, claim.inputs, ways.position)
     place = int(ways.circuit[0]), int(ways.branch[0])
     return within_limits(Candidate(draft, claim, motion.motion_type, lowest, *place, ways.position), limits)
+
+
+def analysed(draft: Draft, samples: int) -> Motion | Refusal:
+    """The motion of a design, or why it is no linkage."""
+    try:
+        return draft.linkage.motion(samples)
+    except (DescriptionError, RequestError) as error:
+        return Refusal("assembly", str(error))
 
 
 @dataclass(frozen=True, eq=False)

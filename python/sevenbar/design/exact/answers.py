@@ -11,9 +11,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.design.candidates import CHECK_SAMPLES, Candidate, Claim, Refusal, checked
+from sevenbar.design.candidates import CHECK_SAMPLES, Candidate, Claim, Refusal, analysed, checked
 from sevenbar.design.exact.dyads import Dyad
-from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed
 
@@ -135,11 +134,11 @@ def judged(draft: Draft, claim: Claim, poses: Floats | None = None) -> ExactAnsw
     """An answer with what its circuits say; `poses` (n, columns) as `checked` takes them."""
     little = float(np.ptp(claim.inputs)) < LITTLE
     for samples in CHECKED_AT if little else CHECKED_AT[:-1]:
-        try:
-            motion = draft.linkage.motion(samples)
-        except (DescriptionError, RequestError) as error:
-            return ExactAnswer(draft, claim, Refusal("assembly", str(error)), None, poses)
+        motion = analysed(draft, samples)
+        if isinstance(motion, Refusal):
+            return ExactAnswer(draft, claim, motion, None, poses)
         verdict = checked(draft, claim, poses=poses, motion=motion)
+        answer = ExactAnswer(draft, claim, verdict, motion.motion_type, poses)
         if not isinstance(verdict, Refusal) or verdict.fault != "assembly":
             break
-    return ExactAnswer(draft, claim, verdict, motion.motion_type, poses)
+    return answer

@@ -45,26 +45,26 @@ class Placing:
 STILL = Placing(np.eye(3), np.zeros(3))
 
 
-def placed(wanted: Floats, result: Floats, *, scaled: bool = False, shares: Floats | None = None) -> Placing:
-    """The similarity that brings `result` (n, 3) nearest to `wanted` (n, 3); `scaled` where it may scale.
+def placed(wanted: Floats, reached: Floats, *, scaled: bool = False, shares: Floats | None = None) -> Placing:
+    """The similarity that brings `reached` (n, 3) nearest to `wanted` (n, 3); `scaled` where it may scale.
 
     Squares count by their `shares` (n,), alike where none are given.
     """
     share = np.ones((len(wanted), 1)) if shares is None else shares[:, None]
-    far, near = ((share * places).sum(axis=0) / share.sum() for places in (wanted, result))
+    far, near = ((share * places).sum(axis=0) / share.sum() for places in (wanted, reached))
     root = np.sqrt(share)
-    rotation, scale, _ = turns((root * (wanted - far))[None], (root * (result - near))[None], scaled=scaled)
+    rotation, scale, _ = turns((root * (wanted - far))[None], (root * (reached - near))[None], scaled=scaled)
     turn, size = rotation[0], float(scale[0])
     return Placing(turn, far - size * turn @ near, size)
 
 
-def turns(wanted: Floats, result: Floats, *, scaled: bool) -> tuple[Floats, Floats, Floats]:
+def turns(wanted: Floats, reached: Floats, *, scaled: bool) -> tuple[Floats, Floats, Floats]:
     """Rotations (m, 3, 3), scales (m,) and squares left (m,) for centred sets (m or 1, n, 3)."""
-    left, sizes, right = np.linalg.svd(np.swapaxes(wanted, 1, 2) @ result)
+    left, sizes, right = np.linalg.svd(np.swapaxes(wanted, 1, 2) @ reached)
     sign = np.sign(np.linalg.det(left @ right))
     left[:, :, 2] *= sign[:, None]
     total = sizes[:, 0] + sizes[:, 1] + sign * sizes[:, 2]
-    own, other = (wanted**2).sum(axis=(1, 2)), (result**2).sum(axis=(1, 2))
+    own, other = (wanted**2).sum(axis=(1, 2)), (reached**2).sum(axis=(1, 2))
     if scaled:
         spread = np.maximum(other, np.finfo(float).tiny)
         return left @ right, total / spread, own - total**2 / spread

@@ -345,7 +345,7 @@ class TaskProblem:
     def _places(self) -> list[tuple[int, PlacesWanted]]:
         return [(i, one) for i, one in enumerate(self.model.wanted) if isinstance(one, PlacesWanted)]
 
-    def _placing(self, z: Floats, result: Sequence[Floats]) -> Placing:
+    def _placing(self, z: Floats, reached: Sequence[Floats]) -> Placing:
         if not self.model.placed:
             return STILL
         if self._turned:
@@ -354,8 +354,8 @@ class TaskProblem:
         shares = [(one.weight / one.unit) ** 2 / one.count for _, one in own]
         return placed(
             np.concatenate([one.places.reshape(-1, 3) for _, one in own]),
-            np.concatenate([result[i] for i, _ in own]),
-            shares=np.repeat(shares, [len(result[i]) for i, _ in own]),
+            np.concatenate([reached[i] for i, _ in own]),
+            shares=np.repeat(shares, [len(reached[i]) for i, _ in own]),
         )
 
     def _placed(

@@ -143,11 +143,11 @@ def _scaled(model: TaskModel, seed: TaskSeed) -> TaskSeed:
     return replace(seed, values=values, own=own, poses=poses, anchor=anchor, placing=placing)
 
 
-def apart(model: TaskModel, result: Sequence[TaskSeed], count: int) -> list[TaskSeed]:
+def apart(model: TaskModel, seeds: Sequence[TaskSeed], count: int) -> list[TaskSeed]:
     """The first `count` of the seeds that are not alike."""
     selected: list[TaskSeed] = []
     width = model.task.high - model.task.low
-    for one in result:
+    for one in seeds:
         if len(selected) >= count:
             break
         near = (

@@ -255,21 +255,21 @@ class GeneralLoop:
                 + f"; give another: {', '.join(linkage.drivable(column))}"
             ) from None
 
-    def _mobility(self, result: _core.RawFound | None) -> Mobility:
+    def _mobility(self, raw: _core.RawFound | None) -> Mobility:
         from sevenbar.kinematics.loop.mobility import Mobility, redundant_constraints
 
         linkage = self._linkage
         freedoms = len(linkage.columns)
-        finite = None if result is None else result.finite
-        if result is None and not self._core.can_be_driven:
+        finite = None if raw is None else raw.finite
+        if raw is None and not self._core.can_be_driven:
             # rank six at most
             finite = self._core.freedoms - 6
         return Mobility(
             freedoms=freedoms,
             gruebler=freedoms - 6,
-            rank=None if result is None else result.rank,
+            rank=None if raw is None else raw.rank,
             idle=self.idle(),
-            redundant=() if result is None else redundant_constraints(result.wrenches, self._base),
+            redundant=() if raw is None else redundant_constraints(raw.wrenches, self._base),
             finite=finite,
         )
 

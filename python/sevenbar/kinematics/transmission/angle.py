@@ -99,10 +99,10 @@ def _between(moves: tuple[int, ...], first: int, second: int) -> tuple[int, int]
     return None
 
 
-def _in_plane(letters: str, result: InPlane, first: int, second: int) -> Coupling | None:
-    passive = _between(result.moves, first, second)
+def _in_plane(letters: str, in_plane: InPlane, first: int, second: int) -> Coupling | None:
+    passive = _between(in_plane.moves, first, second)
     pin = None if passive is None else _driving_pin(letters, *passive)
-    return None if pin is None else Coupling("planar", *pin, second, first, result.plane.normal)
+    return None if pin is None else Coupling("planar", *pin, second, first, in_plane.plane.normal)
 
 
 def _driving_pin(letters: str, near_input: int, near_output: int) -> tuple[int, tuple[int]] | None:

@@ -327,20 +327,20 @@ class Stage:
         light = GREYEST + (1 - GREYEST / 255) * 0.5 * (colours @ np.array([0.21, 0.72, 0.07]))
         return np.repeat(light[..., None], 3, axis=-1).astype(np.uint8)
 
-    def _shown(self, result: Poses) -> Poses:
+    def _shown(self, poses: Poses) -> Poses:
         return {
             shape: (turn, self.in_scene(middle), scale * self.scale)
-            for shape, (turn, middle, scale) in result.items()
+            for shape, (turn, middle, scale) in poses.items()
         }
 
-    def _draw_path(self, name: str, result: Sequence[tuple[int, Colours]], thickness: float) -> None:
+    def _draw_path(self, name: str, places: Sequence[tuple[int, Colours]], thickness: float) -> None:
         self._path_colours.pop(name, None)
-        if self._frame is None or not result:
+        if self._frame is None or not places:
             self._draw_lines(name, np.empty((0, 2, 3)), np.empty((0, 2, 3), np.uint8), thickness)
             return
-        trace = self.in_scene(self._frame.places[:, [place for place, _ in result]])
+        trace = self.in_scene(self._frame.places[:, [place for place, _ in places]])
         steps = np.stack([trace[:-1], trace[1:]], axis=2)
-        colours = np.array([colour for _, colour in result])
+        colours = np.array([colour for _, colour in places])
         colours = np.broadcast_to(colours[None, :, None], steps.shape)
         if self._within is not None:
             beyond = ~(self._within[:-1] & self._within[1:])
