@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from sevenbar import errors
     from sevenbar._core import __version__
+    from sevenbar.description.constructors import from_axes, from_dh, from_pins, rssr
     from sevenbar.description.families import (
         bennett,
         bricard_line,
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
         universal_joint,
     )
     from sevenbar.description.files import load, loads
-    from sevenbar.description.forms import from_axes, from_dh, from_pins, rssr
     from sevenbar.description.law_file import load_law
     from sevenbar.description.step_axes import PartAxis, axes_of_step
     from sevenbar.description.tables import from_table
@@ -137,10 +137,10 @@ _ON_DEMAND = {
 #: Ctrl+C from its first moment on, while numpy is still to come.
 _NAMES_OF_MODULES = {
     "_core": "__version__",
+    "description.constructors": "from_axes from_dh from_pins rssr",
     "description.families": "bennett bricard_line bricard_plane bricard_trihedral clemens four_bar goldberg "
     "myard sarrus slider_crank spherical_four_bar universal_joint",
     "description.files": "load loads",
-    "description.forms": "from_axes from_dh from_pins rssr",
     "description.law_file": "load_law",
     "description.step_axes": "PartAxis axes_of_step",
     "description.tables": "from_table",

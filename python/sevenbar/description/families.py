@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import finite_number, whole_number
-from sevenbar.description.forms import from_description, head_of
+from sevenbar.description.constructors import head_of
+from sevenbar.description.forms import from_description
 from sevenbar.errors import RequestError, check_kind, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.joint_text import check_own_unit
