@@ -56,7 +56,7 @@ def finite_array(name: str, values: npt.ArrayLike) -> Floats:
     array = real_array(name, values)
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:
-        raise RequestError(f"{name}[{bad[0]}]: {array[bad[0]]} is not a finite number")
+        raise RequestError(f"{name}[{bad[0]}]: {array[bad[0]]} is not a finite number; give a finite one")
     return array
 
 
@@ -100,7 +100,7 @@ def finite_number(name: str, value: npt.ArrayLike) -> float:
         raise RequestError(f"{name}: {array.size} values where one belongs; give one number")
     number = float(array[0])
     if not math.isfinite(number):
-        raise RequestError(f"{name}: {number} is not a finite number")
+        raise RequestError(f"{name}: {number} is not a finite number; give a finite one")
     return number
 
 

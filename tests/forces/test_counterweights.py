@@ -318,6 +318,7 @@ def test_an_rssr_with_a_rod_as_coupler_is_balanced_by_crank_and_rocker():
         ({"most_mass": 1.0}, "radius: is missing"),
         ({"most_mass": -1.0, "radius": 1.0}, "most_mass: -1.0 of link 1; give kilograms > 0"),
         ({"most_mass": {2: 1.0}, "radius": 1.0}, "most_mass: none for link 1"),
+        ({"radius": {1: 1.0, 3: 1.0}}, "radius: link 3 carries no counterweight; give it for 1"),
         ({"radius": 0.0}, "radius: 0.0 of link 1; give a length > 0"),
         ({"moment": -1.0}, "moment: -1.0 is not a factor"),
         ({"force": 0.0}, "force: neither force nor moment counts"),

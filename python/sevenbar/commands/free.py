@@ -11,11 +11,10 @@ import sevenbar as sb
 from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import agreed, input_value
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.kinematics.loop.single import check_single
 from sevenbar.reporting.folder import check_targets
-from sevenbar.text.amounts import amount_in
 
 
 def free(
@@ -63,13 +62,12 @@ def free(
 ) -> None:
     """How the linkage moves by itself: falling, swinging, coasting, starting up; and where it can rest."""
     from sevenbar.drawing.animate import animate
+    from sevenbar.kinematics.dynamics.free import time_of
     from sevenbar.reporting.force_words import NOTHING_ACTS
     from sevenbar.reporting.free_motion import free_report
 
     report = free_report(options.figure_formats(figures, out))
-    seconds = amount_in(duration, "s")
-    if seconds is None or seconds <= 0:
-        raise RequestError(f"--time: {shown(duration)} is not a time; give one > 0, as in 10s or 500ms")
+    seconds = time_of("--time", duration)
     check_out(report, out, force=force)
     if film is not None:
         check_targets([film], force=force)

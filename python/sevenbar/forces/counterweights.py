@@ -252,6 +252,10 @@ def _by_link(
         if finite_number(name, values[link]) <= 0:
             unit = "a length" if name == "radius" else "kilograms"
             raise RequestError(f"{name}: {shown(values[link])} of link {link}; give {unit} > 0")
+    for link in values:
+        if link not in links:
+            carriers = ", ".join(map(str, links))
+            raise RequestError(f"{name}: link {shown(link)} carries no counterweight; give it for {carriers}")
     return {link: finite_number(name, values[link]) for link in links}
 
 

@@ -113,7 +113,7 @@ def _(result: Sizing) -> str:
             ("flywheel", flywheel),
             ("peak forces", ", ".join(most)),
             *([("in the plane", ", ".join(in_plane))] if in_plane else []),
-            ("found", force_words.found_text(result)),
+            ("found", force_words.peaks_text(result)),
         ],
     )
 

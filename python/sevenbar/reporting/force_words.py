@@ -434,22 +434,22 @@ def check_text(forces: Forces) -> str:
     return say("{checks} of the peak", checks=say(", ").join(made)) if made else ""
 
 
-def found_text(result: Sizing | None, *, law: bool = False, part: bool = False) -> str:
+def peaks_text(sizing: Sizing | None, *, law: bool = False, part: bool = False) -> str:
     """How peaks were found; `law`: the rows are those of one; `part`: from stop to stop."""
-    if result is None:
+    if sizing is None:
         return ""
-    match result.found:
+    match sizing.found:
         case "series":
             return say(
                 "by a series through all rows, peaks between them; what the rows may miss is {tail:.0e} of "
                 "the peak",
-                tail=result.tail,
+                tail=sizing.tail,
             )
         case "refined":
             return say(
                 "by polynomials over pieces of the cycle, the finer the sharper it is; what they may miss is "
                 "{tail:.0e} of the peak",
-                tail=result.tail,
+                tail=sizing.tail,
             )
         case "pieces" if part:
             return say("from stop to stop, peaks within, at the stops, and where loads set in or end")

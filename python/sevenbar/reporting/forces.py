@@ -137,7 +137,7 @@ def facts_of_forces(result: CircuitForces) -> list[tuple[str, str]]:
     facts += force_words.open_facts(forces)
     facts += force_words.unbounded_facts(forces, result.sizing)
     how = {"law": result.motion.law is not None, "part": forces.part is not None}
-    facts.append((say("found"), force_words.found_text(result.sizing, **how)))
+    facts.append((say("found"), force_words.peaks_text(result.sizing, **how)))
     facts.append((say("checks"), force_words.check_text(forces)))
     facts.append((say("rows"), f"{len(forces.status)}: {rows_text(forces.status)}"))
     return [(label, said) for label, said in facts if said]

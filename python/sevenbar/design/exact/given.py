@@ -117,7 +117,7 @@ def numbers_given(name: str, values: npt.ArrayLike) -> Floats:
     bad = np.argwhere(~np.isfinite(given))
     if bad.size:
         place = ", ".join(str(i) for i in bad[0])
-        raise RequestError(f"{name}[{place}]: {given[tuple(bad[0])]} is not a finite number")
+        raise RequestError(f"{name}[{place}]: {given[tuple(bad[0])]} is not finite; give a finite number")
     return given
 
 

@@ -145,7 +145,7 @@ def free_motion_of(
     stretches: tuple[StopStretch, ...] | None = None,
 ) -> FreeMotion:
     """A free motion; see `Circuit.free_motion`."""
-    seconds = _seconds(duration)
+    seconds = time_of("duration", duration)
     samples = whole_number("samples", samples, 2, None, "a number of rows")
     returned = _restitution(restitution, stretches)
     course = course_of(linkage, circuit, loading, stretches)
@@ -251,12 +251,11 @@ def _impacts(course: FreeCourse, begin: float, result: Stages) -> tuple[Impact, 
     )
 
 
-def _seconds(duration: float | str) -> float:
-    value = amount_in(duration, "s") if isinstance(duration, str) else finite_number("duration", duration)
+def time_of(name: str, duration: float | str) -> float:
+    """A time [s] from a number or a text with a unit, or `RequestError`."""
+    value = amount_in(duration, "s") if isinstance(duration, str) else finite_number(name, duration)
     if value is None or value <= 0:
-        raise RequestError(
-            f"duration: {shown(duration)} is not a time; give one > 0, as in 10, '10s' or '500ms'"
-        )
+        raise RequestError(f"{name}: {shown(duration)} is not a time; give one > 0, as in 10, 10s or 500ms")
     return float(value)
 
 
