@@ -105,12 +105,11 @@ class Draft:
     def dimension(self, name: str) -> Dimension:
         """The dimension of a name, or of a place as in a file (`link[2].twist`).
 
-        Raises `RequestError` where there is none, `NotCoveredError` for one of a net.
+        Raises `RequestError` where there is none.
         """
         for dimension in (*self.dimensions, *self.lengths, *self.masses):
             if name in (dimension.name, dimension.key) or (dimension.drawn and name == dimension.label):
                 return dimension
-        check_single(self.linkage)
         known = [dimension.name for dimension in (*self.lengths, *self.dimensions)]
         if why := self._no_length(name):
             raise RequestError(f"dimension: {shown(name)} {why}; give one of {', '.join(known)}")
@@ -186,7 +185,8 @@ class Draft:
 
     def with_point(self, name: str, link: int, at: Sequence[float]) -> Draft:
         """The draft with one more named point."""
-        point = {"name": name, "link": link, "at": [plain_number(value) for value in at]}
+        carrier = link if self.linkage.net is None else self.linkage.link_name(link)
+        point = {"name": name, "link": carrier, "at": [plain_number(value) for value in at]}
         points = [*self.raw.get("point", ()), point]
         return replace(self, raw={**self.raw, "point": points})
 
@@ -205,7 +205,7 @@ class Draft:
     def lengths(self) -> tuple[Dimension, ...]:
         """The lengths that a report gives of a drawing, without those that are dimensions already."""
         linkage = self.linkage
-        if linkage.form != "drawn":
+        if linkage.form != "drawn" or linkage.net is not None:
             return ()
         every = lengths_of(description_of(linkage), linkage)
         if linkage.kind != "RSSR":

@@ -64,7 +64,9 @@ def number(value: float) -> str:
 
 
 def value_text(linkage: Loop, column: int, value: float) -> str:
-    """The value of a column with its unit."""
+    """The value of a column with its unit; a length that is rounding is 0."""
+    if not linkage.turns(column) and abs(value) < REST * linkage.size:
+        value = 0.0
     return Shown(linkage.unit_of(column))(value)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.loop.geometry import Joint, Loop, Place, following_coupler
+from sevenbar.kinematics.loop.geometry import Loop, Place, following_coupler
 from sevenbar.kinematics.numbers.lengths import LONGER, drawn_length, link_names
 from sevenbar.text.units import ANGLES, MASSES, examples_of
 
@@ -123,9 +123,7 @@ def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimens
             unit = units.get(key, length)
             value = float(row.get(key, 0.0))
             result.append(Dimension(f"{key}_{i + 1}", ("link", i, key), key, group, unit, value))
-    for i, table in enumerate(description.get("joint", ())):
-        result += _of_drawn(i, table, joints[i], length)
-    result += (d for d in lengths_of(description, linkage) if LONGER in description["joint"][d.place[1]])
+    result += _of_net(description, length) if linkage.net is not None else _of_loop(description, linkage)
     letters = "uvw" if linkage.in_rows else "xyz"
     for i, table in enumerate(description.get("point", ())):
         name = table["name"]
@@ -186,10 +184,36 @@ def masses_of(description: Mapping[str, Any]) -> tuple[Dimension, ...]:
     return tuple(result)
 
 
-def _of_drawn(index: int, table: Mapping[str, Any], joint: Joint, length: str) -> list[Dimension]:
+def _of_loop(description: Mapping[str, Any], linkage: Loop) -> list[Dimension]:
+    """The numbers of a loop as drawn: its joints, and the lengths that its file has."""
+    result = []
+    for i, table in enumerate(description.get("joint", ())):
+        result += _of_drawn(i, table, linkage.joints[i].name, linkage.length_unit)
+    return result + [
+        d for d in lengths_of(description, linkage) if LONGER in description["joint"][d.place[1]]
+    ]
+
+
+def _of_net(description: Mapping[str, Any], length: str) -> list[Dimension]:
+    """The numbers of a net as drawn: its joints, pins and rods."""
+    result = []
+    for i, table in enumerate(description.get("joint", ())):
+        result += _of_drawn(i, table, str(table.get("name", f"theta_{i + 1}")), length)
+    for i, table in enumerate(description.get("pin", ())):
+        name = str(table.get("name", f"pin_{i + 1}"))
+        result += _vector(("pin", i, "at"), table["at"], "xy", (name, f"pin {name}"), length)
+    for i, table in enumerate(description.get("rod", ())):
+        name = str(table.get("name", f"rod_{i + 1}"))
+        for end, (at, link) in enumerate(zip(table["at"], table["between"], strict=True)):
+            letters = [f"{link} {letter}" for letter in "xyz"]
+            result += _vector(("rod", i, "at", end), at, letters, (name, f"rod {name}"), length)
+    return result
+
+
+def _of_drawn(index: int, table: Mapping[str, Any], name: str, length: str) -> list[Dimension]:
     """The numbers of a joint as drawn."""
     place = ("joint", index)
-    whose = (joint.name, f"{joint.name} ({joint.kind})")
+    whose = (name, f"{name} ({table['kind']})")
     result = _vector((*place, "at"), table["at"], "xyz", whose, length)
     if "axis" in table:
         result += _vector((*place, "axis"), table["axis"], ("axis x", "axis y", "axis z"), whose, "")
@@ -197,7 +221,7 @@ def _of_drawn(index: int, table: Mapping[str, Any], joint: Joint, length: str) -
         letters = [f"axis {which + 1} {letter}" for letter in "xyz"]
         result += _vector((*place, "axes", which), axis, letters, whose, "")
     if "pitch" in table:
-        name, group = whose
+        _, group = whose
         unit, pitch = f"{length}/turn", float(table["pitch"])
         result.append(Dimension(f"{name}.pitch", (*place, "pitch"), "pitch", group, unit, pitch))
     return result

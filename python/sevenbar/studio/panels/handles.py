@@ -150,8 +150,8 @@ class Handles:
         if grip is None or not self._on:
             return
         place = self._stage.from_scene(to)
-        value = grip.dragged(place, 1.0 / self._stage.scale)
-        self._alert.tried(lambda: self._session.move(grip.places, value, stroke))
+        values = grip.dragged(place, 1.0 / self._stage.scale)
+        self._alert.tried(lambda: self._session.move(values, stroke))
 
     def _let_go(self, key: str) -> None:
         """Puts a handle where its place has been rounded to."""

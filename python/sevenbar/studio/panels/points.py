@@ -41,13 +41,15 @@ class PointsPanel:
         self._remove = gui.add_button("Remove point", color="gray", icon=viser.Icon.TRASH)
         add.on_click(lambda _: worker.ask(("point", object()), lambda: self._alert.tried(self._add)))
         self._remove.on_click(lambda _: worker.ask(("point", object()), self._take_away))
+        #: The links that may carry a point, by what the dropdown calls them.
+        self._links: dict[str, int] = {}
         self._shown: object = None
         self._view: object = None
 
     def _add(self) -> None:
         at = three_numbers("at", self._at.value.replace(";", ","), "a place", "-100, -90, -80")
         name = self._name.value.strip()
-        self._session.add_point(name, int(self._link.value.partition(" ")[0]), at)
+        self._session.add_point(name, self._links[self._link.value], at)
 
     def _take_away(self) -> None:
         names = [str(point["name"]) for point in self._session.draft.raw.get("point", ())]
@@ -66,7 +68,9 @@ class PointsPanel:
         self._shown = draft
         linkage = draft.linkage
         moving, ground = linkage.graph.moving, linkage.graph.ground
-        settle(self._link, options=(*map(str, moving), f"{ground} the ground"))
+        self._links = {linkage.link_label(link): link for link in moving}
+        self._links[f"{linkage.link_label(ground)}, the ground"] = ground
+        settle(self._link, options=tuple(self._links))
         letters = "u, v, w" if draft.linkage.in_rows else "x, y, z"
         settle(self._at, label=f"at {letters} [{linkage.length_unit}]")
         names = tuple(str(point["name"]) for point in draft.raw.get("point", ()))
@@ -92,7 +96,7 @@ def _speeds(view: View, index: int) -> str:
         if point.link in view.motion.linkage.idle_links
         else ""
     )
-    line = escape(f"{point.name} on link {point.link}: {', '.join(parts)}{held}")
+    line = escape(f"{point.name} on {view.motion.linkage.link_name(point.link)}: {', '.join(parts)}{held}")
     return f'<div style="padding:2px 12px 6px;font-size:12.5px">{line}</div>'
 
 

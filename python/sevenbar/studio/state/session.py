@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -129,17 +129,15 @@ class Session:
         Changes of one stroke are one step of undo, however long it lasts. Raises `DescriptionError` for a
         value that is refused, and then nothing has changed.
         """
-        self.move((place,), value, stroke)
+        self.move({place: value}, stroke)
 
-    def move(self, places: Sequence[Place], value: object, stroke: object = None) -> None:
-        """The same for several places, which get one value in one step."""
-        draft = self.draft
-        for place in places:
-            draft = draft.with_value(place, value)
+    def move(self, values: Mapping[Place, object], stroke: object = None) -> None:
+        """The same for values at several places, in one step."""
+        draft = self.draft.with_places(values)
         if draft.raw == self.draft.raw:
             return
         now = time.monotonic()
-        what = tuple(places) if stroke is None else stroke
+        what = tuple(values) if stroke is None else stroke
         goes_on = self._last_change[0] == what and (
             stroke is not None or now - self._last_change[1] < ONE_DRAG
         )
