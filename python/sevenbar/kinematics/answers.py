@@ -216,6 +216,10 @@ class LinkageAnswers:
 
     def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
         """Of every column but a ball's, by name."""
+        if self.linkage.net is not None:
+            from sevenbar.kinematics.ranges.net_extents import net_joint_ranges
+
+            return net_joint_ranges(self.linkage, circuit)
         from sevenbar.kinematics.ranges.circuit_extents import joint_ranges
 
         return joint_ranges(self.linkage, circuit)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Motion
 from sevenbar.kinematics.loop.geometry import Loop
@@ -25,13 +26,13 @@ Row = tuple[str, ...]
 
 
 def known(of: Callable[[], T]) -> T | None:
-    """What is found along a circuit, `None` where it cannot be followed by its own length."""
+    """What is found along a circuit, `None` where it cannot be followed by its own length, or is of loops."""
     # with what follows it
     from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 
     try:
         return of()
-    except NotFollowedError:
+    except (NotFollowedError, NotCoveredError):
         return None
 
 

@@ -11,6 +11,6 @@ def check_single(linkage: Loop) -> None:
     if linkage.net is not None:
         raise NotCoveredError(
             "net: this linkage has several loops; its freedoms, modes and motion with rates, points and "
-            "links are found; forces, ranges of joints, sweeps of dimensions, bodies, engines and design "
+            "links are found; forces, stops, sweeps of dimensions, bodies, engines and design "
             "are of single loops"
         )
