@@ -148,7 +148,10 @@ def test_chosen_pivots_of_three_poses_lie_on_the_linkage():
             "infinitely many dyads",
         ),
         ([(0, 0, 0), (1, 0, 0.1)], "2 are given; give 3 to 5"),
-        ([(0, 0, 0), (1, 0, 0.1), (2, 0, math.nan)], r"poses\[2, 2\]: nan is not a finite number"),
+        (
+            [(0, 0, 0), (1, 0, 0.1), (2, 0, math.nan)],
+            r"poses\[2, 2\]: nan is not a finite number; give a finite one",
+        ),
         ([1, 2, 3], r"an array of shape \(3,\) does not fit"),
         ([["a", 2, 3]], "is not an array of numbers"),
     ],

@@ -224,7 +224,7 @@ def test_a_law_off_the_limits_lets_a_circuit_that_rocks_have_an_answer():
         ),
         ((4, [(0, 1), (0, 1)]), "box: [(0, 1), (0, 1)] is no box; give three pairs, lowest and highest"),
         ((4, "wide"), "box: 'wide' is no box; give three pairs, lowest and highest"),
-        ((4, [(0, np.nan), (0, 1), (0, 1)]), "box[1]: nan is not a finite number"),
+        ((4, [(0, np.nan), (0, 1), (0, 1)]), "box[1]: nan is not a finite number; give a finite one"),
         ((7, CUBE), "link: 7 is the ground, which stands still; give 1 to 6"),
         ((0, CUBE), "link: 0 is not a link; give 1 to 6"),
         ((True, CUBE), "link: True is not a link; give 1 to 6"),

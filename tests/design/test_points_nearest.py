@@ -152,7 +152,7 @@ def test_a_circuit_that_rocks_has_paths_too():
             {"inputs": [0, 1]},
             "inputs: 2 values where the curve has 3 places; give one for each",
         ),
-        (np.eye(3), {"inputs": [0, 1, np.inf]}, "inputs[2]: inf is not a finite number"),
+        (np.eye(3), {"inputs": [0, 1, np.inf]}, "inputs[2]: inf is not a finite number; give a finite one"),
         (
             np.eye(3),
             {"measure": "greatest"},

@@ -117,7 +117,8 @@ def numbers_given(name: str, values: npt.ArrayLike) -> Floats:
     bad = np.argwhere(~np.isfinite(given))
     if bad.size:
         place = ", ".join(str(i) for i in bad[0])
-        raise RequestError(f"{name}[{place}]: {given[tuple(bad[0])]} is not finite; give a finite number")
+        value = given[tuple(bad[0])]
+        raise RequestError(f"{name}[{place}]: {value} is not a finite number; give a finite one")
     return given
 
 
