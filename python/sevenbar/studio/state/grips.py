@@ -33,7 +33,7 @@ class Grip:
     @property
     def key(self) -> str:
         """Its own among all."""
-        return "_".join(map(str, next(iter(self.places))))
+        return "_".join(str(part) for part in next(iter(self.places)) if part != "at")
 
     @property
     def at(self) -> Floats:
