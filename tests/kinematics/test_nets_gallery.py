@@ -177,7 +177,6 @@ def test_peaucelliers_corner_goes_on_a_straight_line():
 @pytest.mark.parametrize(
     "words",
     [
-        "analyze watt --ranges",
         "calibrate watt examples/rssr_bench.csv",
         "design inertia watt --mass P=1",
         "design path watt --path examples/coupler_curve.csv --link 2 --at 0,0,0",

@@ -42,8 +42,8 @@ CORE_IMPORTERS = {
 #: Who knows in which order the joints of a loop follow each other; docs/design.md says why these. All others
 #: take links and joints as a graph.
 ORDER_KNOWN_TO = {
-    # makes a description's fixed transforms
-    "description/forms",
+    # takes a row of numbers for each joint; `forms`, which makes their fixed transforms, needs none of these
+    "description/constructors",
     # the loop as a value, its graph, and the poses of its links
     "kinematics/loop/geometry",
     "kinematics/loop/graph",

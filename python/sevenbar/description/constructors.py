@@ -57,8 +57,8 @@ def rssr(
 
     Source: docs/rssr.md, (1) and (2); Sun and Zhou, Figure 2, eq. (5) to (7).
     """
-    given = {"M": M, "N": N, "L1": L1, "L3": L3, "D": D, "L2": L2}
-    dimensions = {key: value for key, value in given.items() if value is not None}
+    numbers = {"M": M, "N": N, "L1": L1, "L3": L3, "D": D, "L2": L2}
+    dimensions = {key: value for key, value in numbers.items() if value is not None}
     return from_description(head_of(name, length_unit, speed) | {"rssr": _plain(dimensions)})
 
 

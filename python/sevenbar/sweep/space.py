@@ -11,6 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats, whole_number
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, check_word, shown
+from sevenbar.kinematics.loop.single import check_single
 from sevenbar.kinematics.numbers.dimensions import check_apart
 from sevenbar.sweep.axes import Given, SweepAxis, axis_of
 from sevenbar.sweep.sampling import MOST_SOBOL, random_points, sobol_points
@@ -61,6 +62,7 @@ class Space:
             raise RequestError("over: no dimension is given; give one or more, as in L1=200:300:51")
         if len(axes) > MOST_AXES:
             raise RequestError(f"over: {len(axes)} dimensions are too many; give at most {MOST_AXES}")
+        check_single(draft.linkage)
         result = tuple(axis_of(draft.dimension(name), given) for name, given in axes.items())
         check_apart("over", [axis.dimension for axis in result])
         names = [axis.name for axis in result]

@@ -11,6 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.loop.single import check_single
 from sevenbar.kinematics.numbers.dimensions import Dimension, check_apart, read_at
 from sevenbar.text.ranges import split_grid, split_named, split_range
 
@@ -78,6 +79,7 @@ def axes_of(draft: Draft, over: Mapping[str, Range]) -> tuple[MapAxis, MapAxis]:
         raise RequestError(
             f"over: {count} given where a map has two; give a range for each of two, {EXAMPLE}"
         )
+    check_single(draft.linkage)
     first, second = (_axis(draft.dimension(name), span) for name, span in over.items())
     check_apart("over", (first.dimension, second.dimension))
     if first.dimension.place == second.dimension.place:

@@ -10,7 +10,7 @@ from sevenbar.kinematics.circuits.extents import JointRange
 from sevenbar.kinematics.circuits.motion import Solvable
 from sevenbar.kinematics.paths.circuit_path import NotFollowedError
 
-#: Inputs of a turn: an output's extremes lie between them, but for those at the ends of an open circuit.
+#: Inputs of a turn: an output's extremes lie between them, those at the ends of an open circuit on them.
 SAMPLES = 90
 
 
