@@ -4,6 +4,7 @@ import time
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from test_studio_dragging import visited
 
 import sevenbar as sb
@@ -122,6 +123,23 @@ def test_a_new_linkage_begins_with_a_planar_four_bar(tmp_path):
     server, _ = served(tmp_path)
     client, _ = visited(server)
     assert client.value("kind").startswith("planar_4r:")
+    client.close()
+    server.stop()
+
+
+@pytest.mark.parametrize(("name", "pulled"), [("five_rod", "rod_1_1"), ("watt", "pin_2")])
+def test_a_net_is_pulled_at_pins_and_ends_of_rods_and_shows_no_fault(tmp_path, name, pulled):
+    server, _ = served(tmp_path, toml_text(name))
+    client, tab = visited(server)
+    client.put("drag points", True)
+    client.until(lambda: pulled in handles(client))
+    assert len(handles(client)) == len({tuple(client.places[f"/handles/{one}"]) for one in handles(client)})
+    client.pull(pulled, client.places[f"/handles/{pulled}"] + np.array([0.02, 0.01, 0.0]))
+    client.until(lambda: len(tab.session.past) == 1)
+    assert tab.session.problem == ""
+    client.put("history", "undo")
+    client.until(lambda: not tab.session.past)
+    assert [said for said in client.told if "fault" in str(said).lower()] == []
     client.close()
     server.stop()
 
