@@ -78,3 +78,20 @@ def test_the_report_has_the_ranges_and_leaves_out_the_bends_of_balls() -> None:
     rows = extent_rows(motion)[1]
     assert [row[1] for row in rows] == ["lower arm", "upper arm"] * 2
     assert extents_dict(motion[0], motion.linkage)["ball_cones"] is None
+
+
+def test_a_hair_off_a_change_point_a_range_is_right_or_said_to_be_unknown() -> None:
+    at = [(0, 0), (0, 1), (2 + 1e-12, 1), (2, 0), (2, 2), (4, 2), (4, 0)]
+    links = ["frame crank", "crank coupler", "coupler rocker", "frame rocker", "rocker rod", "rod lever", "frame lever"]  # fmt: skip
+    pins = [{"at": place, "links": names.split()} for place, names in zip(at, links, strict=True)]
+    for circuit in sb.from_pins(pins, ground="frame").motion(360):
+        try:
+            ranges = circuit.joint_ranges
+        except sb.errors.RequestError as error:
+            assert str(error).startswith("circuit: the range of ")
+            continue
+        for column, one in ranges.items():
+            values = circuit.q[:, circuit.columns.index(column)]
+            if one.low is not None:
+                assert one.low.value - 1e-8 <= np.nanmin(values)
+                assert np.nanmax(values) <= one.high.value + 1e-8

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sevenbar.curves.curve import Peak
+from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.extents import JointRange
 from sevenbar.kinematics.circuits.motion import Solvable
@@ -28,7 +29,11 @@ def net_joint_ranges(linkage: Solvable, circuit: Circuit) -> dict[str, JointRang
             ends = circuit.input_range
             low, high = (None, None) if ends is None else (Peak(end, end) for end in ends)
         elif column.is_output:
-            through = linkage.circuit(pose, SAMPLES, input=driving, output=column.name)
+            try:
+                through = linkage.circuit(pose, SAMPLES, input=driving, output=column.name)
+            except RequestError as error:
+                # a hair off a change point a pose alone may not tell its circuit from the next
+                raise NotFollowedError(f"circuit: the range of {column.name} is not known; {error}") from None
             low, high = output_ends(through)
         else:
             continue
