@@ -174,6 +174,23 @@ _RawBlock = tuple[
     ],
 ]
 
+#: A link in space: its steps, the rows of each of its joints and rods (the kind, the steps of the two links,
+#: the vectors, a number), and its legs: their steps, the place of the ball, the steps of its two links.
+_RawBody = tuple[
+    Sequence[int],
+    Sequence[
+        Sequence[
+            tuple[
+                str,
+                tuple[int | None, int | None],
+                tuple[tuple[float, float, float], tuple[float, float, float]],
+                float,
+            ]
+        ]
+    ],
+    Sequence[tuple[Sequence[int], tuple[float, float, float], tuple[int | None, int | None]]],
+]
+
 @final
 class NetRows:
     """The rows of a circuit of a net, which makes points of them; pickled as their numbers."""
@@ -212,17 +229,16 @@ class Net:
     ) -> tuple[int, list[list[float]], list[list[float]]]: ...
     def modes(
         self,
-        solved: Sequence[_RawDyad | _RawBlock],
+        solved: Sequence[_RawDyad | _RawBlock | _RawBody],
         driven: int,
         value: float,
     ) -> tuple[
-        list[tuple[list[float], list[tuple[list[list[float]], list[float]]], float, bool]],
-        Literal["closed-form", "algebraic", "monodromy", "searched"],
+        _Floats, _Floats, npt.NDArray[np.bool_], Literal["closed-form", "algebraic", "monodromy", "searched"]
     ]: ...
     def searched_modes(self, column: int, value: float) -> tuple[_Floats, _Floats, npt.NDArray[np.bool_]]: ...
     def motion(
         self,
-        solved: Sequence[_RawDyad | _RawBlock] | None,
+        solved: Sequence[_RawDyad | _RawBlock | _RawBody] | None,
         input: int,
         output: int,
         samples: int,
@@ -231,7 +247,7 @@ class Net:
     ) -> tuple[RawMotion, list[NetRows]]: ...
     def circuit_through(
         self,
-        solved: Sequence[_RawDyad | _RawBlock] | None,
+        solved: Sequence[_RawDyad | _RawBlock | _RawBody] | None,
         pose: _Floats,
         input: int,
         output: int,

@@ -12,8 +12,8 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use sevenbar_core::nets::{
-    self, BlockJoint, DescribedNet, Dyad, Edge, Facing, Move, NetCircuit, NetJoint, NetThrough, NotFollowed,
-    Over, Pair, Part, PlanarBlock, Reading, Row, Stage, Step, Unbalanced,
+    self, BlockJoint, BodyBlock, DescribedNet, Dyad, Edge, Facing, Leg, Move, NetCircuit, NetJoint,
+    NetThrough, NotFollowed, Over, Pair, Part, PlanarBlock, Reading, Row, Stage, Step, Unbalanced,
 };
 use sevenbar_core::rigid::{Pose, Vec3};
 
@@ -116,26 +116,35 @@ fn row((kind, on, [first, second], number): RawRow) -> PyResult<Row> {
 /// A dyad: its normal, each joint's letter R P with its place or its direction, the steps of its links and those at which it hangs.
 type RawDyad = (Vec3, [(char, Vec3); 3], [usize; 2], [Option<usize>; 2]);
 
-/// Values of the columns, the pose (rotation, translation) to which each step leads, the greatest error of a row, whether it is on a curve.
-type RawMode = (Vec<f64>, Vec<([[f64; 3]; 3], Vec3)>, f64, bool);
-
-/// Modes, and the word for their completeness.
-type RawModes = (Vec<RawMode>, &'static str);
+/// Joint values, closure errors, which are of a curve of poses, and the word for their completeness.
+type RawModes<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<bool>>,
+    &'static str,
+);
 
 /// A planar block: its normal, the steps of its links, each joint's letter with its place and its direction, or of a rod two places, and
 /// the steps of its two links: R P, of a pin of the first in a slot of the second K, of a rod L.
 type RawBlock = (Vec3, Vec<usize>, Vec<(char, Vec3, Vec3, [Option<usize>; 2])>);
+
+/// A link between a known one and a ball: its steps, the place of the ball, and the steps of the ball's two links, its own first.
+type RawLeg = (Vec<usize>, Vec3, [Option<usize>; 2]);
+
+/// A link in space: its steps, the rows of each joint and rod between it and known links, its legs.
+type RawBody = (Vec<usize>, Vec<Vec<RawRow>>, Vec<RawLeg>);
 
 /// Links that are solved together.
 #[derive(FromPyObject)]
 enum RawPart {
     Dyad(RawDyad),
     Block(RawBlock),
+    Body(RawBody),
 }
 
 impl RawPart {
-    fn part(self) -> Part {
-        match self {
+    fn part(self) -> PyResult<Part> {
+        Ok(match self {
             Self::Dyad((normal, joints, links, known)) => {
                 let pairs = joints.map(|(letter, v)| {
                     if letter == 'R' {
@@ -159,12 +168,19 @@ impl RawPart {
                 let joints = joints.into_iter().map(joint).collect();
                 Part::Planar(PlanarBlock { normal, links, joints })
             }
-        }
+            Self::Body((steps, rows, legs)) => {
+                let of_joint = |rows: Vec<RawRow>| rows.into_iter().map(row).collect::<PyResult<_>>();
+                let rows = rows.into_iter().map(of_joint).collect::<PyResult<_>>()?;
+                let leg = |(steps, ball, on)| Leg { steps, ball, on };
+                let legs = legs.into_iter().map(leg).collect();
+                Part::Body(BodyBlock { steps, rows, legs })
+            }
+        })
     }
 }
 
 fn parts(raw: Vec<RawPart>, steps: usize) -> PyResult<Vec<Part>> {
-    let parts: Vec<Part> = raw.into_iter().map(RawPart::part).collect();
+    let parts: Vec<Part> = raw.into_iter().map(RawPart::part).collect::<PyResult<_>>()?;
     let beyond = |part: &Part| match part {
         Part::Dyad(stage) => {
             let known = stage.known.into_iter().flatten();
@@ -173,6 +189,16 @@ fn parts(raw: Vec<RawPart>, steps: usize) -> PyResult<Vec<Part>> {
         Part::Planar(block) => {
             let on = block.joints.iter().flat_map(|(_, on)| on.iter().flatten());
             block.links.iter().chain(on).any(|&step| step >= steps)
+        }
+        Part::Body(block) => {
+            let of_rows = block.rows.iter().flatten().flat_map(Row::on).flatten();
+            let of_legs = block.legs.iter().flat_map(|leg| leg.on).flatten();
+            let own = block.legs.iter().flat_map(|leg| &leg.steps).chain(&block.steps);
+            let bare = block.steps.is_empty() || block.legs.iter().any(|leg| leg.steps.is_empty());
+            bare || of_rows
+                .chain(of_legs)
+                .chain(own.copied())
+                .any(|step| step >= steps)
         }
     };
     if parts.iter().any(beyond) {
@@ -283,9 +309,15 @@ impl Net {
         (found.rank, found.repeated, found.free)
     }
 
-    /// All modes of links solved together, each after those at which they hang, with a step held at a value [rad, or relative to the size], and
-    /// their completeness.
-    fn modes(&self, py: Python<'_>, solved: Vec<RawPart>, driven: usize, value: f64) -> PyResult<RawModes> {
+    /// Joint values (m, columns) and closure errors (m,) of all modes of links solved together, each after those at which they hang, with a step
+    /// held at a value [rad, or relative to the size], which are of a curve of poses, and their completeness.
+    fn modes<'py>(
+        &self,
+        py: Python<'py>,
+        solved: Vec<RawPart>,
+        driven: usize,
+        value: f64,
+    ) -> PyResult<RawModes<'py>> {
         let steps = self.net.steps.len();
         let solved = parts(solved, steps)?;
         if driven >= steps {
@@ -300,12 +332,19 @@ impl Net {
             ),
             None => (Vec::new(), "searched"),
         };
-        let pose = |p: Pose| (p.rotation, p.translation);
-        let raw = found.into_iter().map(|mode| {
-            let poses = mode.poses.into_iter().map(pose).collect();
-            (mode.values, poses, mode.residual, mode.on_curve)
-        });
-        Ok((raw.collect(), word))
+        let values: Vec<f64> = found
+            .iter()
+            .flat_map(|mode| self.described.columns_at(&mode.values))
+            .collect();
+        let residuals: Vec<f64> = found.iter().map(|mode| mode.residual).collect();
+        let on_curve: Vec<bool> = found.iter().map(|mode| mode.on_curve).collect();
+        let shape = [found.len(), self.described.column_count()];
+        Ok((
+            PyArray1::from_vec(py, values).reshape(shape)?,
+            residuals.into_pyarray(py),
+            on_curve.into_pyarray(py),
+            word,
+        ))
     }
 
     /// Joint values (m, columns), closure errors (m,) of the modes that are found from many places with a column at a value, and which are isolated.

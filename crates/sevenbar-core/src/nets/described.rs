@@ -120,6 +120,13 @@ impl DescribedNet {
         values
     }
 
+    /// The columns of the description [rad, or length] at a mode's values of those that are followed, turns the short way.
+    pub fn columns_at(&self, values: &[f64]) -> Vec<f64> {
+        let outer = self.outer_values(values, &[]);
+        let short = |(value, column): (f64, &Outer)| if column.slides { value } else { short_way(value) };
+        outer.into_iter().zip(&self.columns).map(short).collect()
+    }
+
     /// The columns of the description [rad, or length] at values of those that are followed; NaN where they are not determined.
     pub(super) fn outer_values(&self, values: &[f64], balls: &[Rotation]) -> Vec<f64> {
         let still = |value: &f64| Series([*value, 0.0, 0.0, 0.0]);

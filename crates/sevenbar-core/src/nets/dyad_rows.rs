@@ -80,7 +80,7 @@ impl DyadRows {
             .iter()
             .map(|part| match part {
                 Part::Dyad(stage) => Some(stage),
-                Part::Planar(_) => None,
+                Part::Planar(_) | Part::Body(_) => None,
             })
             .collect();
         let stages = stages?;

@@ -2,11 +2,14 @@
 //!
 //! Source: docs/theory_nets.md, (7) and (10) to (13).
 
+use super::before::Before;
+use super::body_block::BodyBlock;
 use super::dyads::Dyad;
 use super::net::Net;
-use super::planar_block::{Before, PlanarBlock};
+use super::planar_block::PlanarBlock;
 use super::rows::On;
 use super::steps::Move;
+use super::unfolded::turn_towards;
 use crate::loops::equation::rotations::short_way;
 use crate::loops::least_squares;
 use crate::loops::modes::completeness::Completeness;
@@ -30,6 +33,8 @@ pub enum Part {
     Dyad(Stage),
     /// Others in a plane.
     Planar(PlanarBlock),
+    /// One in space, with legs.
+    Body(BodyBlock),
 }
 
 /// Modes of a net, and how it is known that none is missing.
@@ -92,18 +97,18 @@ pub fn modes(net: &Net, parts: &[Part], driven: usize, value: f64) -> Option<Net
                 Part::Planar(block) => {
                     let before = Before { poses, held: driven, from, moved, size: net.size };
                     let together = block.together(&before)?;
-                    let own = together.completeness;
-                    completeness = Some(own.or_less(completeness));
+                    completeness = Some(together.completeness.or_less(completeness));
                     for own in together.poses {
                         let mut next = placed(poses, &block.links, &own);
-                        // the link that the held joint welds to one of these
-                        if let Some(k) = from.filter(|k| block.links.contains(k)) {
-                            next[driven] = next[k].then(&moved);
-                        } else if let Some(k) = from.filter(|_| block.links.contains(&driven)) {
-                            next[k] = next[driven].then(&moved.inverse());
-                        }
+                        before.weld(&mut next, &block.links);
                         longer.push((next, *on_curve));
                     }
+                }
+                Part::Body(block) => {
+                    let before = Before { poses, held: driven, from, moved, size: net.size };
+                    let (together, own) = block.together(net, &before)?;
+                    completeness = own.map_or(completeness, |own| Some(own.or_less(completeness)));
+                    longer.extend(together.into_iter().map(|next| (next, *on_curve)));
                 }
             }
         }
@@ -112,7 +117,7 @@ pub fn modes(net: &Net, parts: &[Part], driven: usize, value: f64) -> Option<Net
     let closed = partial
         .iter()
         .map(|(poses, on_curve)| settled(net, net.values(poses), (driven, value), *on_curve))
-        .filter(|mode| mode.residual < CLOSES);
+        .filter(|mode| mode.residual < CLOSES && net.is_facing(&mode.poses));
     let mut modes: Vec<Mode> = Vec::new();
     for mode in closed {
         // two that meet are one, as dyads have it
@@ -157,6 +162,16 @@ fn settled(net: &Net, mut values: Vec<f64>, (driven, value): (usize, f64), on_cu
 }
 
 impl Net {
+    /// Whether the axes of chords on their two links make less than a right angle.
+    fn is_facing(&self, poses: &[Pose]) -> bool {
+        self.facing.iter().all(|facing| {
+            let [a, b] = facing
+                .on
+                .map(|on| on.map_or(facing.direction, |s| poses[s].turn(facing.direction)));
+            dot(a, b) > 0.0
+        })
+    }
+
     /// The values of the columns for which steps lead to these poses.
     fn values(&self, poses: &[Pose]) -> Vec<f64> {
         self.steps
@@ -172,8 +187,7 @@ impl Net {
                     }
                     Move::Turn | Move::Screw(_) => {
                         let across = unit(cross(step.axis, most_perpendicular_axis(step.axis)));
-                        let turned = moved.turn(across);
-                        dot(step.axis, cross(across, turned)).atan2(dot(across, turned)) + step.reads
+                        turn_towards(step.axis, across, moved.turn(across)) + step.reads
                     }
                 }
             })

@@ -6,56 +6,89 @@
 //!
 //! Source: docs/theory_nets.md, (10) to (13).
 
-use crate::loops::equation::closure::{Slides, Solution, UNKNOWNS};
+use crate::loops::equation::closure::{Slides, Solution};
+use crate::loops::modes::completeness::Completeness;
 use crate::loops::modes::continuation::{BRISK, CAREFUL, Homotopy, Pace, Place, Way, follow};
 use crate::loops::modes::many_starts::SAME_MODE;
 use crate::loops::modes::starts::{SAME_GENERAL, distinct};
 use crate::random::Random;
 use num_complex::Complex64;
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// A vector `(v+, v-)`, or a number and nothing.
-pub(super) type Pair = [Complex64; 2];
-
-/// Systems with the same unknowns, whose numbers may be any.
-pub(super) trait Family {
+/// Systems with the same N unknowns, whose numbers, vectors of D parts, may be any.
+pub(super) trait Family<const N: usize, const D: usize> {
     /// The systems on the straight line between two members.
-    type Way: Homotopy;
-    /// Which unknowns are lengths.
-    fn slides(&self) -> Slides;
+    type Way: Homotopy<N>;
+    /// Which unknowns are numbers rather than turns `e^(i q)`.
+    fn slides(&self) -> Slides<N>;
     /// A general member.
-    fn random(&self, random: &mut Random) -> Vec<Pair>;
+    fn random(&self, random: &mut Random) -> Vec<[Complex64; D]>;
     /// A member with one of its solutions.
-    fn closed(&self, random: &mut Random) -> (Vec<Pair>, Solution);
+    fn closed(&self, random: &mut Random) -> (Vec<[Complex64; D]>, Solution<N>);
     /// The straight line between two members.
-    fn between(&self, from: &[Pair], to: &[Pair]) -> Self::Way;
+    fn between(&self, from: &[[Complex64; D]], to: &[[Complex64; D]]) -> Self::Way;
     /// Changes of a member's constants by which the trace test may be made.
-    fn ways_of_constants(&self, random: &mut Random) -> Vec<Vec<Pair>>;
-    /// How many unknowns it has.
-    fn unknowns(&self) -> usize;
+    fn ways_of_constants(&self, random: &mut Random) -> Vec<Vec<[Complex64; D]>>;
+    /// What the trace test sums over all solutions.
+    fn traced(&self, x: &Solution<N>) -> Vec<Complex64>;
+    /// How far a solution is, as a logarithm: it grows without bound along a path to infinity.
+    fn far(&self, x: &Solution<N>) -> f64;
 }
 
 /// A general member with its solutions.
-pub(super) struct Start {
-    member: Vec<Pair>,
-    pub solutions: Vec<Solution>,
+pub(super) struct Start<const N: usize, const D: usize> {
+    member: Vec<[Complex64; D]>,
+    pub solutions: Vec<Solution<N>>,
 }
 
 /// The starts of a family.
-pub(super) struct Starts {
+pub(super) struct Starts<const N: usize, const D: usize> {
     /// Found by themselves; they have as many solutions, unless `agree` is false.
-    pub starts: [Start; 2],
+    pub starts: [Start<N, D>; 2],
     agree: bool,
     /// Whether the trace test says that there are no others.
     pub certified: bool,
 }
 
+/// The starts of families that were met, by the pattern of each.
+pub(super) struct Known<F, const N: usize, const D: usize>(Mutex<HashMap<F, Slot<N, D>>>);
+
+/// Starts that are found once, or being found.
+type Slot<const N: usize, const D: usize> = Arc<OnceLock<Arc<Starts<N, D>>>>;
+
+impl<F, const N: usize, const D: usize> Default for Known<F, N, D> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<F: Family<N, D> + Clone + Eq + Hash, const N: usize, const D: usize> Known<F, N, D> {
+    /// Those of a family.
+    pub fn starts(&self, family: &F) -> Arc<Starts<N, D>> {
+        let slot = {
+            // nothing can go wrong while it is held
+            let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            if known.len() >= MOST_FAMILIES {
+                known.clear();
+            }
+            known.entry(family.clone()).or_default().clone()
+        };
+        slot.get_or_init(|| Arc::new(Starts::found(family))).clone()
+    }
+}
+
 /// Where the paths to one system end.
-pub(super) struct Ends {
+pub(super) struct Ends<const N: usize> {
     /// Isolated solutions, each once.
-    pub regular: Vec<Solution>,
+    pub regular: Vec<Solution<N>>,
     /// How many paths arrive at none of them and do not run to infinity: solutions meet, or a curve of them closes.
     pub left_over: usize,
 }
+
+/// Families whose starts are cached.
+const MOST_FAMILIES: usize = 500;
 
 /// Triangles in a row that bring nothing new before all is believed to be found, and most triangles.
 pub(super) const IDLE_TRIANGLES: usize = 10;
@@ -73,12 +106,16 @@ const MOVES: f64 = 1e-3;
 const NEAR_THE_END: [f64; 2] = [1e-3, 1e-5];
 const GROWS: f64 = 0.5;
 
+/// What arrives farther than this, as a logarithm, is at infinity, and so is what is lost a thousandth before the end, farther than that.
+const AT_INFINITY: f64 = 18.0;
+const LOST_FAR_OUT: f64 = 12.0;
+
 /// Ways to one system that are tried: from which start, at which pace.
 const TRIES: [(usize, Pace); 4] = [(0, BRISK), (1, BRISK), (0, CAREFUL), (1, CAREFUL)];
 
-impl Starts {
+impl<const N: usize, const D: usize> Starts<N, D> {
     /// Those of a family.
-    pub fn found<F: Family>(family: &F) -> Self {
+    pub fn found<F: Family<N, D>>(family: &F) -> Self {
         let mut random = [Random(0x5ee_d01), Random(0x5ee_d02)];
         let mut starts = [0, 1].map(|k: usize| Start::found(family, &mut random[k]));
         // the one that has fewer is sought anew
@@ -100,21 +137,25 @@ impl Starts {
         self.starts[0].solutions.len().max(self.starts[1].solutions.len())
     }
 
-    /// Whether both starts have as many solutions.
-    pub fn agree(&self) -> bool {
-        self.agree
+    /// What is known of the solutions of a member of which so many paths are left over.
+    pub fn completeness(&self, left_over: usize) -> Completeness {
+        match (left_over, self.certified) {
+            (0, true) => Completeness::Algebraic,
+            (0, false) if self.agree => Completeness::Monodromy,
+            _ => Completeness::Searched,
+        }
     }
 
     /// The solutions of a member.
-    pub fn ends<F: Family>(&self, family: &F, to: &[Pair]) -> Ends {
+    pub fn ends<F: Family<N, D>>(&self, family: &F, to: &[[Complex64; D]]) -> Ends<N> {
         let (total, slides) = (self.count(), family.slides());
-        let mut regular: Vec<Solution> = Vec::new();
+        let mut regular: Vec<Solution<N>> = Vec::new();
         let mut infinite = total;
         let mut idle = false;
         for (attempt, (start, pace)) in TRIES.into_iter().enumerate() {
             let start = &self.starts[start];
             let way = family.between(&start.member, to);
-            let (ends, gone) = start.arriving(&way, pace);
+            let (ends, gone) = start.arriving(family, &way, pace);
             let before = regular.len();
             regular = distinct(&slides, regular.into_iter().chain(ends), SAME_MODE);
             infinite = infinite.min(gone);
@@ -134,9 +175,9 @@ impl Starts {
     }
 }
 
-impl Start {
+impl<const N: usize, const D: usize> Start<N, D> {
     /// All solutions that triangles bring of a random member.
-    fn found<F: Family>(family: &F, random: &mut Random) -> Self {
+    fn found<F: Family<N, D>>(family: &F, random: &mut Random) -> Self {
         let slides = family.slides();
         let (member, solution) = family.closed(random);
         let mut solutions = vec![solution];
@@ -159,17 +200,17 @@ impl Start {
     }
 
     /// Whether the sum of some unknown over all solutions changes evenly while constants do.
-    fn passes_trace_test<F: Family>(&self, family: &F, random: &mut Random) -> bool {
+    fn passes_trace_test<F: Family<N, D>>(&self, family: &F, random: &mut Random) -> bool {
         let ways = family.ways_of_constants(random);
         ways.iter().any(|change| self.is_even_along(family, change))
     }
 
-    fn is_even_along<F: Family>(&self, family: &F, change: &[Pair]) -> bool {
-        let start = sum(&self.solutions);
+    fn is_even_along<F: Family<N, D>>(&self, family: &F, change: &[[Complex64; D]]) -> bool {
+        let start = sums(family, &self.solutions);
         let mut slopes = Vec::new();
         for (re, im) in TRACED_AT {
             let by = Complex64::new(re, im);
-            let to: Vec<Pair> = self
+            let to: Vec<[Complex64; D]> = self
                 .member
                 .iter()
                 .zip(change)
@@ -179,29 +220,29 @@ impl Start {
             if there.len() < self.solutions.len() {
                 return false;
             }
-            let there = sum(&there);
-            let slope: Solution = std::array::from_fn(|i| (there[i] - start[i]) / by);
+            let there = sums(family, &there);
+            let slope: Vec<Complex64> = there.iter().zip(&start).map(|(b, a)| (b - a) / by).collect();
             slopes.push(slope);
         }
         // a sum that rests says nothing, and one has poles where another has none
-        (0..family.unknowns()).any(|i| {
+        (0..start.len()).any(|i| {
             let most = slopes
                 .iter()
                 .fold(start[i].norm(), |m: f64, s| m.max(s[i].norm()));
-            let even = |s: &Solution| (s[i] - slopes[0][i]).norm() < SAME_TRACE * most;
+            let even = |s: &Vec<Complex64>| (s[i] - slopes[0][i]).norm() < SAME_TRACE * most;
             slopes[0][i].norm() > MOVES * most && slopes.iter().all(even)
         })
     }
 
     /// The solutions that arrive, and how many paths run to infinity.
-    fn arriving<H: Homotopy>(&self, way: &H, pace: Pace) -> (Vec<Solution>, usize) {
+    fn arriving<F: Family<N, D>>(&self, family: &F, way: &F::Way, pace: Pace) -> (Vec<Solution<N>>, usize) {
         let [first, second] = NEAR_THE_END;
         let ways = [
             straight(0.0, 1.0 - first, false),
             straight(1.0 - first, 1.0 - second, false),
             straight(1.0 - second, 1.0, true),
         ];
-        let places: Vec<Place> = self
+        let places: Vec<Place<N>> = self
             .solutions
             .iter()
             .map(|x| Place::start(x, Complex64::ZERO))
@@ -209,10 +250,14 @@ impl Start {
         let reached = follow(way, &places, &[&ways], pace);
         let (mut arrived, mut infinite) = (Vec::new(), 0);
         for path in reached.chunks(ways.len()) {
-            let size = |place: &Option<Place>| place.as_ref().map(|p| farthest(way.slides(), p.solution()));
+            let size = |place: &Option<Place<N>>| place.as_ref().map(|p| family.far(p.solution()));
             match (size(&path[0]), size(&path[1]), &path[2]) {
-                (_, _, Some(place)) => arrived.push(*place.solution()),
+                (_, _, Some(place)) if family.far(place.solution()) < AT_INFINITY => {
+                    arrived.push(*place.solution())
+                }
+                (_, _, Some(_)) => infinite += 1,
                 (Some(before), Some(after), None) if after - before > GROWS => infinite += 1,
+                (Some(before), None, None) if before > LOST_FAR_OUT => infinite += 1,
                 _ => (),
             }
         }
@@ -220,21 +265,20 @@ impl Start {
     }
 }
 
-/// The sum over solutions.
-fn sum(solutions: &[Solution]) -> Solution {
-    std::array::from_fn(|i| solutions.iter().map(|x| x[i]).sum())
-}
-
-/// The logarithm of the unknown that is farthest from where it began.
-fn farthest(slides: &Slides, x: &Solution) -> f64 {
-    (0..UNKNOWNS).fold(0.0, |most: f64, i| {
-        let size = x[i].norm();
-        most.max(if slides[i] {
-            (1.0 + size).ln()
-        } else {
-            size.ln().abs()
-        })
-    })
+/// What is traced, summed over solutions.
+fn sums<F: Family<N, D>, const N: usize, const D: usize>(
+    family: &F,
+    solutions: &[Solution<N>],
+) -> Vec<Complex64> {
+    let mut sums = Vec::new();
+    for x in solutions {
+        let own = family.traced(x);
+        sums.resize(own.len(), Complex64::ZERO);
+        for (sum, value) in sums.iter_mut().zip(own) {
+            *sum += value;
+        }
+    }
+    sums
 }
 
 /// A stretch of the way from 0 to 1.
@@ -243,8 +287,8 @@ fn straight(from: f64, to: f64, settle: bool) -> Way {
 }
 
 /// The solutions that arrive at the end of a way between general members.
-fn arriving<H: Homotopy>(way: &H, starts: &[Solution]) -> Vec<Solution> {
-    let places: Vec<Place> = starts.iter().map(|x| Place::start(x, Complex64::ZERO)).collect();
+fn arriving<H: Homotopy<N>, const N: usize>(way: &H, starts: &[Solution<N>]) -> Vec<Solution<N>> {
+    let places: Vec<Place<N>> = starts.iter().map(|x| Place::start(x, Complex64::ZERO)).collect();
     let ends = follow(way, &places, &[&[straight(0.0, 1.0, true)]], BRISK);
     ends.iter().flatten().map(|place| *place.solution()).collect()
 }

@@ -5,15 +5,17 @@
 //!
 //! Source: docs/theory_nets.md, (11) and (12).
 
-use super::monodromy::{Family, Pair, Starts};
+use super::monodromy::{Family, Known, Starts};
 use crate::loops::equation::closure::{Linear, Slides, Solution, UNKNOWNS};
 use crate::loops::equation::lanes::Lanes;
 use crate::loops::modes::continuation::{Homotopy, ROUNDING};
 use crate::random::Random;
 use crate::vectors::Vector;
 use num_complex::Complex64;
-use std::collections::HashMap;
-use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, LazyLock};
+
+/// A vector `(v+, v-)`, or a number and nothing.
+pub(super) type Pair = [Complex64; 2];
 
 /// A vector along a path from the ground to a place on a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -60,23 +62,11 @@ pub(super) struct PlanarFamily {
     pub chords: Vec<Chord>,
 }
 
-/// Families whose starts are cached.
-const MOST_FAMILIES: usize = 500;
-
 impl PlanarFamily {
     /// Its starts, cached: constants that are computed, not written down.
-    pub fn starts(&self) -> Arc<Starts> {
-        type Known = HashMap<PlanarFamily, Arc<OnceLock<Arc<Starts>>>>;
-        static KNOWN: LazyLock<Mutex<Known>> = LazyLock::new(Mutex::default);
-        let slot = {
-            // nothing can go wrong while it is held
-            let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-            if known.len() >= MOST_FAMILIES {
-                known.clear();
-            }
-            known.entry(self.clone()).or_default().clone()
-        };
-        slot.get_or_init(|| Arc::new(Starts::found(self))).clone()
+    pub fn starts(&self) -> Arc<Starts<UNKNOWNS, 2>> {
+        static KNOWN: LazyLock<Known<PlanarFamily, UNKNOWNS, 2>> = LazyLock::new(Known::default);
+        KNOWN.starts(self)
     }
 
     /// Whether it has as many rows as unknowns, and no more than are followed.
@@ -84,6 +74,11 @@ impl PlanarFamily {
         let rows = |chord: &Chord| if chord.closes == Closes::Pin { 2 } else { 1 };
         let count: usize = self.chords.iter().map(rows).sum();
         count == self.unknowns() && count <= UNKNOWNS && count > 0
+    }
+
+    /// How many unknowns it has.
+    pub fn unknowns(&self) -> usize {
+        self.turns + self.slides.len()
     }
 
     /// The sum of terms at a solution.
@@ -125,7 +120,7 @@ impl PlanarFamily {
     }
 }
 
-impl Family for PlanarFamily {
+impl Family<UNKNOWNS, 2> for PlanarFamily {
     type Way = Between;
 
     fn slides(&self) -> Slides {
@@ -177,8 +172,21 @@ impl Family for PlanarFamily {
         ways
     }
 
-    fn unknowns(&self) -> usize {
-        self.turns + self.slides.len()
+    fn traced(&self, x: &Solution) -> Vec<Complex64> {
+        x[..self.unknowns()].to_vec()
+    }
+
+    /// Of the unknown that is farthest from where it began.
+    fn far(&self, x: &Solution) -> f64 {
+        let slides = self.slides();
+        (0..UNKNOWNS).fold(0.0, |most: f64, i| {
+            let size = x[i].norm();
+            most.max(if slides[i] {
+                (1.0 + size).ln()
+            } else {
+                size.ln().abs()
+            })
+        })
     }
 }
 
@@ -275,7 +283,8 @@ impl Homotopy for Between {
         let one = Lanes::<V>::one();
         let half = V::splat(0.5);
         let none = Half::<V> { value: zero, columns: [zero; UNKNOWNS], drift: zero };
-        let mut rows = [[zero; UNKNOWNS + 2]; 6];
+        let mut rows = [[zero; UNKNOWNS]; UNKNOWNS];
+        let (mut error, mut drift) = ([zero; UNKNOWNS], [zero; UNKNOWNS]);
         let mut turned = [[one; UNKNOWNS]; 2];
         for g in 0..self.turns {
             turned[0][g] = x[g];
@@ -287,18 +296,18 @@ impl Homotopy for Between {
             let mut sides = [none; 4];
             for part in &chord.parts {
                 let side = &mut sides[part.side];
-                let mut drift = Lanes::splat(part.rate);
-                let mut value = Lanes::splat(part.from).plus_scaled(drift, t);
+                let mut rate = Lanes::splat(part.rate);
+                let mut value = Lanes::splat(part.from).plus_scaled(rate, t);
                 if let Some(g) = part.turn {
                     let z = turned[part.side % 2][g];
                     value = value * z;
-                    drift = drift * z;
+                    rate = rate * z;
                 }
                 if let Some(k) = part.slide {
                     let k = self.turns + k;
                     side.columns[k] = side.columns[k] + value;
                     value = value * x[k];
-                    drift = drift * x[k];
+                    rate = rate * x[k];
                 }
                 if let Some(g) = part.turn {
                     // the derivative of Z by its angle is i Z, of its inverse -i times that
@@ -306,7 +315,7 @@ impl Homotopy for Between {
                     side.columns[g] = side.columns[g] + by;
                 }
                 side.value = side.value + value;
-                side.drift = side.drift + drift;
+                side.drift = side.drift + rate;
             }
             if chord.closes == Closes::Pin {
                 for side in &sides[..2] {
@@ -314,8 +323,8 @@ impl Homotopy for Between {
                     for c in 0..self.unknowns {
                         rows[r][c] = side.columns[c];
                     }
-                    rows[r][UNKNOWNS] = unknown - side.value;
-                    rows[r][UNKNOWNS + 1] = -side.drift;
+                    error[r] = unknown - side.value;
+                    drift[r] = -side.drift;
                     r += 1;
                 }
                 continue;
@@ -338,18 +347,18 @@ impl Homotopy for Between {
                     .plus_product(d[1].value, n[0].columns[c])
                     .scale(half);
             }
-            let drift = (d[0].drift * n[1].value)
+            let moving = (d[0].drift * n[1].value)
                 .plus_product(d[0].value, n[1].drift)
                 .plus_product(d[1].drift, n[0].value)
                 .plus_product(d[1].value, n[0].drift);
-            rows[r][UNKNOWNS] = unknown + number - value.scale(half);
-            rows[r][UNKNOWNS + 1] = rate - drift.scale(half);
+            error[r] = unknown + number - value.scale(half);
+            drift[r] = rate - moving.scale(half);
             r += 1;
         }
         // unknowns that it has not rest
         for k in self.unknowns..UNKNOWNS {
             rows[k][k] = one;
         }
-        Linear { rows }
+        Linear { rows, error, drift }
     }
 }

@@ -9,8 +9,9 @@ from sevenbar.arrays import Floats, Integers, Words
 from sevenbar.kinematics.circuits.circuit_values import Trace
 from sevenbar.kinematics.circuits.from_core import circuit_from, motion_from, trace_from
 from sevenbar.kinematics.loop.mobility import Mobility
-from sevenbar.kinematics.nets.modes import net_modes, parts_of
+from sevenbar.kinematics.nets.modes import net_modes
 from sevenbar.kinematics.nets.order import Parts, order_of
+from sevenbar.kinematics.nets.parts import parts_of
 from sevenbar.kinematics.nets.tree import CoreCircuit, NetRows, Tree
 from sevenbar.kinematics.solvers.general import AGREE, at_rest, no_circuit
 

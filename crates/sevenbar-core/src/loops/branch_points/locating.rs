@@ -6,9 +6,10 @@
 //! Source: docs/theory_many.md, (15) and (16).
 
 use crate::loops::equation::closure::{Slides, Solution, UNKNOWNS};
+use crate::loops::equation::lanes::Lanes;
 use crate::loops::modes::circle::{InputClosure, side_by_side};
 use crate::loops::modes::continuation::{Homotopy, Place};
-use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
+use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
 use num_complex::Complex64;
 
 /// Most corrections: where two branch points look like one they halve the distance only.
@@ -58,13 +59,15 @@ impl LaneKernel for Linearise<'_> {
     fn run<V: Vector>(self) {
         let (x, input) = side_by_side::<V>(self.at);
         let linear = self.closure.linearise::<V, true>(&x, input);
-        let rows = linear.rows.map(|row| row.map(|x| (x.re.store(), x.im.store())));
+        let stored = |x: Lanes<V>| (x.re.store(), x.im.store());
+        let rows = linear.rows.map(|row| row.map(stored));
+        let (error, drift) = (linear.error.map(stored), linear.drift.map(stored));
         for k in 0..self.at.len() {
-            let get = |r: usize, c: usize| Complex64::new(rows[r][c].0[k], rows[r][c].1[k]);
+            let get = |x: &(Reals, Reals)| Complex64::new(x.0[k], x.1[k]);
             self.out.push(Local {
-                columns: std::array::from_fn(|c| std::array::from_fn(|r| get(r, c))),
-                input: std::array::from_fn(|r| -get(r, UNKNOWNS + 1)),
-                error: std::array::from_fn(|r| -get(r, UNKNOWNS)),
+                columns: std::array::from_fn(|c| std::array::from_fn(|r| get(&rows[r][c]))),
+                input: std::array::from_fn(|r| -get(&drift[r])),
+                error: std::array::from_fn(|r| -get(&error[r])),
             });
         }
     }

@@ -37,15 +37,18 @@ pub(crate) struct Parameters {
 }
 
 /// `e^(i t)` of each turning joint, `d` of each sliding one.
-pub(crate) type Solution = [Complex64; UNKNOWNS];
+pub(crate) type Solution<const N: usize = UNKNOWNS> = [Complex64; N];
 
 /// Which joints slide.
-pub(crate) type Slides = [bool; UNKNOWNS];
+pub(crate) type Slides<const N: usize = UNKNOWNS> = [bool; N];
 
 /// The linearised closure in each lane: `J delta = -error`, `J rate = -drift`.
-pub(crate) struct Linear<V: Vector> {
-    /// Six joint columns, then minus the closure error, then minus its drift with the parameters.
-    pub rows: [[Lanes<V>; UNKNOWNS + 2]; 6],
+pub(crate) struct Linear<V: Vector, const N: usize = UNKNOWNS> {
+    /// J, row by row.
+    pub rows: [[Lanes<V>; N]; N],
+    /// Minus the closure error, and minus its drift with the parameters.
+    pub error: [Lanes<V>; N],
+    pub drift: [Lanes<V>; N],
 }
 
 pub(crate) type Triple<V> = [Lanes<V>; 3];
@@ -82,13 +85,13 @@ pub(crate) fn cosine_sine<V: Vector>(z: Lanes<V>) -> (Lanes<V>, Lanes<V>, Lanes<
 
 /// The unknowns after a move.
 #[inline(always)]
-pub(crate) fn moved<V: Vector>(
-    slides: &Slides,
-    x: &[Lanes<V>; UNKNOWNS],
-    by: &[Lanes<V>; UNKNOWNS],
-) -> [Lanes<V>; UNKNOWNS] {
+pub(crate) fn moved<V: Vector, const N: usize>(
+    slides: &Slides<N>,
+    x: &[Lanes<V>; N],
+    by: &[Lanes<V>; N],
+) -> [Lanes<V>; N] {
     let mut out = *x;
-    for i in 0..UNKNOWNS {
+    for i in 0..N {
         out[i] = if slides[i] {
             x[i] + by[i]
         } else {
@@ -100,10 +103,14 @@ pub(crate) fn moved<V: Vector>(
 
 /// The greatest part of a move: [rad], or slides relative to the size or to themselves.
 #[inline(always)]
-pub(crate) fn size<V: Vector>(slides: &Slides, x: &[Lanes<V>; UNKNOWNS], by: &[Lanes<V>; UNKNOWNS]) -> Reals {
+pub(crate) fn size<V: Vector, const N: usize>(
+    slides: &Slides<N>,
+    x: &[Lanes<V>; N],
+    by: &[Lanes<V>; N],
+) -> Reals {
     // a sum, so that what is not a number shows
     let mut sum = V::splat(0.0);
-    for i in 0..UNKNOWNS {
+    for i in 0..N {
         let square = by[i].square();
         sum = sum
             + if slides[i] {
@@ -117,9 +124,9 @@ pub(crate) fn size<V: Vector>(slides: &Slides, x: &[Lanes<V>; UNKNOWNS], by: &[L
 
 /// Whether a path has left for infinity.
 #[inline(always)]
-pub(crate) fn infinite<V: Vector>(slides: &Slides, x: &[Lanes<V>; UNKNOWNS]) -> [bool; LANES] {
+pub(crate) fn infinite<V: Vector, const N: usize>(slides: &Slides<N>, x: &[Lanes<V>; N]) -> [bool; LANES] {
     let (mut least, mut greatest) = (V::splat(1.0), V::splat(1.0));
-    for i in 0..UNKNOWNS {
+    for i in 0..N {
         let size = x[i].square();
         greatest = size.if_greater(greatest, size, greatest);
         if !slides[i] {
@@ -134,52 +141,57 @@ pub(crate) fn infinite<V: Vector>(slides: &Slides, x: &[Lanes<V>; UNKNOWNS]) -> 
     out
 }
 
-impl<V: Vector> Linear<V> {
+impl<V: Vector, const N: usize> Linear<V, N> {
     /// The Newton correction, the rate with the parameters, and the determinant of the joints' columns, by elimination with row
     /// exchanges in each lane.
     #[inline(always)]
-    pub fn solve(mut self) -> ([Lanes<V>; UNKNOWNS], [Lanes<V>; UNKNOWNS], Lanes<V>) {
-        let a = &mut self.rows;
+    pub fn solve(mut self) -> ([Lanes<V>; N], [Lanes<V>; N], Lanes<V>) {
+        let (a, step, rate) = (&mut self.rows, &mut self.error, &mut self.drift);
         let (one, minus) = (V::splat(1.0), V::splat(-1.0));
         let greater = V::splat(EXCHANGED * EXCHANGED);
         let mut determinant = Lanes::<V>::one();
         let mut sign = one;
-        for c in 0..6 {
-            for r in c + 1..6 {
+        for c in 0..N {
+            for r in c + 1..N {
                 let (upper, lower) = (a[c][c].square() * greater, a[r][c].square());
                 if !lower.exceeds_somewhere(upper) {
                     continue;
                 }
-                for j in c..UNKNOWNS + 2 {
-                    let (x, y) = (a[c][j], a[r][j]);
-                    a[c][j] = x.replaced_where(lower, upper, y);
-                    a[r][j] = y.replaced_where(lower, upper, x);
+                let exchanged = |x: Lanes<V>, y: Lanes<V>| {
+                    (
+                        x.replaced_where(lower, upper, y),
+                        y.replaced_where(lower, upper, x),
+                    )
+                };
+                for j in c..N {
+                    (a[c][j], a[r][j]) = exchanged(a[c][j], a[r][j]);
                 }
+                (step[c], step[r]) = exchanged(step[c], step[r]);
+                (rate[c], rate[r]) = exchanged(rate[c], rate[r]);
                 sign = sign * lower.if_greater(upper, minus, one);
             }
             determinant = determinant * a[c][c];
             let inverse = a[c][c].recip();
-            for j in c + 1..UNKNOWNS + 2 {
+            for j in c + 1..N {
                 a[c][j] = a[c][j] * inverse;
             }
-            for r in c + 1..6 {
+            step[c] = step[c] * inverse;
+            rate[c] = rate[c] * inverse;
+            for r in c + 1..N {
                 let factor = a[r][c];
-                for j in c + 1..UNKNOWNS + 2 {
+                for j in c + 1..N {
                     a[r][j] = a[r][j].minus_product(factor, a[c][j]);
                 }
+                step[r] = step[r].minus_product(factor, step[c]);
+                rate[r] = rate[r].minus_product(factor, rate[c]);
             }
         }
-        let mut step = [Lanes::zero(); UNKNOWNS];
-        let mut rate = [Lanes::zero(); UNKNOWNS];
-        for c in (0..6).rev() {
-            let (mut s, mut t) = (a[c][UNKNOWNS], a[c][UNKNOWNS + 1]);
-            for j in c + 1..6 {
-                s = s.minus_product(a[c][j], step[j]);
-                t = t.minus_product(a[c][j], rate[j]);
+        for c in (0..N).rev() {
+            for j in c + 1..N {
+                step[c] = step[c].minus_product(a[c][j], step[j]);
+                rate[c] = rate[c].minus_product(a[c][j], rate[j]);
             }
-            step[c] = s;
-            rate[c] = t;
         }
-        (step, rate, determinant.scale(sign))
+        (self.error, self.drift, determinant.scale(sign))
     }
 }

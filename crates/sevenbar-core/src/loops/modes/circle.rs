@@ -206,7 +206,8 @@ impl Homotopy for InputClosure<'_> {
         input: Lanes<V>,
     ) -> Linear<V> {
         let (zero, one) = (Lanes::<V>::zero(), Lanes::<V>::one());
-        let mut rows = [[zero; UNKNOWNS + 2]; 6];
+        let mut rows = [[zero; UNKNOWNS]; UNKNOWNS];
+        let (mut error, mut drift) = ([zero; UNKNOWNS], [zero; UNKNOWNS]);
         let mut ex = [one, zero, zero];
         let mut ey = [zero, one, zero];
         let mut ez = [zero, zero, one];
@@ -215,8 +216,8 @@ impl Homotopy for InputClosure<'_> {
             let moment = cross(&place, &ez);
             if i == UNKNOWNS {
                 for k in 0..3 {
-                    rows[k][UNKNOWNS + 1] = -ez[k];
-                    rows[k + 3][UNKNOWNS + 1] = -moment[k];
+                    drift[k] = -ez[k];
+                    drift[k + 3] = -moment[k];
                 }
                 let (cosine, sine, _) = cosine_sine(input);
                 turn(&mut ex, &mut ey, cosine, sine);
@@ -245,13 +246,13 @@ impl Homotopy for InputClosure<'_> {
             turn_real(&mut ey, &mut ez, self.twists[i]);
         }
         let half = V::splat(-0.5);
-        rows[0][UNKNOWNS] = (ey[2] - ez[1]).scale(half);
-        rows[1][UNKNOWNS] = (ez[0] - ex[2]).scale(half);
-        rows[2][UNKNOWNS] = (ex[1] - ey[0]).scale(half);
+        error[0] = (ey[2] - ez[1]).scale(half);
+        error[1] = (ez[0] - ex[2]).scale(half);
+        error[2] = (ex[1] - ey[0]).scale(half);
         for k in 0..3 {
-            rows[k + 3][UNKNOWNS] = -place[k];
+            error[k + 3] = -place[k];
         }
-        Linear { rows }
+        Linear { rows, error, drift }
     }
 }
 

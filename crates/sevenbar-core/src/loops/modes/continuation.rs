@@ -65,9 +65,9 @@ const FIRST_STEP: f64 = 0.02;
 const SHORTEST_STEP: f64 = 1e-9;
 
 /// A closure whose parameter moves.
-pub(crate) trait Homotopy {
+pub(crate) trait Homotopy<const N: usize = UNKNOWNS> {
     /// Which joints slide.
-    fn slides(&self) -> &Slides;
+    fn slides(&self) -> &Slides<N>;
     /// Whose phases are summed along all ways, if any are.
     #[inline(always)]
     fn watch(&self) -> Option<&Watch> {
@@ -88,19 +88,19 @@ pub(crate) trait Homotopy {
         at + by
     }
     /// The closure linearised in the unknowns; its derivative by the parameter only if `DRIFT`.
-    fn linearise<V: Vector, const DRIFT: bool>(&self, x: &[Lanes<V>; UNKNOWNS], at: Lanes<V>) -> Linear<V>;
+    fn linearise<V: Vector, const DRIFT: bool>(&self, x: &[Lanes<V>; N], at: Lanes<V>) -> Linear<V, N>;
 }
 
 /// A solution under way, and what its next step is predicted from.
 #[derive(Clone, Copy)]
-pub(crate) struct Place {
-    x: Solution,
+pub(crate) struct Place<const N: usize = UNKNOWNS> {
+    x: Solution<N>,
     /// The parameter.
     at: Complex64,
     /// The solution's rate here and at the place before, the move between and its step; zero where there was none.
-    rate: Solution,
-    rate_before: Solution,
-    moved_before: Solution,
+    rate: Solution<N>,
+    rate_before: Solution<N>,
+    moved_before: Solution<N>,
     before: Complex64,
     /// Length of the next step: it should just be accepted.
     step: f64,
@@ -119,12 +119,12 @@ pub(crate) struct Way {
 
 /// The places at the end of each way of each start, way by way; `ways` is one list for all, or one for each. `None` where a path
 /// does not arrive at a finite regular solution.
-pub(crate) fn follow<H: Homotopy>(
+pub(crate) fn follow<H: Homotopy<N>, const N: usize>(
     homotopy: &H,
-    starts: &[Place],
+    starts: &[Place<N>],
     ways: &[&[Way]],
     pace: Pace,
-) -> Vec<Option<Place>> {
+) -> Vec<Option<Place<N>>> {
     let each = ways.first().map_or(0, |w| w.len());
     let mut ends = vec![None; starts.len() * each];
     if !ends.is_empty() {
@@ -133,10 +133,10 @@ pub(crate) fn follow<H: Homotopy>(
     ends
 }
 
-impl Place {
+impl<const N: usize> Place<N> {
     /// Where a way begins.
-    pub fn start(x: &Solution, at: Complex64) -> Self {
-        let zero = [Complex64::ZERO; UNKNOWNS];
+    pub fn start(x: &Solution<N>, at: Complex64) -> Self {
+        let zero = [Complex64::ZERO; N];
         Self {
             x: *x,
             at,
@@ -149,12 +149,12 @@ impl Place {
         }
     }
 
-    pub fn solution(&self) -> &Solution {
+    pub fn solution(&self) -> &Solution<N> {
         &self.x
     }
 
     /// The solution's rate along the way.
-    pub fn rate(&self) -> &Solution {
+    pub fn rate(&self) -> &Solution<N> {
         &self.rate
     }
 
@@ -164,21 +164,21 @@ impl Place {
     }
 }
 
-struct Follow<'a, H> {
+struct Follow<'a, H, const N: usize> {
     homotopy: &'a H,
-    starts: &'a [Place],
+    starts: &'a [Place<N>],
     ways: &'a [&'a [Way]],
     each: usize,
     pace: Pace,
-    ends: &'a mut [Option<Place>],
+    ends: &'a mut [Option<Place<N>>],
 }
 
 /// The state of all lanes between steps.
-struct Walk<V> {
-    x: [Lanes<V>; UNKNOWNS],
-    rate: [Lanes<V>; UNKNOWNS],
-    rate_before: [Lanes<V>; UNKNOWNS],
-    moved_before: [Lanes<V>; UNKNOWNS],
+struct Walk<V, const N: usize> {
+    x: [Lanes<V>; N],
+    rate: [Lanes<V>; N],
+    rate_before: [Lanes<V>; N],
+    moved_before: [Lanes<V>; N],
     at: Lanes<V>,
     before: Lanes<V>,
     phases: PhaseLanes<V>,
@@ -193,11 +193,11 @@ struct Walk<V> {
     settling: [usize; LANES],
 }
 
-impl<H: Homotopy> LaneKernel for Follow<'_, H> {
+impl<H: Homotopy<N>, const N: usize> LaneKernel for Follow<'_, H, N> {
     #[inline(always)]
     fn run<V: Vector>(mut self) {
-        let zero = [Lanes::zero(); UNKNOWNS];
-        let mut walk = Walk::<V> {
+        let zero = [Lanes::zero(); N];
+        let mut walk = Walk::<V, N> {
             x: zero,
             rate: zero,
             rate_before: zero,
@@ -224,7 +224,7 @@ impl<H: Homotopy> LaneKernel for Follow<'_, H> {
     }
 }
 
-impl<H: Homotopy> Follow<'_, H> {
+impl<H: Homotopy<N>, const N: usize> Follow<'_, H, N> {
     #[inline(always)]
     fn way(&self, path: usize, way: usize) -> Way {
         let ways = if self.ways.len() == 1 {
@@ -237,7 +237,7 @@ impl<H: Homotopy> Follow<'_, H> {
 
     /// Puts the next paths into free lanes; a lane without one rests on a copy of the first.
     #[inline(always)]
-    fn load<V: Vector>(&self, walk: &mut Walk<V>, free: [bool; LANES], next: &mut usize) {
+    fn load<V: Vector>(&self, walk: &mut Walk<V, N>, free: [bool; LANES], next: &mut usize) {
         let mut from = [&self.starts[0]; LANES];
         for lane in (0..LANES).filter(|&k| free[k]) {
             let more = *next < self.starts.len();
@@ -256,7 +256,7 @@ impl<H: Homotopy> Follow<'_, H> {
                 walk.phases.put(lane, &from[lane].phases, watch);
             }
         }
-        for i in 0..UNKNOWNS {
+        for i in 0..N {
             put(&mut walk.x[i], &free, from.map(|p| p.x[i]));
             // a first step is predicted from nothing
             if from.iter().any(|p| p.step > 0.0) {
@@ -271,7 +271,7 @@ impl<H: Homotopy> Follow<'_, H> {
 
     /// One step in each lane; returns which lanes are done with their paths.
     #[inline(always)]
-    fn advance<V: Vector>(&mut self, walk: &mut Walk<V>) -> [bool; LANES] {
+    fn advance<V: Vector>(&mut self, walk: &mut Walk<V, N>) -> [bool; LANES] {
         let count = self.starts.len();
         let mut step = [0.0; LANES];
         let (mut ahead_re, mut ahead_im) = ([0.0; LANES], [0.0; LANES]);
@@ -305,8 +305,8 @@ impl<H: Homotopy> Follow<'_, H> {
         let pace = Lanes::zero().replaced_where(known, zero, walk.before.recip());
         let second = ahead * ahead * pace;
         let third = second * (ahead + walk.before) * pace;
-        let mut predicted = [Lanes::<V>::zero(); UNKNOWNS];
-        for i in 0..UNKNOWNS {
+        let mut predicted = [Lanes::<V>::zero(); N];
+        for i in 0..N {
             let (rate, rate_before) = (walk.rate[i], walk.rate_before[i]);
             let mean = walk.moved_before[i] * pace;
             predicted[i] = (rate * ahead)
@@ -369,7 +369,7 @@ impl<H: Homotopy> Follow<'_, H> {
             walk.phases.go_on(&factors, taken, watch);
         }
         walk.before = walk.before.replaced_where(gone, zero, ahead);
-        for i in 0..UNKNOWNS {
+        for i in 0..N {
             let by = predicted[i] + first_correction[i] + second_correction[i];
             walk.rate_before[i] = walk.rate_before[i].replaced_where(gone, zero, walk.rate[i]);
             walk.moved_before[i] = walk.moved_before[i].replaced_where(gone, zero, by);
@@ -383,7 +383,7 @@ impl<H: Homotopy> Follow<'_, H> {
     #[inline(always)]
     fn finished<V: Vector>(
         &mut self,
-        walk: &mut Walk<V>,
+        walk: &mut Walk<V, N>,
         accepted: &Reals,
         (first, last): (&Reals, &Reals),
     ) -> [bool; LANES] {
@@ -422,12 +422,12 @@ impl<H: Homotopy> Follow<'_, H> {
     }
 }
 
-impl<V: Vector> Walk<V> {
+impl<V: Vector, const N: usize> Walk<V, N> {
     /// The place of a lane.
     #[inline(always)]
-    fn place(&self, lane: usize) -> Place {
-        let mut out = Place::start(&[Complex64::ZERO; UNKNOWNS], get(self.at, lane));
-        for i in 0..UNKNOWNS {
+    fn place(&self, lane: usize) -> Place<N> {
+        let mut out = Place::start(&[Complex64::ZERO; N], get(self.at, lane));
+        for i in 0..N {
             out.x[i] = get(self.x[i], lane);
             out.rate[i] = get(self.rate[i], lane);
             out.rate_before[i] = get(self.rate_before[i], lane);

@@ -53,10 +53,10 @@ pub(super) struct PhaseLanes<V> {
 impl Watch {
     /// The factors at solutions whose screws have these determinants.
     #[inline(always)]
-    pub fn factors<V: Vector>(
+    pub fn factors<V: Vector, const N: usize>(
         &self,
-        slides: &Slides,
-        x: &[Lanes<V>; UNKNOWNS],
+        slides: &Slides<N>,
+        x: &[Lanes<V>; N],
         determinant: Lanes<V>,
     ) -> [Lanes<V>; FACTORS] {
         let mut out = [Lanes::zero(); FACTORS];
@@ -65,8 +65,8 @@ impl Watch {
             let z = x[middle] * Lanes::splat(zero.conj());
             out[0] = out[0] * (z + z.recip()).recip();
         }
-        for i in 0..UNKNOWNS {
-            if let Some(value) = self.values[i] {
+        for (i, value) in self.values.iter().enumerate() {
+            if let &Some(value) = value {
                 // the second factor is the first of the solution mirrored at the real inputs
                 let mirrored = if slides[i] { x[i] } else { x[i].recip() };
                 out[1 + 2 * i] = x[i] - Lanes::splat(value);

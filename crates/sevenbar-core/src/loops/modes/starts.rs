@@ -185,12 +185,12 @@ fn by_monodromy(slides: &Slides, random: &mut Random) -> Start {
 }
 
 /// Each solution once; those nearer than `apart` [rad, or relative to the size] are one.
-pub(crate) fn distinct(
-    slides: &Slides,
-    solutions: impl Iterator<Item = Solution>,
+pub(crate) fn distinct<const N: usize>(
+    slides: &Slides<N>,
+    solutions: impl Iterator<Item = Solution<N>>,
     apart: f64,
-) -> Vec<Solution> {
-    let mut kept: Vec<Solution> = Vec::new();
+) -> Vec<Solution<N>> {
+    let mut kept: Vec<Solution<N>> = Vec::new();
     for solution in solutions {
         if kept.iter().all(|k| !same(slides, k, &solution, apart)) {
             kept.push(solution);
@@ -202,8 +202,8 @@ pub(crate) fn distinct(
 /// Solutions at general parameters lie farther apart than this; far ones are not known better.
 pub(crate) const SAME_GENERAL: f64 = 1e-4;
 
-fn same(slides: &Slides, a: &Solution, b: &Solution, apart: f64) -> bool {
-    (0..UNKNOWNS).all(|i| {
+fn same<const N: usize>(slides: &Slides<N>, a: &Solution<N>, b: &Solution<N>, apart: f64) -> bool {
+    (0..N).all(|i| {
         if slides[i] {
             (a[i] - b[i]).norm() < apart * (1.0 + a[i].norm())
         } else {

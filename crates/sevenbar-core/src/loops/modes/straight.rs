@@ -52,7 +52,7 @@ impl Homotopy for Straight<'_> {
         let t = at.re;
         let zero = Lanes::<V>::zero();
         let one = Lanes::<V>::one();
-        let mut rows = [[zero; UNKNOWNS + 2]; 6];
+        let mut rows = [[zero; UNKNOWNS]; UNKNOWNS];
         let mut ex = [one, zero, zero];
         let mut ey = [zero, one, zero];
         let mut ez = [zero, zero, one];
@@ -128,7 +128,7 @@ impl Homotopy for Straight<'_> {
             }
             turn(&mut ey, &mut ez, cosine, sine);
         }
-        let error = [
+        let mut error = [
             (ey[2] - ez[1]).scale(V::splat(0.5)),
             (ez[0] - ex[2]).scale(V::splat(0.5)),
             (ex[1] - ey[0]).scale(V::splat(0.5)),
@@ -136,14 +136,12 @@ impl Homotopy for Straight<'_> {
             place[1],
             place[2],
         ];
-        for k in 0..3 {
-            rows[k][UNKNOWNS + 1] = -drift_turn[k];
-            rows[k + 3][UNKNOWNS + 1] = -drift_shift[k];
-        }
+        let [a, b, c] = drift_turn.map(|x| -x);
+        let [d, e, f] = drift_shift.map(|x| -x);
         for k in 0..6 {
             let unknown = Lanes { re: V::splat(ROUNDING * (k + 1) as f64), im: V::splat(0.0) };
-            rows[k][UNKNOWNS] = unknown - error[k];
+            error[k] = unknown - error[k];
         }
-        Linear { rows }
+        Linear { rows, error, drift: [a, b, c, d, e, f] }
     }
 }

@@ -1,0 +1,310 @@
+//! A link that six rows hold at known links, some of them by legs: as a member of its family, and its poses from the solutions.
+//!
+//! A leg is a link with a joint of few freedoms at a known link and a ball at this one. What it leaves to its ball is a rod, planes, or both;
+//! where the ball is gives the leg's own pose.
+//!
+//! Source: docs/theory_nets.md, (19) to (22).
+
+use super::before::Before;
+use super::body_family::{BodyFamily, Held, Holds, Triple, UNKNOWNS, halves, pose};
+use super::hinged::hinged;
+use super::monodromy::Ends;
+use super::net::Net;
+use super::rows::{On, Row};
+use super::steps::Move;
+use super::unfolded::turn_towards;
+use crate::loops::equation::closure::Solution;
+use crate::loops::equation::rotations::squared_up;
+use crate::loops::modes::completeness::Completeness;
+use crate::rigid::{Pose, Vec3, cross, dot, most_perpendicular_axis, scale, sub, unit};
+use num_complex::Complex64;
+
+/// A link between a known link and a ball.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leg {
+    /// The steps that carry it from the known link outwards: one, or two turns about one place.
+    pub steps: Vec<usize>,
+    /// Its ball as drawn.
+    pub ball: Vec3,
+    /// The steps that carry the ball's two links, this one first.
+    pub on: [On; 2],
+}
+
+/// A link, the rows that hold it and its legs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyBlock {
+    /// The steps that carry it from another link outwards.
+    pub steps: Vec<usize>,
+    /// The rows of each joint and rod between it and known links; of one step, those besides.
+    pub rows: Vec<Vec<Row>>,
+    /// Its legs.
+    pub legs: Vec<Leg>,
+}
+
+/// A solution whose parts of length 1 have larger imaginary parts than this is not real: as in the plane.
+const REAL: f64 = 3e-6;
+
+/// A square that is below zero by less than this part of those that it comes from is zero.
+const ROUNDING: f64 = 1e-14;
+
+impl BodyBlock {
+    /// The last of its steps.
+    fn own(&self) -> Option<usize> {
+        self.steps.last().copied()
+    }
+
+    /// All ways to put it together, as the poses of all steps, and how complete they are, if they are not in closed form; `None` where it has not
+    /// as many rows as freedoms.
+    pub(super) fn together(
+        &self,
+        net: &Net,
+        before: &Before,
+    ) -> Option<(Vec<Vec<Pose>>, Option<Completeness>)> {
+        let mut layout = Layout::new(self.own()?, before);
+        for rows in &self.rows {
+            for row in rows {
+                layout.add(row)?;
+            }
+            layout.shared.clear();
+        }
+        for leg in &self.legs {
+            layout.stand(net, leg)?;
+            layout.shared.clear();
+        }
+        let Layout { mut family, member, .. } = layout;
+        family.vectors = member.len();
+        if let ([step], [row]) = (&self.steps[..], &family.rows[..]) {
+            let base = net.steps[*step].parent.map_or(Pose::STILL, |p| before.poses[p]);
+            let own = hinged(net, *step, &base, row, &member);
+            let own = own.into_iter().map(|by| base.then(&net.moving_by(*step, by)));
+            let poses = own.flat_map(|pose| self.placed(net, before, &pose)).collect();
+            return Some((poses, None));
+        }
+        if !family.is_square() {
+            return None;
+        }
+        let starts = family.starts();
+        let Ends { regular, left_over } = starts.ends(&family, &member);
+        let real = regular.iter().filter_map(|z| real_pose(z, before.size));
+        let poses = real.flat_map(|pose| self.placed(net, before, &pose)).collect();
+        Some((poses, Some(starts.completeness(left_over))))
+    }
+
+    /// The poses of all steps where the link has a pose, for each pose of its legs.
+    fn placed(&self, net: &Net, before: &Before, own: &Pose) -> Vec<Vec<Pose>> {
+        let Some(link) = self.own() else {
+            return Vec::new();
+        };
+        let mut ways = vec![before.poses.to_vec()];
+        ways[0][link] = *own;
+        for leg in &self.legs {
+            let mut longer = Vec::new();
+            for poses in ways {
+                for values in leg.reaching(net, before, own, link) {
+                    let mut poses = poses.clone();
+                    follow(net, &mut poses, &leg.steps, &values);
+                    before.weld(&mut poses, &leg.steps);
+                    longer.push(poses);
+                }
+            }
+            ways = longer;
+        }
+        ways.retain_mut(|poses| {
+            let parent = net.steps[self.steps[0]].parent;
+            let moved = parent.map_or(Pose::STILL, |p| poses[p]).inverse().then(own);
+            let values = net.unfolded(&self.steps, &moved);
+            follow(net, poses, &self.steps, &values);
+            before.weld(poses, &[link]);
+            // rows of angles hold with a turned axis, too, to which no steps lead
+            dot(poses[link].rotation[0], own.rotation[0]) > 0.0
+                && dot(poses[link].rotation[1], own.rotation[1]) > 0.0
+        });
+        ways
+    }
+}
+
+/// Places steps in a row that move by so much.
+fn follow(net: &Net, poses: &mut [Pose], steps: &[usize], values: &[f64]) {
+    for (&step, &by) in steps.iter().zip(values) {
+        let parent = net.steps[step].parent.map_or(Pose::STILL, |p| poses[p]);
+        poses[step] = parent.then(&net.moving_by(step, by));
+    }
+}
+
+impl Leg {
+    /// Its ball in its own numbers, and the pose of the known link that carries it.
+    fn ends(&self, net: &Net, before: &Before) -> Option<(Vec3, Pose)> {
+        let (first, last) = (*self.steps.first()?, *self.steps.last()?);
+        let offset = before.offset(self.on[0], last)?;
+        let parent = net.steps[first].parent;
+        Some((
+            offset.carry(self.ball),
+            parent.map_or(Pose::STILL, |p| before.poses[p]),
+        ))
+    }
+
+    /// By how much its steps move, in each way, where its ball is where the link has it.
+    fn reaching(&self, net: &Net, before: &Before, own: &Pose, link: usize) -> Vec<Vec<f64>> {
+        let ends = self.ends(net, before).zip(before.offset(self.on[1], link));
+        let Some(((ball, base), on_link)) = ends else {
+            return Vec::new();
+        };
+        let goal = base.inverse().carry(own.then(&on_link).carry(self.ball));
+        let first = &net.steps[self.steps[0]];
+        let (from, to) = (sub(ball, first.origin), sub(goal, first.origin));
+        match self.steps[..] {
+            [_] if first.moves == Move::Slide => vec![vec![dot(first.axis, sub(goal, ball))]],
+            [_] => vec![vec![turn_towards(first.axis, from, to)]],
+            [_, second] => two_turns([first.axis, net.steps[second].axis], from, to),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// The turns about a first axis after a second, through one place, that take a vector to another as long: two ways, one where they meet.
+fn two_turns([first, second]: [Vec3; 2], from: Vec3, to: Vec3) -> Vec<Vec<f64>> {
+    // between them it is as far along the second axis as before, and along the first as after
+    let across = cross(first, second);
+    let (cosine, square) = (dot(first, second), dot(across, across));
+    let (along_first, along_second) = (dot(first, to), dot(second, from));
+    let a = (along_first - cosine * along_second) / square;
+    let b = (along_second - cosine * along_first) / square;
+    let length = dot(from, from);
+    let left = (length - a * along_first - b * along_second) / square;
+    if left < -ROUNDING * length / square {
+        return Vec::new();
+    }
+    let height = left.max(0.0).sqrt();
+    let heights = if height > 0.0 {
+        vec![height, -height]
+    } else {
+        vec![0.0]
+    };
+    let way = |height: f64| {
+        let between: Vec3 = std::array::from_fn(|i| a * first[i] + b * second[i] + height * across[i]);
+        vec![
+            turn_towards(first, between, to),
+            turn_towards(second, from, between),
+        ]
+    };
+    heights.into_iter().map(way).collect()
+}
+
+/// The pose of a solution; `None` where it is not real.
+fn real_pose(z: &Solution<UNKNOWNS>, size: f64) -> Option<Pose> {
+    let (x, _) = halves(z);
+    let greatest = x.iter().copied().max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+    let phase = greatest.conj() / greatest.norm();
+    let length = x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+    let real = z.map(|z| z * phase / length);
+    if real.iter().any(|z| z.im.abs() > REAL * (1.0 + z.re.abs())) {
+        return None;
+    }
+    let [a, b, c, place] = pose(&real.map(|z| z.re.into())).map(|v| v.map(|z| z.re));
+    let rotation = std::array::from_fn(|i| [a[i], b[i], c[i]]);
+    Some(Pose { rotation: squared_up(&rotation), translation: scale(place, size) })
+}
+
+/// A block as a member of its family.
+struct Layout<'a> {
+    link: usize,
+    before: &'a Before<'a>,
+    family: BodyFamily,
+    member: Vec<Triple>,
+    /// The vectors of one joint, each with its place among all: rows share them.
+    shared: Vec<(bool, Vec3, usize)>,
+}
+
+impl<'a> Layout<'a> {
+    fn new(link: usize, before: &'a Before<'a>) -> Self {
+        let family = BodyFamily { vectors: 0, rows: Vec::new() };
+        Self { link, before, family, member: Vec::new(), shared: Vec::new() }
+    }
+
+    fn vector(&mut self, own: bool, vector: Vec3) -> usize {
+        let same = |s: &&(bool, Vec3, usize)| s.0 == own && s.1 == vector;
+        if let Some((.., place)) = self.shared.iter().find(same) {
+            return *place;
+        }
+        self.member.push(vector.map(Complex64::from));
+        self.shared.push((own, vector, self.member.len() - 1));
+        self.member.len() - 1
+    }
+
+    fn hold(&mut self, holds: Holds, known: Vec3, own: Vec3, number: f64) {
+        let (known, own) = (self.vector(false, known), self.vector(true, own));
+        self.member
+            .push([number.into(), Complex64::ZERO, Complex64::ZERO]);
+        self.family
+            .rows
+            .push(Held { holds, known, own, number: self.member.len() - 1 });
+    }
+
+    /// The ball of a leg, which its own steps leave on a circle, a line or a sphere.
+    fn stand(&mut self, net: &Net, leg: &Leg) -> Option<()> {
+        let (ball, base) = leg.ends(net, self.before)?;
+        let small = |x: Vec3| scale(x, 1.0 / self.before.size);
+        let own = small(self.before.offset(leg.on[1], self.link)?.carry(leg.ball));
+        let first = &net.steps[*leg.steps.first()?];
+        let moves: Vec<Move> = leg.steps.iter().map(|&s| net.steps[s].moves).collect();
+        let (arm, along) = (small(sub(ball, first.origin)), base.turn(first.axis));
+        let origin = small(base.carry(first.origin));
+        match moves[..] {
+            [Move::Slide] => {
+                let across = unit(cross(along, most_perpendicular_axis(along)));
+                for normal in [across, cross(along, across)] {
+                    let height = dot(normal, small(base.carry(ball)));
+                    self.hold(Holds::Plane, normal, own, -height);
+                }
+            }
+            [Move::Turn] => {
+                let up = dot(first.axis, arm);
+                let centre: Vec3 = std::array::from_fn(|i| origin[i] + up * along[i]);
+                let square = dot(arm, arm) - up * up;
+                self.hold(Holds::Plane, along, own, -dot(along, centre));
+                self.hold(
+                    Holds::Rod,
+                    centre,
+                    own,
+                    dot(centre, centre) + dot(own, own) - square,
+                );
+            }
+            [Move::Turn, Move::Turn] if net.steps[leg.steps[1]].origin == first.origin => {
+                let number = dot(origin, origin) + dot(own, own) - dot(arm, arm);
+                self.hold(Holds::Rod, origin, own, number);
+            }
+            _ => return None,
+        }
+        Some(())
+    }
+
+    /// A row between the link and a known one; `None` where it is between others.
+    fn add(&mut self, row: &Row) -> Option<()> {
+        let on = row.on();
+        // which side is the link's, how it is ahead of it, and where the other is
+        let side = (0..2).find(|&s| self.before.offset(on[s], self.link).is_some())?;
+        let offset = self.before.offset(on[side], self.link)?;
+        let known = on[1 - side].map_or(Pose::STILL, |s| self.before.poses[s]);
+        let small = |x: Vec3| scale(x, 1.0 / self.before.size);
+        match *row {
+            Row::Length { at, length, .. } => {
+                let (a, b) = (small(known.carry(at[1 - side])), small(offset.carry(at[side])));
+                let length = length / self.before.size;
+                self.hold(Holds::Rod, a, b, dot(a, a) + dot(b, b) - length * length);
+            }
+            Row::Along { at, v, .. } if side == 0 => {
+                let (a, b) = (known.turn(v), small(offset.carry(at)));
+                self.hold(Holds::Plane, a, b, -dot(a, small(known.carry(at))));
+            }
+            Row::Along { at, v, .. } => {
+                let (a, b) = (small(known.carry(at)), offset.turn(v));
+                self.hold(Holds::OwnPlane, a, b, -dot(b, small(offset.carry(at))));
+            }
+            Row::Angle { u, v, cosine, .. } => {
+                let [a, b] = if side == 1 { [u, v] } else { [v, u] };
+                self.hold(Holds::Angle, known.turn(a), offset.turn(b), -cosine);
+            }
+        }
+        Some(())
+    }
+}
