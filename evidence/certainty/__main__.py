@@ -13,14 +13,15 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from evidence import ROOT
-from evidence.certainty import changes, counted, moving, narrow, nets
+from evidence.certainty import changes, counted, moving, narrow, nets, spatial_nets
 from evidence.certainty.family import Row, judged
 from evidence.certainty.page import line, written
 from evidence.circumstances import circumstances
 
 FAMILIES = {
     family.name: family
-    for family in [*narrow.FAMILIES, *counted.FAMILIES, *changes.FAMILIES, *moving.FAMILIES, *nets.FAMILIES]
+    for part in (narrow, counted, changes, moving, nets, spatial_nets)
+    for family in part.FAMILIES
 }
 
 #: Cases that a process takes at once: few, so that a run that is stopped has met all families.

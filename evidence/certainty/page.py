@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from itertools import groupby
 from typing import Any
 
-from evidence.certainty import changes, counted, moving, narrow, nets
+from evidence.certainty import changes, counted, moving, narrow, nets, spatial_nets
 from evidence.certainty.family import Family, Row
 from evidence.circumstances import in_words
 from evidence.markdown import table
@@ -56,6 +56,11 @@ ASKED = {
         f"{nets.STARTS} random places and turns of all links, with no tree and no blocks, find poses at "
         f"{nets.INPUTS} inputs: each isolated one must be among the modes. Where the input turns and no "
         f"change point is met, each mode at {nets.ROWS} inputs must lie on exactly one circuit."
+    ),
+    spatial_nets.PART: (
+        "The same in space: damped steps over a quaternion and a place of every link, with rows of vectors "
+        "that must be equal, so that no axis is turned over. The search is weak where several links are "
+        "solved together; each mode must close in its rows, too."
     ),
 }
 

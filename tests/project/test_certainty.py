@@ -75,10 +75,11 @@ def test_what_does_not_hold_and_what_is_raised_are_differences_and_the_command_r
 
 
 def test_every_family_has_its_own_name_and_part():
-    from evidence.certainty import changes, counted, moving, narrow, nets
+    from evidence.certainty import changes, counted, moving, narrow, nets, spatial_nets
     from evidence.certainty.page import ASKED
 
-    every = [family for module in (narrow, counted, changes, moving, nets) for family in module.FAMILIES]
+    modules = (narrow, counted, changes, moving, nets, spatial_nets)
+    every = [family for module in modules for family in module.FAMILIES]
     assert len(command.FAMILIES) == len(every)
     assert {family.part for family in every} == set(ASKED)
 

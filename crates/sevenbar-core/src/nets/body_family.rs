@@ -169,7 +169,11 @@ impl Family<UNKNOWNS, 3> for BodyFamily {
             own: part(row.own),
             number: part(row.number),
         };
-        Between { rows: self.rows.iter().map(row).collect(), slides: self.slides() }
+        Between {
+            rows: self.rows.iter().map(row).collect(),
+            slides: self.slides(),
+            scale: *SCALE,
+        }
     }
 
     /// The number of each row.
@@ -205,11 +209,12 @@ impl Moving {
     /// As it is now, and its rate.
     #[inline(always)]
     fn at<V: Vector>(&self, t: V) -> [[Lanes<V>; 3]; 2] {
-        let rate = self.rate.map(Lanes::splat);
-        [
-            from_fn(|i| Lanes::splat(self.from[i]).plus_scaled(rate[i], t)),
-            rate,
-        ]
+        let mut out = [[Lanes::zero(); 3]; 2];
+        for i in 0..3 {
+            out[1][i] = Lanes::splat(self.rate[i]);
+            out[0][i] = Lanes::splat(self.from[i]).plus_scaled(out[1][i], t);
+        }
+        out
     }
 }
 
@@ -225,6 +230,7 @@ struct Row {
 pub(super) struct Between {
     rows: Vec<Row>,
     slides: Slides<UNKNOWNS>,
+    scale: Solution<UNKNOWNS>,
 }
 
 type Four<V> = [Lanes<V>; 4];
@@ -282,13 +288,15 @@ impl Homotopy<UNKNOWNS> for Between {
             error: [zero; UNKNOWNS],
             drift: [zero; UNKNOWNS],
         };
-        let (x, y): (Four<V>, Four<V>) = (from_fn(|i| z[i]), from_fn(|i| z[i + 4]));
+        let (x, y) = ([z[0], z[1], z[2], z[3]], [z[4], z[5], z[6], z[7]]);
         let square = inner(&x, &x);
         for (r, row) in self.rows.iter().enumerate().take(ROWS) {
             let [a, a_rate] = row.known.at(at.re);
             let [b, b_rate] = row.own.at(at.re);
             let [[number, ..], [number_rate, ..]] = row.number.at(at.re);
-            let [squares, on_own, on_known, both] = row.factors.map(V::splat);
+            let [squares, on_own, on_known, both] = row.factors;
+            let (squares, both) = (V::splat(squares), V::splat(both));
+            let (on_own, on_known) = (V::splat(on_own), V::splat(on_known));
             let (ax, xb) = (before(&a, &x), behind(&x, &b));
             let (ay, yb, axb) = (before(&a, &y), behind(&y, &b), behind(&ax, &b));
             let two = V::splat(2.0);
@@ -320,9 +328,9 @@ impl Homotopy<UNKNOWNS> for Between {
             }
         }
         let mut scaled = -Lanes::<V>::one();
-        linear.rows[ROWS] = from_fn(|i| if i < 4 { y[i] } else { x[i - 4] });
-        for (i, c) in SCALE.iter().enumerate() {
-            let c = Lanes::splat(*c);
+        linear.rows[ROWS] = [y[0], y[1], y[2], y[3], x[0], x[1], x[2], x[3]];
+        for i in 0..UNKNOWNS {
+            let c = Lanes::splat(self.scale[i]);
             linear.rows[ROWS + 1][i] = c;
             scaled = scaled.plus_product(c, z[i]);
         }

@@ -26,6 +26,9 @@ Group = Literal["planar", "spherical", "spatial"]
 #: The freedoms of a link in each.
 FREEDOMS: dict[Group, int] = {"planar": 3, "spherical": 3, "spatial": 6}
 
+#: The joints of cycles in a plane that are solved before the rest of a part in space.
+IN_PLANES = ("R", "P", "K", "L")
+
 #: How far axes may be from parallel [rad], or from one point [share of the size].
 SAME = AGREE
 
@@ -143,6 +146,21 @@ class Parts:
         ]
         return bool(rank == 3 and max(off) < SAME * self.linkage.size)
 
+    def planes(self, edges: Sequence[int], driven: int) -> list[set[int]]:
+        """The joints of cycles in a plane within a part in space: of a four-bar that drives an RSSR, say."""
+        joints = [edge for edge in {*edges, driven} if edge < self.first_rod]
+        joints = sorted(edge for edge in joints if self.linkage.joints[edge].kind in IN_PLANES)
+        result: list[set[int]] = []
+        for first in joints:
+            if self.linkage.joints[first].kind != "R" or any(first in cycle for cycle in result):
+                continue
+            alike = [edge for edge in joints if self._is_planar([first, edge])]
+            between = [self.between[edge] for edge in alike]
+            root = self.between[first][0]
+            cycles = _core.biconnected_parts(self.linkage.graph.ground, between, root)
+            result += [{alike[k] for k in cycle} for cycle in cycles if len(cycle) > 2]
+        return result
+
     def rows(self, edge: int, group: Group) -> int:
         """How many freedoms of one link against the other an edge takes."""
         if edge >= self.first_rod:
@@ -176,22 +194,41 @@ def order_of(linkage: Loop, column: int) -> Order:
     known = [False] * count
     known[ground] = True
     blocks: list[LinkBlock] = []
-    for part in _core.biconnected_parts(count, between, ground):
-        numbers = [edges[k] for k in part]
-        group = groups[numbers[0]]
-        pairs = [between[k] for k in part]
-        rows = [parts.rows(edge, group) + (edge == driven) for edge in numbers]
+    pair_of = dict(zip(edges, between, strict=True))
+
+    def solved(piece: Sequence[int], group: Group) -> Order:
+        """The blocks of some edges, which are known then; or why they have none."""
+        pairs = [pair_of[edge] for edge in piece]
+        rows = [parts.rows(edge, group) + (edge == driven) for edge in piece]
         word, result = _core.net_blocks(pairs, rows, known, FREEDOMS[group])
         if word == "free":
             return Order(free=tuple(linkage.link_name(link + 1) for link in result[0][0]))
         if word == "held":
-            return Order(held=tuple(parts.names[numbers[k]] for k in result[0][1]))
-        for links, places in result:
-            blocks.append(
-                _block(parts, links, [numbers[k] for k in places], [pairs[k] for k in places], group)
-            )
+            return Order(held=tuple(parts.names[piece[k]] for k in result[0][1]))
+        for links, _ in result:
             for link in links:
                 known[link] = True
+        return Order(
+            tuple(
+                _block(parts, links, [piece[k] for k in places], [pairs[k] for k in places], group)
+                for links, places in result
+            )
+        )
+
+    for part in _core.biconnected_parts(count, between, ground):
+        numbers = [edges[k] for k in part]
+        group = groups[numbers[0]]
+        if group == "spatial":
+            # cycles in a plane first, those that hang on others after them
+            planes = [sorted(plane.intersection(numbers)) for plane in parts.planes(numbers, driven)]
+            for plane in planes * len(planes):
+                if set(plane) <= set(numbers) and (first := solved(plane, "planar").blocks):
+                    blocks += first
+                    numbers = [edge for edge in numbers if edge not in plane]
+        order = solved(numbers, group)
+        if order.free or order.held:
+            return order
+        blocks += order.blocks
     return Order(tuple(blocks))
 
 

@@ -12,7 +12,7 @@ from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Y, Z
 from sevenbar.kinematics.nets.chords import ChordRow, Triple, joint_rows, rod_row, three
-from sevenbar.kinematics.nets.order import LinkBlock
+from sevenbar.kinematics.nets.order import LinkBlock, Parts
 from sevenbar.kinematics.nets.tree import Tree
 
 #: The steps that carry two links, `None` of the ground.
@@ -96,7 +96,9 @@ def _block(linkage: Loop, tree: Tree, block: LinkBlock) -> RawBlock:
 
 def _normal(linkage: Loop, block: LinkBlock) -> Triple:
     """The direction about which the links of a planar block turn."""
-    for joint in block.joints:
+    # slides that rods hold have it from other hinges of their part
+    whole = [] if block.solver == "dyad" else next(e for e, _ in Parts(linkage).whole if block.joints[0] in e)
+    for joint in [*block.joints, *(edge for edge in whole if edge in linkage.graph.joints)]:
         if linkage.joints[joint].kind == "R":
             return three(linkage.drawn_joint_on(joint, linkage.graph.between[joint][0])[:3, Z])
     raise NotCoveredError(f"net: three slides in a row turn nothing: {_listed(linkage, block)}")

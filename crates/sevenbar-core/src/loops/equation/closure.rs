@@ -157,17 +157,17 @@ impl<V: Vector, const N: usize> Linear<V, N> {
                 if !lower.exceeds_somewhere(upper) {
                     continue;
                 }
-                let exchanged = |x: Lanes<V>, y: Lanes<V>| {
-                    (
-                        x.replaced_where(lower, upper, y),
-                        y.replaced_where(lower, upper, x),
-                    )
-                };
                 for j in c..N {
-                    (a[c][j], a[r][j]) = exchanged(a[c][j], a[r][j]);
+                    let (x, y) = (a[c][j], a[r][j]);
+                    a[c][j] = x.replaced_where(lower, upper, y);
+                    a[r][j] = y.replaced_where(lower, upper, x);
                 }
-                (step[c], step[r]) = exchanged(step[c], step[r]);
-                (rate[c], rate[r]) = exchanged(rate[c], rate[r]);
+                let (x, y) = (step[c], step[r]);
+                step[c] = x.replaced_where(lower, upper, y);
+                step[r] = y.replaced_where(lower, upper, x);
+                let (x, y) = (rate[c], rate[r]);
+                rate[c] = x.replaced_where(lower, upper, y);
+                rate[r] = y.replaced_where(lower, upper, x);
                 sign = sign * lower.if_greater(upper, minus, one);
             }
             determinant = determinant * a[c][c];

@@ -136,12 +136,15 @@ impl Homotopy for Straight<'_> {
             place[1],
             place[2],
         ];
-        let [a, b, c] = drift_turn.map(|x| -x);
-        let [d, e, f] = drift_shift.map(|x| -x);
+        let mut drift = [zero; UNKNOWNS];
+        for k in 0..3 {
+            drift[k] = -drift_turn[k];
+            drift[k + 3] = -drift_shift[k];
+        }
         for k in 0..6 {
             let unknown = Lanes { re: V::splat(ROUNDING * (k + 1) as f64), im: V::splat(0.0) };
             error[k] = unknown - error[k];
         }
-        Linear { rows, error, drift: [a, b, c, d, e, f] }
+        Linear { rows, error, drift }
     }
 }
