@@ -10,7 +10,6 @@ import numpy as np
 from sevenbar.arrays import Floats, Integers
 from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.nets.order import order_of
 from sevenbar.kinematics.nets.parts import parts_of
 from sevenbar.kinematics.nets.tree import Tree
 
@@ -21,19 +20,18 @@ NEAR = 1e-5
 MOST_MEETING = 12
 
 
-def net_modes(linkage: Loop, column: int, value: float) -> Modes:
+def net_modes(linkage: Loop, tree: Tree, column: int, value: float) -> Modes:
     """Every assembly mode at one value of a column [rad, or length] of a net whose blocks have a solver.
+
+    The joint of the column begins the tree.
 
     Of any other net those that are found from many places, and these besides where some are not certain.
     """
-    order = order_of(linkage, column)
-    driven = linkage.column_of(column).joint
-    tree = Tree(linkage, (driven,), order)
     parts = parts_of(linkage, tree)
     if parts is None:
         return _searched(linkage, tree, column, value)
     scale = 1.0 if linkage.turns(column) else linkage.size
-    q, residual, on_curve, word = tree.core.modes(parts, tree.columns[driven][0], value / scale)
+    q, residual, on_curve, word = tree.core.modes(parts, tree.columns[tree.first[0]][0], value / scale)
     residual = residual * linkage.size
     curve = q[on_curve][0] if on_curve.any() else None
     q, residual = q[~on_curve], residual[~on_curve]

@@ -96,11 +96,14 @@ def _block(linkage: Loop, tree: Tree, block: LinkBlock) -> RawBlock:
 
 def _normal(linkage: Loop, block: LinkBlock) -> Triple:
     """The direction about which the links of a planar block turn."""
-    # slides that rods hold have it from other hinges of their part
-    whole = [] if block.solver == "dyad" else next(e for e, _ in Parts(linkage).whole if block.joints[0] in e)
-    for joint in [*block.joints, *(edge for edge in whole if edge in linkage.graph.joints)]:
-        if linkage.joints[joint].kind == "R":
-            return three(linkage.drawn_joint_on(joint, linkage.graph.between[joint][0])[:3, Z])
+    hinge = next((joint for joint in block.joints if linkage.joints[joint].kind == "R"), None)
+    if hinge is None and block.solver != "dyad":
+        # slides that rods hold have it from another hinge of their part
+        whole = next(edges for edges, _ in Parts(linkage).whole if block.joints[0] in edges)
+        joints = (edge for edge in whole if edge in linkage.graph.joints)
+        hinge = next((joint for joint in joints if linkage.joints[joint].kind == "R"), None)
+    if hinge is not None:
+        return three(linkage.drawn_joint_on(hinge, linkage.graph.between[hinge][0])[:3, Z])
     raise NotCoveredError(f"net: three slides in a row turn nothing: {_listed(linkage, block)}")
 
 

@@ -73,7 +73,7 @@ class NetSolver:
 
     def modes(self, column: int, value: float) -> Modes:
         """Every assembly mode at one value of a column."""
-        return net_modes(self._linkage, column, value)
+        return net_modes(self._linkage, self._tree(column, column), column, value)
 
     def motion(self, column: int, output: int, samples: int, speed: float, law: Law | None) -> Motion:
         """Every circuit through the modes at many values of a column."""
