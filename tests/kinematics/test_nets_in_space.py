@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -186,3 +187,75 @@ def test_a_four_bar_in_a_plane_is_solved_before_the_rod_that_it_drives():
     assert modes.completeness == "closed-form"
     # the other mode of the four-bar is too far from the flap
     assert len(modes) == 2
+
+
+def rocker_on_a_rod(ball, axis, end, turn=STILL, shift=(0, 0, 0)):
+    """An RSSR whose coupler is a rod: crank about z at the origin, rocker at (4, 0, 0)."""
+
+    def moved(v):
+        return [float(x) for x in turn @ np.array(v, dtype=float) + np.array(shift, dtype=float)]
+
+    def turned(v):
+        return [float(x) for x in turn @ np.array(v, dtype=float)]
+
+    joints = [
+        {
+            "name": "crank",
+            "kind": "R",
+            "at": moved([0, 0, 0]),
+            "axis": turned([0, 0, 1]),
+            "between": ["frame", "crank"],
+        },
+        {
+            "name": "rocker",
+            "kind": "R",
+            "at": moved([4, 0, 0]),
+            "axis": turned(axis),
+            "between": ["frame", "rocker"],
+        },
+        {
+            "name": "third",
+            "kind": "R",
+            "at": moved([9, 0, 1]),
+            "axis": turned([1, 0, 1]),
+            "between": ["frame", "third"],
+        },
+    ]
+    rods = [
+        {"name": "rod", "between": ["crank", "rocker"], "at": [moved(ball), moved(end)]},
+        {"name": "second rod", "between": ["rocker", "third"], "at": [moved([5, 1, 0]), moved([8, 3, 1])]},
+    ]
+    return sb.from_axes(joints, rods=rods, ground="frame", drive="crank")
+
+
+def test_a_drawing_at_a_dead_centre_is_a_mode_however_it_is_turned():
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        turn *= np.linalg.det(turn)
+        net = rocker_on_a_rod([1, 0, 0], [0, 1, 0], [5, 0, 0], turn, rng.normal(size=3))
+        modes = net.assembly_modes(0.0)
+        assert modes.completeness == "closed-form"
+        # the drawing, one mode or two that nearly meet
+        rocker = modes.q[:, net.columns.index("rocker")]
+        assert len(rocker) > 0
+        assert np.abs(rocker).max() < 1e-6
+
+
+def test_a_rod_that_does_not_hold_its_link_leaves_a_curve():
+    # the ball on the crank lies on the axis of the rocker
+    net = rocker_on_a_rod([1, 0, 0], [1, 0, 0], [4, 0, 1])
+    modes = net.assembly_modes(0.0)
+    assert (len(modes), modes.completeness) == (0, "algebraic")
+    assert modes.on_curve is not None
+    assert len(net.assembly_modes(1e-6)) > 0
+
+
+def test_a_net_far_from_the_report_frame_is_as_certain():
+    def shifted(match):
+        return "[" + ", ".join(str(float(x) + 1e6) for x in match[1].split(",")) + "]"
+
+    lines = sb.gallery.text("platform").splitlines()
+    moved = [re.sub(r"\[(-?\d[-\d., ]*)\]", shifted, x) if x.startswith("at") else x for x in lines]
+    modes = sb.loads("\n".join(moved)).assembly_modes(0.0)
+    assert (len(modes), modes.completeness) == (24, "algebraic")

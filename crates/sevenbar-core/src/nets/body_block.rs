@@ -7,7 +7,7 @@
 
 use super::before::Before;
 use super::body_family::{BodyFamily, Held, Holds, Triple, UNKNOWNS, halves, pose};
-use super::hinged::hinged;
+use super::hinged::{Ways, hinged};
 use super::monodromy::Ends;
 use super::net::Net;
 use super::rows::{On, Row};
@@ -16,7 +16,7 @@ use super::unfolded::turn_towards;
 use crate::loops::equation::closure::Solution;
 use crate::loops::equation::rotations::squared_up;
 use crate::loops::modes::completeness::Completeness;
-use crate::rigid::{Pose, Vec3, cross, dot, most_perpendicular_axis, scale, sub, unit};
+use crate::rigid::{Pose, Vec3, add, cross, dot, most_perpendicular_axis, scale, sub, unit};
 use num_complex::Complex64;
 
 /// A link between a known link and a ball.
@@ -41,6 +41,14 @@ pub struct BodyBlock {
     pub legs: Vec<Leg>,
 }
 
+/// All ways to put a block together: the poses of all steps, how complete they are, if they are not in closed form, and whether a curve of poses
+/// closes, of which they are some.
+pub(super) struct Placed {
+    pub poses: Vec<Vec<Pose>>,
+    pub completeness: Option<Completeness>,
+    pub on_curve: bool,
+}
+
 /// A solution whose parts of length 1 have larger imaginary parts than this is not real: as in the plane.
 const REAL: f64 = 3e-6;
 
@@ -53,14 +61,9 @@ impl BodyBlock {
         self.steps.last().copied()
     }
 
-    /// All ways to put it together, as the poses of all steps, and how complete they are, if they are not in closed form; `None` where it has not
-    /// as many rows as freedoms.
-    pub(super) fn together(
-        &self,
-        net: &Net,
-        before: &Before,
-    ) -> Option<(Vec<Vec<Pose>>, Option<Completeness>)> {
-        let mut layout = Layout::new(self.own()?, before);
+    /// All ways to put it together; `None` where it has not as many rows as freedoms.
+    pub(super) fn together(&self, net: &Net, before: &Before) -> Option<Placed> {
+        let mut layout = Layout::new(self.own()?, net, before);
         for rows in &self.rows {
             for row in rows {
                 layout.add(row)?;
@@ -71,23 +74,32 @@ impl BodyBlock {
             layout.stand(net, leg)?;
             layout.shared.clear();
         }
-        let Layout { mut family, member, .. } = layout;
+        let Layout { mut family, member, middle, .. } = layout;
         family.vectors = member.len();
         if let ([step], [row]) = (&self.steps[..], &family.rows[..]) {
             let base = net.steps[*step].parent.map_or(Pose::STILL, |p| before.poses[p]);
-            let own = hinged(net, *step, &base, row, &member);
-            let own = own.into_iter().map(|by| base.then(&net.moving_by(*step, by)));
-            let poses = own.flat_map(|pose| self.placed(net, before, &pose)).collect();
-            return Some((poses, None));
+            let pose = |by: f64| base.then(&net.moving_by(*step, by));
+            let seen = |by: f64| {
+                let pose = pose(by);
+                let place = scale(sub(pose.carry(middle), middle), 1.0 / before.size);
+                Pose { translation: place, ..pose }
+            };
+            let Ways { by, at_rest } = hinged(net.steps[*step].moves, before.size, seen, row, &member);
+            let poses = by
+                .into_iter()
+                .flat_map(|by| self.placed(net, before, &pose(by)))
+                .collect();
+            return Some(Placed { poses, completeness: None, on_curve: at_rest });
         }
         if !family.is_square() {
             return None;
         }
         let starts = family.starts();
         let Ends { regular, left_over } = starts.ends(&family, &member);
-        let real = regular.iter().filter_map(|z| real_pose(z, before.size));
+        let real = regular.iter().filter_map(|z| real_pose(z, before.size, middle));
         let poses = real.flat_map(|pose| self.placed(net, before, &pose)).collect();
-        Some((poses, Some(starts.completeness(left_over))))
+        let completeness = Some(starts.completeness(left_over));
+        Some(Placed { poses, completeness, on_curve: false })
     }
 
     /// The poses of all steps where the link has a pose, for each pose of its legs.
@@ -190,8 +202,8 @@ fn two_turns([first, second]: [Vec3; 2], from: Vec3, to: Vec3) -> Vec<Vec<f64>> 
     heights.into_iter().map(way).collect()
 }
 
-/// The pose of a solution; `None` where it is not real.
-fn real_pose(z: &Solution<UNKNOWNS>, size: f64) -> Option<Pose> {
+/// The pose of a solution, whose lengths count from `middle`; `None` where it is not real.
+fn real_pose(z: &Solution<UNKNOWNS>, size: f64, middle: Vec3) -> Option<Pose> {
     let (x, _) = halves(z);
     let greatest = x.iter().copied().max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
     let phase = greatest.conj() / greatest.norm();
@@ -202,13 +214,17 @@ fn real_pose(z: &Solution<UNKNOWNS>, size: f64) -> Option<Pose> {
     }
     let [a, b, c, place] = pose(&real.map(|z| z.re.into())).map(|v| v.map(|z| z.re));
     let rotation = std::array::from_fn(|i| [a[i], b[i], c[i]]);
-    Some(Pose { rotation: squared_up(&rotation), translation: scale(place, size) })
+    let turned = Pose::turning(squared_up(&rotation));
+    let translation = sub(add(middle, scale(place, size)), turned.turn(middle));
+    Some(Pose { translation, ..turned })
 }
 
 /// A block as a member of its family.
 struct Layout<'a> {
     link: usize,
     before: &'a Before<'a>,
+    /// A place on the link as drawn, from which lengths count: far from the report frame digits would be lost.
+    middle: Vec3,
     family: BodyFamily,
     member: Vec<Triple>,
     /// The vectors of one joint, each with its place among all: rows share them.
@@ -216,9 +232,15 @@ struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    fn new(link: usize, before: &'a Before<'a>) -> Self {
+    fn new(link: usize, net: &Net, before: &'a Before<'a>) -> Self {
         let family = BodyFamily { vectors: 0, rows: Vec::new() };
-        Self { link, before, family, member: Vec::new(), shared: Vec::new() }
+        let middle = net.steps[link].origin;
+        Self { link, before, middle, family, member: Vec::new(), shared: Vec::new() }
+    }
+
+    /// A place from the middle, relative to the size.
+    fn seen(&self, place: Vec3) -> Vec3 {
+        scale(sub(place, self.middle), 1.0 / self.before.size)
     }
 
     fn vector(&mut self, own: bool, vector: Vec3) -> usize {
@@ -243,17 +265,17 @@ impl<'a> Layout<'a> {
     /// The ball of a leg, which its own steps leave on a circle, a line or a sphere.
     fn stand(&mut self, net: &Net, leg: &Leg) -> Option<()> {
         let (ball, base) = leg.ends(net, self.before)?;
-        let small = |x: Vec3| scale(x, 1.0 / self.before.size);
-        let own = small(self.before.offset(leg.on[1], self.link)?.carry(leg.ball));
+        let own = self.seen(self.before.offset(leg.on[1], self.link)?.carry(leg.ball));
         let first = &net.steps[*leg.steps.first()?];
         let moves: Vec<Move> = leg.steps.iter().map(|&s| net.steps[s].moves).collect();
-        let (arm, along) = (small(sub(ball, first.origin)), base.turn(first.axis));
-        let origin = small(base.carry(first.origin));
+        let arm = scale(sub(ball, first.origin), 1.0 / self.before.size);
+        let along = base.turn(first.axis);
+        let origin = self.seen(base.carry(first.origin));
         match moves[..] {
             [Move::Slide] => {
                 let across = unit(cross(along, most_perpendicular_axis(along)));
                 for normal in [across, cross(along, across)] {
-                    let height = dot(normal, small(base.carry(ball)));
+                    let height = dot(normal, self.seen(base.carry(ball)));
                     self.hold(Holds::Plane, normal, own, -height);
                 }
             }
@@ -285,20 +307,22 @@ impl<'a> Layout<'a> {
         let side = (0..2).find(|&s| self.before.offset(on[s], self.link).is_some())?;
         let offset = self.before.offset(on[side], self.link)?;
         let known = on[1 - side].map_or(Pose::STILL, |s| self.before.poses[s]);
-        let small = |x: Vec3| scale(x, 1.0 / self.before.size);
         match *row {
             Row::Length { at, length, .. } => {
-                let (a, b) = (small(known.carry(at[1 - side])), small(offset.carry(at[side])));
+                let (a, b) = (
+                    self.seen(known.carry(at[1 - side])),
+                    self.seen(offset.carry(at[side])),
+                );
                 let length = length / self.before.size;
                 self.hold(Holds::Rod, a, b, dot(a, a) + dot(b, b) - length * length);
             }
             Row::Along { at, v, .. } if side == 0 => {
-                let (a, b) = (known.turn(v), small(offset.carry(at)));
-                self.hold(Holds::Plane, a, b, -dot(a, small(known.carry(at))));
+                let (a, b) = (known.turn(v), self.seen(offset.carry(at)));
+                self.hold(Holds::Plane, a, b, -dot(a, self.seen(known.carry(at))));
             }
             Row::Along { at, v, .. } => {
-                let (a, b) = (small(known.carry(at)), offset.turn(v));
-                self.hold(Holds::OwnPlane, a, b, -dot(b, small(offset.carry(at))));
+                let (a, b) = (self.seen(known.carry(at)), offset.turn(v));
+                self.hold(Holds::OwnPlane, a, b, -dot(b, self.seen(offset.carry(at))));
             }
             Row::Angle { u, v, cosine, .. } => {
                 let [a, b] = if side == 1 { [u, v] } else { [v, u] };

@@ -5,57 +5,74 @@
 //! Source: docs/theory_nets.md, (23).
 
 use super::body_family::{Held, Holds, Triple};
-use super::net::Net;
 use super::steps::Move;
-use crate::rigid::{Pose, Vec3, add, dot, scale, sub};
+use crate::rigid::{Pose, Vec3, add, dot, sub};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A square that is below zero by less than this part of those that it comes from is zero.
-const ROUNDING: f64 = 1e-14;
+/// The values of a row are known to this part of the squares that they come from.
+const ROUNDING: f64 = 1e-15;
 
-/// A row that changes by less than this part of its greatest does not hold the link.
-const RESTS: f64 = 1e-12;
+/// Ways in which a row holds its link: by how much the step moves [rad, or length], and whether it may move by any amount.
+pub(super) struct Ways {
+    pub by: Vec<f64>,
+    pub at_rest: bool,
+}
 
-/// By how much a step moves [rad, or length] where a row of its link holds, in each way; lengths of the row are relative to the size.
-pub(super) fn hinged(net: &Net, step: usize, base: &Pose, row: &Held, member: &[Triple]) -> Vec<f64> {
-    let unit = 1.0 / net.size;
-    let value = |by: f64| {
-        let pose = base.then(&net.moving_by(step, by));
-        let pose = Pose { translation: scale(pose.translation, unit), ..pose };
-        row.value(member, &pose)
-    };
-    if net.steps[step].moves == Move::Slide {
-        let [before, here, beyond] = [-net.size, 0.0, net.size].map(value);
+/// By how much a step moves where a row of its link holds; `pose` is that of the link, lengths relative to the `size`, as the row has them.
+pub(super) fn hinged(
+    moves: Move,
+    size: f64,
+    pose: impl Fn(f64) -> Pose,
+    row: &Held,
+    member: &[Triple],
+) -> Ways {
+    let value = |by: f64| row.value(member, &pose(by));
+    let error = ROUNDING * row.squares(member);
+    if moves == Move::Slide {
+        let [before, here, beyond] = [-size, 0.0, size].map(value);
         let (square, line) = (0.5 * (beyond + before) - here, 0.5 * (beyond - before));
-        return roots(square, line, here)
-            .into_iter()
-            .map(|root| root * net.size)
-            .collect();
+        let at_rest = [square, line, here].iter().all(|x| x.abs() < 8.0 * error);
+        let by = if at_rest {
+            vec![0.0]
+        } else {
+            roots(square, line, here, error)
+        };
+        return Ways { by: by.into_iter().map(|root| root * size).collect(), at_rest };
     }
     let [here, quarter, half] = [0.0, FRAC_PI_2, PI].map(value);
     let constant = 0.5 * (here + half);
     let (cosine, sine) = (here - constant, quarter - constant);
-    let squares = cosine * cosine + sine * sine;
-    let left = squares - constant * constant;
-    if left < -ROUNDING * (squares + constant * constant) || squares.sqrt() < RESTS {
-        return Vec::new();
-    }
-    let aside = left.max(0.0).sqrt().atan2(-constant);
+    let reach = cosine.hypot(sine);
     let middle = sine.atan2(cosine);
-    if left > 0.0 {
-        vec![middle + aside, middle - aside]
+    let at_rest = reach < 8.0 * error && constant.abs() < 8.0 * error;
+    let by = if at_rest {
+        vec![0.0]
+    } else if constant.abs() > reach + 8.0 * error {
+        Vec::new()
     } else {
-        vec![middle + aside]
-    }
+        // the height is a product, so that it is zero where both are equal
+        let height = ((reach - constant) * (reach + constant)).max(0.0).sqrt();
+        let aside = height.atan2(-constant);
+        if height > 0.0 {
+            vec![middle + aside, middle - aside]
+        } else {
+            vec![middle + aside]
+        }
+    };
+    Ways { by, at_rest }
 }
 
-/// The real roots of `a x^2 + b x + c`.
-fn roots(a: f64, b: f64, c: f64) -> Vec<f64> {
-    if a.abs() < RESTS * b.abs() {
-        return vec![-c / b];
+/// The real roots of `a x^2 + b x + c`, whose numbers are known to an error.
+fn roots(a: f64, b: f64, c: f64, error: f64) -> Vec<f64> {
+    if a.abs() < 8.0 * error {
+        return if b.abs() < 8.0 * error {
+            Vec::new()
+        } else {
+            vec![-c / b]
+        };
     }
     let left = b * b - 4.0 * a * c;
-    if left < -ROUNDING * (b * b + (4.0 * a * c).abs()) || a == 0.0 {
+    if left < -8.0 * error * (a.abs() + b.abs() + c.abs()) {
         return Vec::new();
     }
     // without a difference of near numbers
@@ -67,6 +84,12 @@ fn roots(a: f64, b: f64, c: f64) -> Vec<f64> {
 }
 
 impl Held {
+    /// The squares of the lengths of which a row of a real member is made.
+    fn squares(&self, member: &[Triple]) -> f64 {
+        let square = |v: usize| member[v].iter().map(|x| x.norm_sqr()).sum::<f64>();
+        1.0 + square(self.known) + square(self.own)
+    }
+
     /// The value of the row of a real member, where the link is.
     fn value(&self, member: &[Triple], pose: &Pose) -> f64 {
         let real = |v: usize| -> Vec3 { member[v].map(|x| x.re) };
@@ -90,11 +113,12 @@ mod tests {
 
     #[test]
     fn roots_are_those_of_the_quadratic() {
-        assert_eq!(roots(1.0, -3.0, 2.0), [2.0, 1.0]);
-        assert_eq!(roots(1.0, 2.0, 1.0), [-1.0]);
-        assert_eq!(roots(0.0, 2.0, 1.0), [-0.5]);
-        assert!(roots(1.0, 0.0, 1.0).is_empty());
-        let far = roots(1.0, 1e8, 1.0);
+        assert_eq!(roots(1.0, -3.0, 2.0, ROUNDING), [2.0, 1.0]);
+        assert_eq!(roots(1.0, 2.0, 1.0, ROUNDING), [-1.0]);
+        assert_eq!(roots(1.0, 2.0, 1.0 + ROUNDING, ROUNDING), [-1.0]);
+        assert_eq!(roots(0.0, 2.0, 1.0, ROUNDING), [-0.5]);
+        assert!(roots(1.0, 0.0, 1.0, ROUNDING).is_empty());
+        let far = roots(1.0, 1e8, 1.0, ROUNDING);
         assert!(
             (far[1] + 1e-8).abs() < 1e-22 && (far[0] + 1e8).abs() < 1e-6,
             "{far:?}"

@@ -65,8 +65,9 @@ const NO_RANK: f64 = 1e-10;
 /// Modes nearer than this in every column [rad, or relative to the size] are one: two that meet part by the root of rounding.
 const MEET: f64 = 5e-6;
 
-/// Steps of Newton's method that take the rounding of the closed form off, and the error [rad, or relative to the size] of a mode.
+/// Steps of Newton's method that take the rounding of the closed form off, an error [rad, or relative to the size] that is rounding, and that of a mode.
 const STEPS: usize = 2;
+const ROUNDED: f64 = 1e-14;
 const CLOSES: f64 = 1e-9;
 
 /// All isolated modes of a net, each part after those that it hangs at, with a step held at a value; and some poses of each curve of poses that
@@ -106,9 +107,11 @@ pub fn modes(net: &Net, parts: &[Part], driven: usize, value: f64) -> Option<Net
                 }
                 Part::Body(block) => {
                     let before = Before { poses, held: driven, from, moved, size: net.size };
-                    let (together, own) = block.together(net, &before)?;
+                    let together = block.together(net, &before)?;
+                    let own = together.completeness;
                     completeness = own.map_or(completeness, |own| Some(own.or_less(completeness)));
-                    longer.extend(together.into_iter().map(|next| (next, *on_curve)));
+                    let curved = *on_curve || together.on_curve;
+                    longer.extend(together.poses.into_iter().map(|next| (next, curved)));
                 }
             }
         }
@@ -148,16 +151,24 @@ fn same(net: &Net, a: &Mode, b: &Mode) -> bool {
 /// The mode that a few of Newton's steps lead to, with a step held.
 fn settled(net: &Net, mut values: Vec<f64>, (driven, value): (usize, f64), on_curve: bool) -> Mode {
     values[driven] = value;
+    let greatest = |errors: &[f64]| errors.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
+    let (mut errors, mut columns) = net.closure(&values);
+    let mut residual = greatest(&errors);
     for _ in 0..STEPS {
-        let (errors, mut columns) = net.closure(&values);
         columns[driven].fill(0.0);
-        for (x, by) in values.iter_mut().zip(least_squares(&columns, &errors, NO_RANK)) {
+        let mut next = values.clone();
+        for (x, by) in next.iter_mut().zip(least_squares(&columns, &errors, NO_RANK)) {
             *x -= by;
         }
-        values[driven] = value;
+        next[driven] = value;
+        let (after, slopes) = net.closure(&next);
+        // at a dead centre a step may lead anywhere
+        if greatest(&after) > residual.max(ROUNDED) {
+            break;
+        }
+        residual = greatest(&after);
+        (values, errors, columns) = (next, after, slopes);
     }
-    let (errors, _) = net.closure(&values);
-    let residual = errors.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
     Mode { poses: net.poses(&values), values, residual, on_curve }
 }
 

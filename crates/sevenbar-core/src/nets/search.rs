@@ -73,6 +73,12 @@ pub(super) fn searched<const C: usize, const R: usize, const B: usize>(
 ) -> Vec<At<SizedNet<C, R, B>>> {
     let mut random = Random(0x5ea4c4);
     let mut modes: Vec<At<SizedNet<C, R, B>>> = Vec::new();
+    // the drawing may be a place to which others seldom lead
+    let mut drawn = net.at(&net.net.drawn());
+    drawn.values[held] = value;
+    if net.residual(&net.place(&drawn)) < CLOSED {
+        modes.push(drawn);
+    }
     for _ in 0..starts {
         let mut rough = anywhere(net, held, value, &mut random);
         rough.values[net.used()..].fill(0.0);
