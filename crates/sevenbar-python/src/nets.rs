@@ -88,7 +88,7 @@ fn frames(array: ArrayView3<'_, f64>) -> Vec<Pose> {
 /// Why it is not followed, in the words of a message.
 fn not_followed(why: NotFollowed) -> PyErr {
     CoreError::new_err(match why {
-        NotFollowed::Freedoms(1) => String::from("the constraints about the drawn pose are not told apart"),
+        NotFollowed::Freedoms(1) => String::from("no independent constraints are found about the drawn pose"),
         NotFollowed::Freedoms(count) => format!("it has {count} freedoms"),
         NotFollowed::Columns(count) => format!("its tree has {count} columns; at most 17 are followed"),
         NotFollowed::NoColumn => String::from("the joint closes a loop"),

@@ -5,7 +5,7 @@ use super::steps::Move;
 use crate::loops::least_squares;
 use crate::rigid::{Pose, Vec3, cross, dot, scale, sub};
 
-/// Slides whose directions are dependent to this part are not told apart.
+/// Slides whose directions are dependent to this part move by the least.
 const NO_RANK: f64 = 1e-10;
 
 /// By how much a turn about an axis takes a direction nearest to another [rad].
