@@ -8,7 +8,7 @@
 use super::before::Before;
 use super::body_family::{BodyFamily, Held, Holds, Triple, UNKNOWNS, halves, pose};
 use super::hinged::{Ways, hinged};
-use super::monodromy::Ends;
+use super::monodromy::{Ends, REAL};
 use super::net::Net;
 use super::rows::{On, Row};
 use super::steps::Move;
@@ -48,9 +48,6 @@ pub(super) struct Placed {
     pub completeness: Option<Completeness>,
     pub on_curve: bool,
 }
-
-/// A solution whose parts of length 1 have larger imaginary parts than this is not real: as in the plane.
-const REAL: f64 = 3e-6;
 
 /// A square that is below zero by less than this part of those that it comes from is zero.
 const ROUNDING: f64 = 1e-14;

@@ -110,6 +110,10 @@ const GROWS: f64 = 0.5;
 const AT_INFINITY: f64 = 18.0;
 const LOST_FAR_OUT: f64 = 12.0;
 
+/// A solution whose turns, slides or quaternion have larger imaginary parts than this is not real: where two meet, rounding parts them by its root, and a pose
+/// may keep a closure error of about the square of this.
+pub(super) const REAL: f64 = 3e-6;
+
 /// Ways to one system that are tried: from which start, at which pace.
 const TRIES: [(usize, Pace); 4] = [(0, BRISK), (1, BRISK), (0, CAREFUL), (1, CAREFUL)];
 

@@ -4,7 +4,7 @@
 
 use super::before::Before;
 use super::dyads::{Flat, Plane};
-use super::monodromy::Ends;
+use super::monodromy::{Ends, REAL};
 use super::planar_family::{Chord, Closes, Pair, PlanarFamily, Term};
 use super::rows::On;
 use crate::loops::equation::closure::Solution;
@@ -43,10 +43,6 @@ pub(super) struct Together {
     /// "searched" where some paths end neither at an isolated solution nor at infinity.
     pub completeness: Completeness,
 }
-
-/// A solution whose turns or slides have larger imaginary parts than this is not real: where two meet, rounding parts them by its root, and a pose
-/// may keep a closure error of about the square of this.
-const REAL: f64 = 3e-6;
 
 impl PlanarBlock {
     /// All ways to put it together; `None` where it has more unknowns than are followed.
