@@ -457,4 +457,26 @@ mod tests {
         assert_eq!(starts.starts.each_ref().map(|s| s.solutions.len()), [4; 2]);
         assert!(starts.certified);
     }
+
+    #[test]
+    fn a_plane_joint_with_three_rods_is_certain_from_either_side() {
+        let row = |holds, known, own, number| Held { holds, known, own, number };
+        for holds in [Holds::Plane, Holds::OwnPlane] {
+            // the normal is one vector of all three rows
+            let (known, own) = if holds == Holds::Plane {
+                ([0, 0, 0], [1, 2, 3])
+            } else {
+                ([1, 2, 3], [0, 0, 0])
+            };
+            let mut rows = vec![
+                row(holds, known[0], own[0], 4),
+                row(Holds::Angle, known[1], own[1], 5),
+                row(Holds::Angle, known[2], own[2], 6),
+            ];
+            rows.extend((7..16).step_by(3).map(|k| row(Holds::Rod, k, k + 1, k + 2)));
+            let starts = BodyFamily { vectors: 16, rows }.starts();
+            assert_eq!(starts.starts.each_ref().map(|s| s.solutions.len()), [12; 2]);
+            assert!(starts.certified);
+        }
+    }
 }

@@ -132,7 +132,9 @@ impl<const N: usize, const D: usize> Starts<N, D> {
             starts[fewer] = Start::found(family, &mut random[fewer]);
         }
         let agree = starts[0].solutions.len() == starts[1].solutions.len();
-        let certified = agree && starts[0].passes_trace_test(family, &mut random[0]);
+        // a path that is lost says nothing, so the other start is tried, too
+        let passes = |k: usize| starts[k].passes_trace_test(family, &mut random[k]);
+        let certified = agree && [0, 1].into_iter().any(passes);
         Self { starts, agree, certified }
     }
 
