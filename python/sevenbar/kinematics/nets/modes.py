@@ -13,8 +13,9 @@ from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.nets.parts import parts_of
 from sevenbar.kinematics.nets.tree import Tree
 
-#: Where modes meet, poses of a search nearer than this [rad, or relative to the size] are one.
+#: Poses nearer than this [rad, or relative to the size] are one; where modes meet a search ends less near.
 NEAR = 1e-5
+NEAR_SINGULAR = 5e-5
 
 #: Most places where modes meet; more are of a curve of poses that all close.
 MOST_MEETING = 12
@@ -48,7 +49,7 @@ def net_modes(linkage: Loop, tree: Tree, column: int, value: float) -> Modes:
 
 def _searched(linkage: Loop, tree: Tree, column: int, value: float) -> Modes:
     q, residual, isolated = tree.followed(lambda core: core.searched_modes(column, value))
-    singular = _apart(linkage, q[~isolated])
+    singular = _apart(linkage, q[~isolated], NEAR_SINGULAR)
     # a few are where modes meet, many lie on a curve
     is_curve = len(singular) > MOST_MEETING
     others = np.flatnonzero(~isolated)[singular]
@@ -59,14 +60,14 @@ def _searched(linkage: Loop, tree: Tree, column: int, value: float) -> Modes:
     return Modes(q[rank], residual, "searched", linkage.columns, value, on_curve=curve)
 
 
-def _apart(linkage: Loop, q: Floats) -> Integers:
+def _apart(linkage: Loop, q: Floats, near: float = NEAR) -> Integers:
     """Those of modes (m, columns) that are not near one before them."""
     turning, unit = linkage.turning, np.where(linkage.turning, 1.0, linkage.size)
     result: list[int] = []
     for place, one in enumerate(q):
         off = (q[result] - one) / unit
         off = np.where(turning, (off + np.pi) % (2 * np.pi) - np.pi, off)
-        if not (np.abs(off) < NEAR).all(axis=1).any():
+        if not (np.abs(off) < near).all(axis=1).any():
             result.append(place)
     return np.array(result, dtype=np.int64)
 
