@@ -180,22 +180,37 @@ class Net:
         count = len(self.moving)
         x = rng.uniform(-1.5, 1.5, (STARTS, count, 3))
         x[:, :, 2] *= math.pi / 1.5
-        x = x.reshape(STARTS, -1)
-        for _ in range(STEPS):
-            error, slope = self.equations(x, value)
-            square = np.einsum("sek,sel->skl", slope, slope)
-            damping = 0.1 * np.minimum((error**2).sum(axis=1), 1.0) + 1e-15
-            square += damping[:, None, None] * np.eye(square.shape[1])
-            x -= np.linalg.solve(square, np.einsum("sek,se->sk", slope, error)[:, :, None])[:, :, 0]
-        error, slope = self.equations(x, value)
-        closed = np.abs(error).max(axis=1) < CLOSED
-        singular = np.linalg.svd(slope[closed], compute_uv=False)
-        found: list[Floats] = []
-        for pose, values in zip(x[closed], singular, strict=True):
-            flat = flattened(pose.reshape(count, 3))
-            if values[-1] > ISOLATED * values[0] and not any(np.abs(flat - f).max() < SAME for f in found):
-                found.append(flat)
+        found = isolated(
+            partial(self.equations, value=value),
+            x.reshape(STARTS, -1),
+            lambda pose: flattened(pose.reshape(count, 3)),
+        )
         return np.array(found).reshape(len(found), count, 4)
+
+
+def isolated(
+    equations: Callable[[Floats], tuple[Floats, Floats]],
+    x: Floats,
+    flat: Callable[[Floats], Floats],
+    longest: float = math.inf,
+) -> list[Floats]:
+    """Isolated poses, each once as `flat` has it, where damped steps from places x (starts, unknowns) end."""
+    for _ in range(STEPS):
+        error, slope = equations(x)
+        square = np.einsum("sek,sel->skl", slope, slope)
+        damping = 0.1 * np.minimum((error**2).sum(axis=1), 1.0) + 1e-15
+        square += damping[:, None, None] * np.eye(square.shape[1])
+        step = np.linalg.solve(square, np.einsum("sek,se->sk", slope, error)[:, :, None])[:, :, 0]
+        x = x - np.clip(step, -longest, longest)
+    error, slope = equations(x)
+    closed = np.abs(error).max(axis=1) < CLOSED
+    singular = np.linalg.svd(slope[closed], compute_uv=False)
+    found: list[Floats] = []
+    for pose, values in zip(x[closed], singular, strict=True):
+        numbers = flat(pose)
+        if values[-1] > ISOLATED * values[0] and not any(np.abs(numbers - f).max() < SAME for f in found):
+            found.append(numbers)
+    return found
 
 
 def flattened(states: Floats) -> Floats:

@@ -14,7 +14,7 @@ import numpy as np
 
 import sevenbar as sb
 from evidence.certainty.family import Family
-from evidence.certainty.nets import CLOSED, ISOLATED, SAME, STARTS, STEPS, complete
+from evidence.certainty.nets import STARTS, complete, isolated
 from sevenbar.arrays import Floats
 
 PART = "Several loops in space"
@@ -182,23 +182,13 @@ class SpatialNet:
         count = len(self.moving)
         x = rng.normal(size=(STARTS, count, 7))
         x[..., :4] /= np.linalg.norm(x[..., :4], axis=-1, keepdims=True)
-        x = x.reshape(STARTS, -1)
-        for _ in range(STEPS):
-            error, slope = self.equations(x, value)
-            square = np.einsum("sek,sel->skl", slope, slope)
-            damping = 0.1 * np.minimum((error**2).sum(axis=1), 1.0) + 1e-15
-            square += damping[:, None, None] * np.eye(square.shape[1])
-            step = np.linalg.solve(square, np.einsum("sek,se->sk", slope, error)[:, :, None])[:, :, 0]
-            # a few starts would run away
-            x -= np.clip(step, -1.0, 1.0)
-        error, slope = self.equations(x, value)
-        closed = np.abs(error).max(axis=1) < CLOSED
-        singular = np.linalg.svd(slope[closed], compute_uv=False)
-        found: list[Floats] = []
-        for pose, values in zip(x[closed], singular, strict=True):
-            flat = self.flat(as_frames(pose.reshape(count, 7))[None])[0]
-            if values[-1] > ISOLATED * values[0] and not any(np.abs(flat - f).max() < SAME for f in found):
-                found.append(flat)
+        # a few starts would run away
+        found = isolated(
+            partial(self.equations, value=value),
+            x.reshape(STARTS, -1),
+            lambda pose: self.flat(as_frames(pose.reshape(count, 7))[None])[0],
+            longest=1.0,
+        )
         return np.array(found).reshape(len(found), count, 12)
 
 

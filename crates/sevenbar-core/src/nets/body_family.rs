@@ -95,7 +95,7 @@ fn dot<const N: usize>(a: &[Complex64; N], b: &[Complex64; N]) -> Complex64 {
 /// A quaternion of complex numbers.
 type Quaternion = [Complex64; 4];
 
-pub(super) fn product(a: &Quaternion, b: &Quaternion) -> Quaternion {
+fn product(a: &Quaternion, b: &Quaternion) -> Quaternion {
     [
         a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
         a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],

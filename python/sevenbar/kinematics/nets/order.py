@@ -178,15 +178,19 @@ class Parts:
         return FREEDOMS[group] - free
 
 
+def as_one(linkage: Loop, driven: int, link: int) -> int:
+    """A link, or what it is one with while a joint of one freedom is held: the ground, if that is one."""
+    pair = linkage.graph.between[driven]
+    return max(pair) if link in pair and len(linkage.joints[driven].columns) == 1 else link
+
+
 def order_of(linkage: Loop, column: int) -> Order:
     """The order in which a linkage is solved with one column held; of a single loop that is one block."""
     parts = Parts(linkage)
     driven = linkage.column_of(column).joint
     count = linkage.graph.ground
-    a, b = parts.between[driven]
     alone = len(linkage.joints[driven].columns) == 1
-    # the two links of a joint that is held are one, the ground if it is one of them
-    merged = [max(a, b) if alone and link in (a, b) else link for link in range(count)]
+    merged = [as_one(linkage, driven, link + 1) - 1 for link in range(count)]
     edges = [edge for edge in range(len(parts.between)) if edge != driven or not alone]
     between = [(merged[parts.between[edge][0]], merged[parts.between[edge][1]]) for edge in edges]
     groups = {edge: group for whole, group in parts.whole for edge in whole}

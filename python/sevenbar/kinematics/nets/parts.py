@@ -11,9 +11,9 @@ from typing import cast
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Y, Z
-from sevenbar.kinematics.nets.chords import ChordRow, Triple, joint_rows, rod_row, three
-from sevenbar.kinematics.nets.order import LinkBlock, Parts
-from sevenbar.kinematics.nets.tree import Tree
+from sevenbar.kinematics.nets.chords import Triple, joint_rows, rod_row, three
+from sevenbar.kinematics.nets.order import LinkBlock, Parts, as_one
+from sevenbar.kinematics.nets.tree import RawRow, Tree
 
 #: The steps that carry two links, `None` of the ground.
 On = tuple[int | None, int | None]
@@ -22,7 +22,6 @@ On = tuple[int | None, int | None]
 #: joints and rods, its legs.
 RawDyad = tuple[Triple, list[tuple[str, Triple]], tuple[int, int], On]
 RawBlock = tuple[Triple, list[int], list[tuple[str, Triple, Triple, On]]]
-RawRow = tuple[str, On, tuple[Triple, Triple], float]
 RawLeg = tuple[list[int], Triple, On]
 RawBody = tuple[list[int], list[list[RawRow]], list[RawLeg]]
 
@@ -145,14 +144,13 @@ class LinkInSpace:
                 solved = {self._hinge(body)} | {joint for joints, _ in standing for joint in joints}
                 rows = [self._rows(joint) for joint in self.block.joints if joint not in solved]
                 rods = [self.linkage.rods[number] for number in self.block.rods]
-                rows += [[self._row(rod_row(rod), rod.between)] for rod in rods]
+                rows += [[self.tree.raw_row(rod.between, rod_row(rod))] for rod in rods]
                 return steps, rows, [leg for _, leg in standing]
         return None
 
     def _one(self, link: int) -> int:
         """The link with what the held joint welds to it."""
-        pair = self.linkage.graph.between[self.tree.first[0]]
-        return max(pair) if link in pair else link
+        return as_one(self.linkage, self.tree.first[0], link)
 
     def _on(self, joint: int) -> tuple[int, int]:
         a, b = self.linkage.graph.between[joint]
@@ -206,8 +204,5 @@ class LinkInSpace:
     def _rows(self, joint: int) -> list[RawRow]:
         between = self.linkage.graph.between[joint]
         frames = (self.linkage.drawn_joint_on(joint, link) for link in between)
-        return [self._row(row, between) for row in joint_rows(self.linkage.joints[joint], *frames)]
-
-    def _row(self, row: ChordRow, between: tuple[int, int]) -> RawRow:
-        first, second = (self.tree.carrier[between[side]] for side in row.sides)
-        return row.kind, (first, second), row.vectors, row.number
+        rows = joint_rows(self.linkage.joints[joint], *frames)
+        return [self.tree.raw_row(between, row) for row in rows]

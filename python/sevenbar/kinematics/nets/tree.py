@@ -25,6 +25,9 @@ from sevenbar.kinematics.nets.order import Order, Parts
 
 T = TypeVar("T")
 
+#: A row as the core takes it: its kind, the steps of its links, its vectors and its number.
+RawRow = tuple[str, tuple[int | None, int | None], tuple[Triple, Triple], float]
+
 #: The rows of a circuit as the core has them, and a circuit with its rows.
 NetRows = _core.NetRows
 CoreCircuit = tuple[_core.RawCircuit, NetRows]
@@ -145,6 +148,11 @@ class Tree:
             result += [(between, row) for row in joint_rows(linkage.joints[joint], *frames)]
         return result + [(rod.between, rod_row(rod)) for rod in linkage.rods]
 
+    def raw_row(self, between: tuple[int, int], row: ChordRow) -> RawRow:
+        """A row between two links as the core takes it: the steps that carry them in their place."""
+        first, second = (self.carrier[between[side]] for side in row.sides)
+        return row.kind, (first, second), row.vectors, row.number
+
     @property
     def facing(self) -> list[tuple[tuple[int | None, int | None], Triple]]:
         """Directions of two links, joined by a chord, that rows alone would let be opposite."""
@@ -161,7 +169,7 @@ class Tree:
     @cached_property
     def core(self) -> _core.Net:
         """The net of the core."""
-        linkage, rows = self.linkage, []
+        linkage = self.linkage
         joints = [
             (
                 joint.kind,
@@ -173,9 +181,7 @@ class Tree:
                 zip(linkage.joints, linkage.graph.between, strict=True)
             )
         ]
-        for between, row in self.rows:
-            first, second = (self.carrier[between[side]] for side in row.sides)
-            rows.append((row.kind, (first, second), row.vectors, row.number))
+        rows = [self.raw_row(between, row) for between, row in self.rows]
         return _core.Net(
             self.letters,
             np.array(self.advances),
