@@ -220,11 +220,23 @@ def drawn(image, colour, tolerance=24):
     return int((np.abs(image - wanted).max(axis=2) <= tolerance).sum())
 
 
-def tinted(image, colour, within=20.0):
-    """How many pixels have the hue of a colour to some degrees, whatever light falls on them; greys have none."""
+def of_hue(image, colour, within=20.0):
+    """Which pixels have the hue of a colour to some degrees, whatever light falls on them; greys have none."""
     hue, saturation, value = np.moveaxis(rgb_to_hsv(image / 255), 2, 0)
     off = (360 * (hue - rgb_to_hsv(to_rgb(colour))[0]) + 180) % 360 - 180
-    return int(((np.abs(off) <= within) & (saturation * value > CHROMA)).sum())
+    return (np.abs(off) <= within) & (saturation * value > CHROMA)
+
+
+def tinted(image, colour, within=20.0):
+    """How many pixels have the hue of a colour."""
+    return int(of_hue(image, colour, within).sum())
+
+
+def extent(image, colour):
+    """Where the pixels of a colour's hue begin and end, across and down, as shares of the picture."""
+    seen = of_hue(image, colour)
+    across, down = (np.flatnonzero(seen.any(axis=axis)) for axis in (0, 1))
+    return across[[0, -1]] / seen.shape[1], down[[0, -1]] / seen.shape[0]
 
 
 def differs(before, after, tolerance=8):
