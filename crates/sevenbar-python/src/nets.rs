@@ -76,6 +76,8 @@ fn joint(&(letter, angle, on, _): &RawJoint, frames: [Pose; 2]) -> PyResult<NetJ
         'E' => Reading::Plane,
         'K' => Reading::Slot,
         'L' => Reading::SlotOnPin,
+        // a link without a joint
+        ' ' => Reading::Anywhere,
         other => return Err(CoreError::new_err(format!("'{other}' is no joint"))),
     };
     Ok(NetJoint { reading, on, frames })

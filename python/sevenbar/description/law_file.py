@@ -108,7 +108,7 @@ def _of_circuit(table: TextTable, circuit: int | None) -> TextTable:
 def _places(table: TextTable, linkage: Linkage, column: int, joint: str | None) -> dict[str, int]:
     """The column of each quantity, known by its unit; by its name, too, where several have such a unit."""
     own = linkage.each_column[column]
-    name, owner = own.name, linkage.joints[own.joint].name
+    name, owner = own.name, linkage.joints[linkage.joint_of(column)].name
     heads = [table.name_and_unit(place) for place in range(len(table.names))]
     sorts = {
         "time": ("time", 0),

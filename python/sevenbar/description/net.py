@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.links import NamedLinks
-from sevenbar.description.written import Written, drive_of, driven, entries, joints_of
+from sevenbar.description.written import drive_of, driven, entries, joints_of
 from sevenbar.errors import DescriptionError, Problem
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import BallRod, Drive, Joint, Point
-from sevenbar.kinematics.loop.joints import KINDS
+from sevenbar.kinematics.loop.joints import KINDS, columns_apart
 from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, unit
-
-if TYPE_CHECKING:
-    from sevenbar.description.net_schema import NetForm
 
 
 def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
@@ -38,7 +35,8 @@ def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
     context = context_of(whole, source)
     raw = with_numbers(raw, context)
     check_net(raw, context, source=source)
-    if problems := driven(joints_of(whole), drive_of(whole))[2]:
+    first, last, problems = driven(joints_of(whole), drive_of(whole), _places(links), "a net")
+    if problems:
         raise DescriptionError(problems, source)
     form = check_net({**with_numbers(whole, context), "pin": []}, context, source=source)
     number = {name: i for i, name in enumerate(links.links, 1)}
@@ -58,7 +56,7 @@ def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
         joints=tuple(joints),
         frames=np.stack(frames),
         point_frames=np.broadcast_to(np.eye(4), (len(number), 4, 4)).copy(),
-        drive=Drive(*_ends(form, joints), form.drive.speed),
+        drive=Drive(first, last, form.drive.speed),
         length_unit=form.length_unit,
         points=points,
         description=raw,
@@ -68,10 +66,11 @@ def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
     )
 
 
-def _ends(form: NetForm, joints: list[Joint]) -> tuple[str, str]:
-    """The columns of input and output."""
-    drive = {"joint": form.drive.joint, "output": form.drive.output}
-    return driven([Written("", joint.name, joint.kind) for joint in joints], drive)[:2]
+def _places(links: NamedLinks) -> list[str]:
+    """The columns that say where links are that rods alone hold."""
+    joints = {joint.name for joint in links.joints}
+    names = (name for number, name in enumerate(links.links, 1) if number in links.graph.apart)
+    return [column for name in names for column in columns_apart(name, joints)[:3]]
 
 
 def drawn_frames(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 from sevenbar.errors import Problem, no_joint, shown
 from sevenbar.kinematics.loop.graph import loop_graph
@@ -80,18 +80,24 @@ def is_only_ground(table: Mapping[str, Any], kind: object) -> bool:
     return names_ground(kind) and not table.keys() & {"length", "twist", "offset"}
 
 
-def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, str, list[Problem]]:
+def driven(
+    joints: Sequence[Written],
+    drive: Mapping[str, Any],
+    places: Sequence[str] = (),
+    what: Literal["a loop", "a net"] = "a loop",
+) -> tuple[str, str, list[Problem]]:
     """The columns of input and output, and what is wrong with those that are named.
 
     The plain name of a joint of several freedoms is its first one. Without a word the input is the first
-    joint that is no ball, and the output the last one.
+    joint that is no ball, and the output the last one; where there is no other, the last of the `places` of
+    links that rods alone hold.
     """
     firsts = [next(iter(joint.columns)) for joint in joints if not joint.is_ball]
     free = [column for joint in joints if not joint.is_ball for column in joint.columns]
-    if len(free) < 2:
-        loop = " ".join(joint.kind for joint in joints)
+    if not free or len(free) + len(places) < 2:
+        kinds = " ".join(joint.kind for joint in joints)
         count = "one freedom" if free else "no freedom"
-        message = f"a loop {loop} has {count} outside its balls; an input and an output need two"
+        message = f"{what} {kinds} has {count} outside its balls; an input and an output need two"
         known_kinds = all(joint.kind for joint in joints)
         return "", "", [Problem("joint", message)] if known_kinds else []
     # two joints of one name are reported elsewhere; to choose from they are one
@@ -102,13 +108,13 @@ def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, st
         name = drive.get(key)
         if not isinstance(name, str):
             continue
-        column, wrong = named_column(name, joints)
+        column, wrong = named_column(name, joints, places if key == "output" else ())
         if wrong:
             problems.append(Problem(f"drive.{key}", wrong))
         else:
             chosen[key] = column
     first = chosen.get("joint", firsts[0])
-    others = [column for column in choices if column != first]
+    others = [column for column in choices if column != first] or [*places]
     # `first` where one name stands for every joint, which is reported elsewhere
     last = chosen.get(
         "output", next((c for c in [*reversed(firsts), *reversed(others)] if c != first), first)
@@ -121,13 +127,18 @@ def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, st
     return first, last, problems
 
 
-def named_column(name: str, joints: Sequence[Written]) -> tuple[str, str]:
-    """The column that a name means, the first one of a joint's name, and what is wrong with the name."""
+def named_column(name: str, joints: Sequence[Written], places: Sequence[str] = ()) -> tuple[str, str]:
+    """The column that a name means, the first one of a joint's name, and what is wrong with the name.
+
+    `places` are columns of links that rods alone hold which it may mean as well.
+    """
     name = name.strip()
+    if name in places:
+        return name, ""
     owner = next((joint for joint in joints if name == joint.name or name in joint.columns), None)
     if owner is None:
         known = (name for j in joints for name in ([j.name] if j.is_ball else j.columns))
-        return "", no_joint(name, list(dict.fromkeys(known)))
+        return "", no_joint(name, [*dict.fromkeys(known), *places])
     if owner.is_ball:
         free = dict.fromkeys(column for joint in joints if not joint.is_ball for column in joint.columns)
         return "", f"joint {shown(owner.name)} is a ball; give a joint with one freedom: {', '.join(free)}"

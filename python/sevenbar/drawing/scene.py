@@ -227,8 +227,12 @@ def link_colours(linkage: Loop, ends: tuple[str, str]) -> tuple[list[str], list[
     # the output first, so that the input wins a link that both move
     for column, colour in zip(ends[::-1], (OUTPUT, INPUT), strict=True):
         joint = linkage.column_of(column).joint
-        joints[joint] = colour
-        links[graph.moving_link(joint) - 1] = colour
+        if joint is None:
+            apart = next(one for one in linkage.links_apart if column in one.columns)
+            links[apart.link - 1] = colour
+        else:
+            joints[joint] = colour
+            links[graph.moving_link(joint) - 1] = colour
     return links, joints
 
 

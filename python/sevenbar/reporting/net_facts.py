@@ -32,9 +32,10 @@ def net_facts(motion: Motion) -> list[tuple[str, str]]:
 def net_text(linkage: Solvable) -> str:
     """How many links, joints and rods there are."""
     return say(
-        "{links} links, {joints} joints, {rods} rod{s}; {ground} is the ground",
+        "{links} links, {joints} joint{j}, {rods} rod{s}; {ground} is the ground",
         links=linkage.graph.ground,
         joints=linkage.graph.joints.stop,
+        j="" if linkage.graph.joints.stop == 1 else "s",
         rods=len(linkage.rods),
         s="" if len(linkage.rods) == 1 else "s",
         ground=linkage.link_names[-1],

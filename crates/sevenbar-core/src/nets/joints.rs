@@ -30,6 +30,8 @@ pub enum Reading {
     Slot,
     /// A turn about z, and a slide along y of the other.
     SlotOnPin,
+    /// Slides along x, y and z of the one, and turns about z, y and x: of a link that has no joint, against the ground.
+    Anywhere,
 }
 
 impl Reading {
@@ -43,7 +45,13 @@ impl Reading {
             Self::Cross(_) => &[false, false],
             Self::Ball => &[false, false, false],
             Self::Plane => &[true, true, false],
+            Self::Anywhere => &[true, true, true, false, false, false],
         }
+    }
+
+    /// Whether it turns any way: its columns are read off its links even where they are followed, since a tree's three turns have two ways to one pose.
+    pub(super) fn turns_any_way(self) -> bool {
+        matches!(self, Self::Ball | Self::Anywhere)
     }
 
     /// The values of its columns; none where they are not determined.
@@ -61,10 +69,8 @@ impl Reading {
                 let second = Taylor::atan2(entry(2, 0).scale(side), entry(2, 1).scale(side));
                 vec![Some(first), Some(second)]
             }
-            Self::Ball => match turns_zyx(entry) {
-                Some(turns) => turns.map(Some).to_vec(),
-                None => vec![None; 3],
-            },
+            Self::Ball => any_turns(entry).to_vec(),
+            Self::Anywhere => [0, 1, 2].map(moved).into_iter().chain(any_turns(entry)).collect(),
             Self::Plane => vec![moved(0), moved(1), turn()],
             Self::Slot => vec![moved(1), turn()],
             Self::SlotOnPin => {
@@ -73,6 +79,11 @@ impl Reading {
             }
         }
     }
+}
+
+/// Turns about z, y and x; none where they have no direction.
+fn any_turns(entry: &dyn Fn(usize, usize) -> Taylor<TERMS>) -> [Option<Taylor<TERMS>>; 3] {
+    turns_zyx(entry).map_or([None; 3], |turns| turns.map(Some))
 }
 
 /// A joint of a net.
@@ -147,7 +158,7 @@ mod tests {
     #[test]
     fn a_joint_reads_what_it_was_moved_by() {
         let tilt = 1.1;
-        let cases: [(Reading, Pose, &[f64]); 8] = [
+        let cases: [(Reading, Pose, &[f64]); 9] = [
             (Reading::Turn, about(2, 0.3), &[0.3]),
             (Reading::Slide, along([0.0, 0.0, 0.4]), &[0.4]),
             (
@@ -174,6 +185,14 @@ mod tests {
                 Reading::Slot,
                 along([0.0, 0.4, 0.0]).then(&about(2, 0.3)),
                 &[0.4, 0.3],
+            ),
+            (
+                Reading::Anywhere,
+                along([0.2, 0.4, -0.6])
+                    .then(&about(2, 0.3))
+                    .then(&about(1, -0.5))
+                    .then(&about(0, 0.9)),
+                &[0.2, 0.4, -0.6, 0.3, -0.5, 0.9],
             ),
             (
                 Reading::SlotOnPin,

@@ -116,7 +116,7 @@ def poses(linkage: Loop, q: Floats) -> Floats:
 
 
 def _poses_of_net(linkage: Loop, q: Floats) -> Floats:
-    """The same of a net, along a tree of its joints from the ground on; NaN of links that only rods hold."""
+    """The same of a net, along a tree of its joints and of the columns of links that rods alone hold."""
     graph = linkage.graph
     result = np.full((len(q), graph.ground, 4, 4), np.nan)
     result[:, -1] = np.eye(4)
@@ -130,6 +130,8 @@ def _poses_of_net(linkage: Loop, q: Floats) -> Floats:
         else:
             result[:, before - 1] = result[:, after - 1] @ second @ inverse(moved) @ inverse(first)
         reached |= {before, after}
+    for apart in linkage.links_apart:
+        result[:, apart.link - 1] = apart.poses(q)
     return result
 
 

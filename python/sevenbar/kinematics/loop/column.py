@@ -12,15 +12,16 @@ from sevenbar.kinematics.loop.joints import Freedom
 class Column:
     """One freedom of a joint: its number among the columns and its name, its kind, unit and joint.
 
-    The `unit` of its values is "rad" or the length unit, the `joint` counts from 0. `is_output`: it may drive
-    or be driven, as all but the turns of a ball.
+    The `unit` of its values is "rad" or the length unit, the `joint` counts from 0, and is `None` of a link
+    that rods alone hold. `is_output`: it may drive or be driven, as all but the turns of a ball; of a link on
+    rods its place may be the output.
     """
 
     number: int
     name: str
     kind: Freedom
     unit: str
-    joint: int
+    joint: int | None
     is_output: bool
 
     @property

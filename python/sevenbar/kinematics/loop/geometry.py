@@ -18,6 +18,7 @@ from sevenbar.forces.loading import UNLOADED, Loading
 from sevenbar.kinematics.loop.column import Column
 from sevenbar.kinematics.loop.graph import Graph, loop_graph
 from sevenbar.kinematics.loop.joints import (
+    ANYWHERE,
     JOINT_KINDS,
     READ_KINDS,
     Freedom,
@@ -25,6 +26,7 @@ from sevenbar.kinematics.loop.joints import (
     Step,
     X,
     Z,
+    columns_apart,
     kind_row,
     no_reading,
 )
@@ -175,6 +177,26 @@ class BallRod:
     name: str
     between: tuple[int, int]
     at: tuple[tuple[float, float, float], tuple[float, float, float]]
+
+
+@dataclass(frozen=True)
+class LinkApart:
+    """A link of a net that rods alone hold: its number, and the names and places of its six columns.
+
+    These are slides along x, y and z from where it is drawn and turns about z, y and x, as a joint between
+    the ground and the frame `at` (4, 4) on it would read.
+    """
+
+    link: int
+    at: Floats
+    columns: tuple[str, ...]
+    place: slice
+
+    def poses(self, q: Floats) -> Floats:
+        """Its frames (n, 4, 4) in the report frame, from joint values (n, columns)."""
+        values = q[:, self.place].T
+        moved = reduce(product, map(moved_by, ANYWHERE.steps, values))
+        return product(self.at, product(moved, inverse(self.at)))
 
 
 @dataclass(frozen=True)
@@ -374,12 +396,42 @@ class Loop(Drawable):
     @cached_property
     def each_column(self) -> tuple[Column, ...]:
         """All columns, each with its name, kind, unit and joint."""
-        result: list[Column] = []
-        for number, joint in enumerate(self.joints):
-            for name, kind in zip(joint.columns, joint.row.freedoms, strict=True):
-                unit = "rad" if kind == "turn" else self.length_unit
-                result.append(Column(len(result), name, kind, unit, number, not joint.row.is_ball))
+        joints = [
+            (name, kind, number, not joint.row.is_ball)
+            for number, joint in enumerate(self.joints)
+            for name, kind in zip(joint.columns, joint.row.freedoms, strict=True)
+        ]
+        links = [
+            (name, kind, None, kind == "slide")
+            for apart in self.links_apart
+            for name, kind in zip(apart.columns, ANYWHERE.freedoms, strict=True)
+        ]
+        return tuple(
+            Column(place, name, kind, "rad" if kind == "turn" else self.length_unit, number, output)
+            for place, (name, kind, number, output) in enumerate([*joints, *links])
+        )
+
+    @cached_property
+    def links_apart(self) -> tuple[LinkApart, ...]:
+        """The links of a net that rods alone hold."""
+        names, first = {joint.name for joint in self.joints}, self.places[-1].stop
+        result = []
+        for link in self.graph.apart:
+            rods = (at for rod in self.rods for on, at in zip(rod.between, rod.at, strict=True) if on == link)
+            joints = (self.frames[joint, 1, :3, 3] for joint in self.graph.joints_of(link))
+            ends = [*map(np.array, rods), *joints]
+            at = pose(np.eye(3), np.mean(ends, axis=0))
+            columns = columns_apart(self.link_name(link), names)
+            result.append(LinkApart(link, at, columns, slice(first, first + len(columns))))
+            first += len(columns)
         return tuple(result)
+
+    def joint_of(self, column: int | str) -> int:
+        """The joint, counted from 0, of a column by its number or name; `RequestError` if it is of a link."""
+        one = self.column_of(column)
+        if one.joint is None:
+            raise RequestError(f"column: {self._no_end(one.name)}")
+        return one.joint
 
     def column_of(self, column: int | str) -> Column:
         """A column by its number or name; `RequestError` for what is neither."""
@@ -397,7 +449,8 @@ class Loop(Drawable):
     @cached_property
     def drawn_pose(self) -> Floats:
         """What the columns (columns,) read in the pose that is drawn [rad, or length]; 0 of other forms."""
-        result = np.array([self.joints[column.joint].value for column in self.each_column])
+        joints = (None if column.joint is None else self.joints[column.joint] for column in self.each_column)
+        result = np.array([0.0 if joint is None else joint.value for joint in joints])
         result.setflags(write=False)
         return result
 
@@ -434,6 +487,8 @@ class Loop(Drawable):
     def column(self, name: str, key: str) -> int:
         """The place of a column named by the caller; a joint's name stands for its first one."""
         names = [joint.name for joint in self.joints]
+        if key == "output":
+            names += [one.name for one in self.each_column if one.joint is None and one.is_output]
         if not isinstance(name, str):
             raise RequestError(f"{key}: {no_joint(name, names)}")
         for joint in self.joints:
@@ -446,7 +501,15 @@ class Loop(Drawable):
                 return self.columns.index(joint.first)
         if name not in self.columns:
             raise RequestError(f"{key}: {no_joint(name, names)}")
+        one = self.column_of(name)
+        if one.joint is None and not (key == "output" and one.is_output):
+            raise RequestError(f"{key}: {self._no_end(name)}")
         return self.columns.index(name)
+
+    def _no_end(self, column: str) -> str:
+        """What to give in place of a column of a link that rods alone hold."""
+        joints = [one.name for one in self.each_column if one.is_output and one.joint is not None]
+        return f"'{column}' is where a link on rods alone is; give a joint: {', '.join(joints)}"
 
     def input_column(self, name: str | None = None, key: str = "input") -> int:
         """The place of the input's column: that named by the caller under a key, or the drive's."""

@@ -93,6 +93,12 @@ class Graph:
                 path.pop()
         return tuple(result)
 
+    @cached_property
+    def apart(self) -> tuple[int, ...]:
+        """The moving links to which no joints lead from the ground: those of a net that rods alone hold."""
+        reached = {link for joint in self.tree for link in self.between[joint]}
+        return tuple(link for link in self.moving if link not in reached)
+
     @property
     def closing(self) -> tuple[int, ...]:
         """The joints that are not of the tree, each of which closes a loop."""

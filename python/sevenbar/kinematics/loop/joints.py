@@ -14,7 +14,7 @@ which is a product of steps again, in a frame turned by half: about x, where z i
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -230,6 +230,12 @@ KINDS: Mapping[str, JointKind] = {
     )
 }  # fmt: skip
 
+#: A body that no joint holds: what the columns of such a link are.
+ANYWHERE = JointKind(
+    "", "free link", (),
+    (*(Step("slide", axis) for axis in (X, Y, Z)), *KINDS["S"].steps), (), "ball", "",
+)  # fmt: skip
+
 #: Their letters.
 JOINT_KINDS = tuple(KINDS)
 
@@ -249,6 +255,11 @@ def no_reading(kind: str) -> str:
 def column_names(joint: str, freedoms: Sequence[Freedom]) -> tuple[str, ...]:
     """One name for each freedom of a joint: its own, numbered from 1 where it has more than one."""
     return (joint,) if len(freedoms) == 1 else tuple(f"{joint}.{k}" for k in range(1, len(freedoms) + 1))
+
+
+def columns_apart(link: str, joints: Collection[str]) -> tuple[str, ...]:
+    """The names of the columns of a link that rods alone hold: slides along x, y, z, turns about z, y, x."""
+    return column_names(f"link {link}" if link in joints else link, ANYWHERE.freedoms)
 
 
 def letters_with(key: str) -> str:

@@ -64,7 +64,7 @@ def drawn_pose(linkage: Loop, column: int, freedoms: int) -> DrawnPose:
     if len(free) > freedoms:
         return DrawnPose("change-point")
     rates = [np.abs(_rates(linkage, joint, free)).max(axis=0) for joint in linkage.graph.joints]
-    driven = linkage.column_of(column).joint
+    driven = linkage.joint_of(column)
     place = column - linkage.places[driven].start
     if rates[driven][place] > STILL * max(rate.max() for rate in rates):
         return DrawnPose("regular")
@@ -84,16 +84,16 @@ def _nearly(linkage: Loop, column: int, rows: Floats, names: list[str]) -> Nearl
     values = np.linalg.svd(rows, compute_uv=False)
     if len(values) < 2 or values[-1] > NEARLY * values[-2]:
         return None
-    driven = linkage.column_of(column)
-    place = column - linkage.places[driven.joint].start
+    driven = linkage.joint_of(column)
+    place = column - linkage.places[driven].start
     openings = []
     for name in dict.fromkeys(names):
         opened = np.array([one == name for one in names])
-        if name == linkage.joints[driven.joint].name:
+        if name == linkage.joints[driven].name:
             continue
         _, values, vectors = np.linalg.svd(rows[~opened])
         free = vectors[int((values > NO_RANK * values[0]).sum()) :]
-        rates = _rates(linkage, driven.joint, free.reshape(len(free), -1, 6))[:, place]
+        rates = _rates(linkage, driven, free.reshape(len(free), -1, 6))[:, place]
         if np.abs(rates).max(initial=0.0) > STILL:
             # the least opening, all free motions taken together, at one rad of the input
             least = 1.0 / np.linalg.norm(np.linalg.pinv((rows[opened] @ free.T).T) @ rates)

@@ -187,7 +187,7 @@ def as_one(linkage: Loop, driven: int, link: int) -> int:
 def order_of(linkage: Loop, column: int) -> Order:
     """The order in which a linkage is solved with one column held; of a single loop that is one block."""
     parts = Parts(linkage)
-    driven = linkage.column_of(column).joint
+    driven = linkage.joint_of(column)
     count = linkage.graph.ground
     alone = len(linkage.joints[driven].columns) == 1
     merged = [as_one(linkage, driven, link + 1) - 1 for link in range(count)]

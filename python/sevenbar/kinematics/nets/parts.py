@@ -163,10 +163,8 @@ class LinkInSpace:
             steps = sorted(self.tree.columns.get(joint, []))
             if steps and steps[-1] in [self.tree.carrier[link] for link in links] and body in self._on(joint):
                 return steps
-        in_joints = {step for steps in self.tree.columns.values() for step in steps}
-        (*_, last) = [self.tree.carrier[link] for link in links]
-        # a link that only rods hold has six of its own
-        return [] if last is None or last in in_joints else list(range(last - 5, last + 1))
+        apart = (link for link in self.linkage.graph.apart if link in links)
+        return next(map(self.tree.steps_apart, apart), [])
 
     def _hinge(self, body: int) -> int | None:
         """The joint of one freedom that carries the link from a known one, whose rows its step fulfils."""

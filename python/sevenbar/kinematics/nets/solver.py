@@ -45,7 +45,7 @@ class NetSolver:
         how many there are besides.
         """
         linkage = self._linkage
-        tree = Tree(linkage, (linkage.column_of(column).joint,))
+        tree = Tree(linkage, (linkage.joint_of(column),))
         _, repeated, free = tree.core.freedoms()
         freedoms = sum(len(joint.row.freedoms) for joint in linkage.joints)
         lines, graph = [], linkage.graph
@@ -125,9 +125,10 @@ class NetSolver:
     def _tree(self, column: int, output: int) -> Tree:
         """The tree of an input and an output, made once."""
         if (column, output) not in self._trees:
-            joints = [self._linkage.column_of(end).joint for end in (column, output)]
-            order = order_of(self._linkage, column)
-            self._trees[column, output] = Tree(self._linkage, tuple(dict.fromkeys(joints)), order)
+            ends = [self._linkage.column_of(end).joint for end in (column, output)]
+            # where a link on rods alone is has columns in every tree
+            joints = tuple(dict.fromkeys(joint for joint in ends if joint is not None))
+            self._trees[column, output] = Tree(self._linkage, joints, order_of(self._linkage, column))
         return self._trees[column, output]
 
     def _circuit(

@@ -11,15 +11,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numpy as np
 
 import sevenbar._core as _core
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError
-from sevenbar.kinematics.loop.geometry import Loop
-from sevenbar.kinematics.loop.joints import X, Z
+from sevenbar.kinematics.loop.geometry import LinkApart, Loop
+from sevenbar.kinematics.loop.joints import ANYWHERE, X, Z
 from sevenbar.kinematics.nets.chords import ChordRow, Triple, joint_rows, rod_row, three
 from sevenbar.kinematics.nets.order import Order, Parts
 
@@ -71,9 +71,8 @@ class Tree:
                 break
             remaining.remove(joint)
             self._grow(joint)
-        for link in graph.moving:
-            if link not in self.carrier:
-                self._free(link)
+        for link in self.linkage.links_apart:
+            self._free(link)
         self.chords = sorted(remaining)
         for joint in self.chords:
             if self.linkage.joints[joint].row.is_screw:
@@ -107,18 +106,19 @@ class Tree:
             columns.insert(len(columns) if outwards else 0, at)
         self.carrier[after if outwards else before] = at
 
-    def _free(self, link: int) -> None:
+    def _free(self, apart: LinkApart) -> None:
         """Gives a link that only rods hold six steps of its own."""
-        ends = [
-            end
-            for rod in self.linkage.rods
-            for carrier, end in zip(rod.between, rod.at, strict=True)
-            if carrier == link
-        ]
-        place, at = np.mean(ends, axis=0), None
-        for letter, axis in zip("PPPSRR", np.tile(np.eye(3), (2, 1)), strict=True):
-            at = self._step(letter, 0.0, at, place, axis)
-        self.carrier[link] = at
+        at = None
+        for step in ANYWHERE.steps:
+            # a ball's turns begin with its letter
+            letter = "S" if step.freedom == "turn" and self.letters[-1] == "P" else step.letter
+            at = self._step(letter, 0.0, at, apart.at[:3, 3], np.eye(3)[step.axis])
+        self.carrier[apart.link] = at
+
+    def steps_apart(self, link: int) -> list[int]:
+        """The steps of a link that only rods hold."""
+        last = cast("int", self.carrier[link])
+        return list(range(last + 1 - len(ANYWHERE.steps), last + 1))
 
     def _step(
         self,
@@ -181,6 +181,11 @@ class Tree:
                 zip(linkage.joints, linkage.graph.between, strict=True)
             )
         ]
+        # a link apart is read as if a joint led to it from the ground
+        joints += [
+            (" ", 0.0, (None, self.carrier[link]), self.steps_apart(link)) for link in linkage.graph.apart
+        ]
+        places = np.array([apart.at for apart in linkage.links_apart]).reshape(-1, 4, 4)
         rows = [self.raw_row(between, row) for between, row in self.rows]
         return _core.Net(
             self.letters,
@@ -193,8 +198,8 @@ class Tree:
             self.facing,
             linkage.size,
             joints,
-            linkage.frames[:, 0],
-            linkage.frames[:, 1],
+            np.concatenate([linkage.frames[:, 0], places]),
+            np.concatenate([linkage.frames[:, 1], places]),
         )
 
     def followed(self, work: Callable[[_core.Net], T]) -> T:

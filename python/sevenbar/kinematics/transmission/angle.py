@@ -119,7 +119,7 @@ def _driving_pin(letters: str, near_input: int, near_output: int) -> tuple[int, 
 
 def _of_dyad(net: Loop, input: int, output: int) -> Coupling | None:
     """The dyad of a net that has the output between it and a link that is known before it is solved."""
-    held, driven = net.column_of(input).joint, net.column_of(output).joint
+    held, driven = net.joint_of(input), net.column_of(output).joint
     between, steps = net.graph.between, steps_of(net)
     for block in order_of(net, input).blocks:
         # of a dyad with the input between two of its links, either would be the coupler
