@@ -13,7 +13,7 @@ from sevenbar.description.written import drive_of, driven, entries, joints_of
 from sevenbar.errors import DescriptionError, Problem
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import BallRod, Drive, Joint, Point
-from sevenbar.kinematics.loop.joints import KINDS, columns_apart
+from sevenbar.kinematics.loop.joints import ANYWHERE, KINDS, columns_apart
 from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, unit
 
 
@@ -70,7 +70,8 @@ def _places(links: NamedLinks) -> list[str]:
     """The columns that say where links are that rods alone hold."""
     joints = {joint.name for joint in links.joints}
     names = (name for number, name in enumerate(links.links, 1) if number in links.graph.apart)
-    return [column for name in names for column in columns_apart(name, joints)[:3]]
+    columns = (zip(columns_apart(name, joints), ANYWHERE.freedoms, strict=True) for name in names)
+    return [column for each in columns for column, freedom in each if freedom == "slide"]
 
 
 def drawn_frames(

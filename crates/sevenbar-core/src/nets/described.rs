@@ -86,7 +86,7 @@ impl DescribedNet {
         }
         let joints: Vec<NetJoint> = joints.into_iter().map(|(joint, _)| joint).collect();
         let sum = |column: &Outer| match (column.followed, &joints[column.joint]) {
-            (_, joint) if joint.reading.slides().len() >= 3 => None,
+            (_, joint) if joint.reading.is_read_off() => None,
             (Some(inner), _) => Some(Sum { of: vec![(inner, 1.0)], rest: 0.0, slides: column.slides }),
             (None, joint) => turned_by(&net, joint),
         };
@@ -228,8 +228,9 @@ impl DescribedNet {
         out
     }
 
+    /// Whether a column is read off the links even where it is followed.
     fn is_read_off(&self, column: Outer) -> bool {
-        self.joints[column.joint].reading.turns_any_way()
+        self.joints[column.joint].reading.is_read_off()
     }
 
     /// Position, velocity, acceleration and jerk of a point of a link, `4 x rows x 3`, in the report frame; `at` is where it is drawn.

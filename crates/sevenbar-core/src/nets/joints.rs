@@ -49,9 +49,10 @@ impl Reading {
         }
     }
 
-    /// Whether it turns any way: its columns are read off its links even where they are followed, since a tree's three turns have two ways to one pose.
-    pub(super) fn turns_any_way(self) -> bool {
-        matches!(self, Self::Ball | Self::Anywhere)
+    /// Whether its columns are read off its links even where they are followed, as those of all with three or more: a tree's three turns have
+    /// two ways to one pose.
+    pub(super) fn is_read_off(self) -> bool {
+        self.slides().len() > 2
     }
 
     /// The values of its columns; none where they are not determined.

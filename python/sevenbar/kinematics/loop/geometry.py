@@ -480,15 +480,25 @@ class Loop(Drawable):
         return self.points[2:] if self.kind == "RSSR" else self.points
 
     def drivable(self, without: int | None = None) -> list[str]:
-        """The columns that may drive or be driven: all but those of balls, and but one."""
+        """The columns of joints that may drive or be driven: all but those of balls, and but one."""
         left_out = None if without is None else self.column_of(without)
-        return [one.name for one in self.each_column if one.is_output and one is not left_out]
+        joints = (one for one in self.each_column if one.is_output and one.joint is not None)
+        return [one.name for one in joints if one is not left_out]
+
+    def output_choices(self, without: int | None = None) -> list[str]:
+        """The columns that may be the output, but one: those that may drive, places of links on rods."""
+        return self.drivable(without) + [one.name for one in self._places_apart]
+
+    @property
+    def _places_apart(self) -> list[Column]:
+        """The columns that say where links are that rods alone hold."""
+        return [one for one in self.each_column if one.is_output and one.joint is None]
 
     def column(self, name: str, key: str) -> int:
         """The place of a column named by the caller; a joint's name stands for its first one."""
         names = [joint.name for joint in self.joints]
         if key == "output":
-            names += [one.name for one in self.each_column if one.joint is None and one.is_output]
+            names += [one.name for one in self._places_apart]
         if not isinstance(name, str):
             raise RequestError(f"{key}: {no_joint(name, names)}")
         for joint in self.joints:
@@ -502,14 +512,13 @@ class Loop(Drawable):
         if name not in self.columns:
             raise RequestError(f"{key}: {no_joint(name, names)}")
         one = self.column_of(name)
-        if one.joint is None and not (key == "output" and one.is_output):
+        if one.joint is None and not (key == "output" and one in self._places_apart):
             raise RequestError(f"{key}: {self._no_end(name)}")
         return self.columns.index(name)
 
     def _no_end(self, column: str) -> str:
         """What to give in place of a column of a link that rods alone hold."""
-        joints = [one.name for one in self.each_column if one.is_output and one.joint is not None]
-        return f"'{column}' is where a link on rods alone is; give a joint: {', '.join(joints)}"
+        return f"'{column}' is where a link on rods alone is; give a joint: {', '.join(self.drivable())}"
 
     def input_column(self, name: str | None = None, key: str = "input") -> int:
         """The place of the input's column: that named by the caller under a key, or the drive's."""
@@ -522,9 +531,8 @@ class Loop(Drawable):
             return first, self.other_column(first)
         second = self.column(output, "output")
         if second == first:
-            raise RequestError(
-                f"output: joint '{output}' is the input; give another: {', '.join(self.drivable(first))}"
-            )
+            others = ", ".join(self.output_choices(first))
+            raise RequestError(f"output: joint '{output}' is the input; give another: {others}")
         return first, second
 
     def other_column(self, column: int) -> int:
@@ -537,7 +545,7 @@ class Loop(Drawable):
             for joint in self.joints
             if not joint.row.is_ball and self.columns[column] not in joint.columns
         ]
-        name = last[-1].first if last else self.drivable(column)[-1]
+        name = last[-1].first if last else self.output_choices(column)[-1]
         return self.columns.index(name)
 
     def driven_alike(self, column: int) -> bool:

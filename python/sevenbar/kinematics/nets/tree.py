@@ -109,9 +109,7 @@ class Tree:
     def _free(self, apart: LinkApart) -> None:
         """Gives a link that only rods hold six steps of its own."""
         at = None
-        for step in ANYWHERE.steps:
-            # a ball's turns begin with its letter
-            letter = "S" if step.freedom == "turn" and self.letters[-1] == "P" else step.letter
+        for letter, step in zip("PPPSRR", ANYWHERE.steps, strict=True):
             at = self._step(letter, 0.0, at, apart.at[:3, 3], np.eye(3)[step.axis])
         self.carrier[apart.link] = at
 

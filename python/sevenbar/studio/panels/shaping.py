@@ -225,8 +225,10 @@ class ShapePanel:
             return
         self._shown = self._session.draft
         linkage = self._session.draft.linkage
-        choices = tuple(linkage.drivable())
-        for control, value in ((self._input, linkage.drive.joint), (self._output, linkage.drive.output)):
-            settle(control, options=choices)
+        for control, value, choices in (
+            (self._input, linkage.drive.joint, linkage.drivable()),
+            (self._output, linkage.drive.output, linkage.output_choices()),
+        ):
+            settle(control, options=tuple(choices))
             put(control, value)
         self._list.show()
