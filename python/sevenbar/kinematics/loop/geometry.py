@@ -366,11 +366,13 @@ class Loop(Drawable):
 
     def link_name(self, link: int) -> str:
         """What messages call a link, counted from 1."""
-        return self.link_names[link - 1] if self.link_names else f"link {link}"
+        label = self.link_label(link)
+        return label if self.link_names else f"link {label}"
 
     def link_label(self, link: int) -> str:
         """What tables of links call a link, counted from 1: its name, or its number."""
-        return self.link_names[link - 1] if self.link_names else f"{link}"
+        number = whole_number("link", link, 1, self.graph.ground, "a link")
+        return self.link_names[number - 1] if self.link_names else f"{number}"
 
     @property
     def in_rows(self) -> bool:
