@@ -12,6 +12,8 @@ BIN := $(VENV)/bin
 NEWEST_WHEEL = $$(ls -t "$(DIST)"/sevenbar-*.whl | head -1)
 # a stale Cargo.lock is mended on a desk and refused in CI
 LOCKED := $(if $(CI),--locked)
+# wheels as small as they get
+PACKED := --compression-level 9
 # by another name, since a line with $(MAKE) itself is run by make -n, too
 AGAIN_MAKE = $(MAKE) --no-print-directory
 # on all cores
@@ -77,7 +79,7 @@ format: $(VENV)/.installed-dev  ## Write the formatting and the safe repairs int
 
 .PHONY: wheel
 wheel: $(VENV)/.maturin  ## Build dist/*.whl
-	$(BIN)/maturin build --release $(LOCKED) --out "$(DIST)"
+	$(BIN)/maturin build --release $(LOCKED) $(PACKED) --out "$(DIST)"
 
 # zig links against an old glibc and for other processors; twice the same core, since it is one abi3 wheel for all Pythons
 .PHONY: release
@@ -87,7 +89,7 @@ release: $(VENV)/.maturin  ## Into dist/: wheels for Linux (x86_64, aarch64; gli
 	for processor in x86_64 aarch64; do \
 	  rustup target add $$processor-unknown-linux-gnu 2>/dev/null && \
 	  PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin build --release --locked --zig --compatibility manylinux2014 \
-	    --target $$processor-unknown-linux-gnu --out "$(DIST)" || exit 1; \
+	    --target $$processor-unknown-linux-gnu $(PACKED) --out "$(DIST)" || exit 1; \
 	done
 	$(BIN)/maturin sdist --out "$(DIST)"
 	$(BIN)/twine check --strict "$(DIST)"/*

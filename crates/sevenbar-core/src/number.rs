@@ -1,5 +1,6 @@
 //! A number, or several side by side.
 
+use num_complex::Complex64;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -66,5 +67,35 @@ impl Number for f64 {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         self.sin_cos()
+    }
+}
+
+/// What is written for numbers goes on to complex ones; it compares none.
+impl Number for Complex64 {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self::new(x, 0.0)
+    }
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        self + a * b
+    }
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        self - a * b
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
+        if self.re > b.re { yes } else { no }
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let turn = (Self::I * self).exp();
+        let back = turn.inv();
+        ((turn - back) * Self::new(0.0, -0.5), (turn + back) * 0.5)
     }
 }

@@ -166,6 +166,25 @@ impl DyadRows {
         self.driven
     }
 
+    /// The dyads, in the order in which they are put together.
+    pub fn stages(&self) -> &[Joined] {
+        &self.stages
+    }
+
+    /// The pose of the driven link at a value of the input.
+    #[inline(always)]
+    pub fn begin<N: Number>(&self, input: N, poses: &mut Poses<N>) {
+        let driven = self.columns[self.driven];
+        let z = match driven.moves {
+            Moves::Turn(_, side) => {
+                let (im, re) = (input - N::splat(driven.reads)).sin_cos();
+                Complex { re, im: im.scaled(side) }
+            }
+            Moves::Slide(_) => Complex::constant(Complex64::ONE),
+        };
+        poses[self.driven] = driven.moved(&InPlane::still(), z, input);
+    }
+
     /// The sines of all dyads at values of the columns.
     fn sines(&self, values: &[f64]) -> [f64; MOST_SIGNS] {
         let mut poses = [InPlane::still(); MOST];
@@ -224,15 +243,7 @@ impl DyadRows {
     #[inline(always)]
     pub fn row<M: Number>(&self, sides: &[f64; MOST_SIGNS], input: [M; TERMS], near: &[f64]) -> Found<M> {
         let mut poses: Poses<Series<M, TERMS>> = [InPlane::still(); MOST];
-        let driven = self.columns[self.driven];
-        let z = match driven.moves {
-            Moves::Turn(_, side) => {
-                let (im, re) = (Series(input) - Series::splat(driven.reads)).sin_cos();
-                Complex { re, im: im.scaled(side) }
-            }
-            Moves::Slide(_) => Complex::constant(Complex64::ONE),
-        };
-        poses[self.driven] = driven.moved(&InPlane::still(), z, Series(input));
+        self.begin(Series(input), &mut poses);
         for (k, stage) in self.stages.iter().enumerate() {
             let both = stage.put(&poses, sides[k]);
             poses[stage.links[0]] = both[0];

@@ -147,6 +147,36 @@ impl Joined {
         }
     }
 
+    /// The radicand of its root, as the square of the sine of the angle between its links where it has two, and the denominator of its links'
+    /// turns and shifts, where the known links are.
+    pub fn radicand<N: Number>(&self, poses: &Poses<N>) -> [N; 2] {
+        let (first, second) = (on(poses, self.known[0]), on(poses, self.known[1]));
+        let one = N::splat(1.0);
+        match self.shape {
+            Shape::Hinges { p, q, arms: [long, short] } => {
+                let line = second.carry(q).minus(first.carry(p));
+                let square = line.dot(line);
+                let [long, short] = [long.length * long.length, short.length * short.length];
+                let along = (square + N::splat(long - short)).scaled(0.5);
+                let root = square.scaled(long).minus_product(along, along);
+                [root.scaled((long * short).recip()), square]
+            }
+            Shape::HingesAndSlide { p, c, s, arm } => {
+                let across = second.z.by(s).cross(first.carry(p).minus(second.carry(c)));
+                let part = across.scaled(arm.length.recip());
+                [one.minus_product(part, part), one]
+            }
+            Shape::SlideBetween { p, s, q } => {
+                let line = second.carry(q).minus(first.carry(p));
+                let off = ((q - p) * s.conj()).im;
+                let square = line.dot(line);
+                [square - N::splat(off * off), square]
+            }
+            Shape::TwoSlides { r, s, .. } => [one, first.z.by(r).cross(second.z.by(s))],
+            Shape::SlidesInARow { .. } => [one, one],
+        }
+    }
+
     /// The poses of both links where the known links are, on a side.
     #[inline(always)]
     pub fn put<N: Number>(&self, poses: &Poses<N>, side: f64) -> [InPlane<N>; 2] {

@@ -1,6 +1,6 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `motion`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `motion`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
@@ -9,6 +9,7 @@ mod before;
 mod body_block;
 mod body_family;
 mod described;
+mod dyad_branch_points;
 mod dyad_quads;
 mod dyad_rows;
 mod dyad_sides;

@@ -5,6 +5,7 @@
 //! Source: docs/theory_nets.md, (8).
 
 use super::described::DescribedNet;
+use super::dyad_branch_points::{BranchPoints, Counted};
 use super::freedoms::{Freedoms, freedoms};
 use super::modes::{Part, modes};
 use super::net_rows::NetRows;
@@ -20,6 +21,7 @@ use crate::loops::modes::finder::Completeness;
 use crate::loops::motions::circuit::{OverInput, Reach};
 use crate::loops::motions::motion::{PUT_RIGHT, common_type, limits_meet, over_input, through};
 use crate::loops::motions::passes::Passes;
+use crate::loops::{Count, Open};
 use crate::outcome::CircuitMeasures;
 use std::f64::consts::TAU;
 
@@ -222,6 +224,9 @@ pub fn ratio_at_rest(
     Ok(ratio.map(|ratio| ratio * factor))
 }
 
+/// A circuit that is not followed reaches this far [rad] about an input at which it was seen, or farther.
+const NEAR_BY: f64 = 1e-5;
+
 /// A motion of a net that is wanted.
 struct Asked<'a> {
     described: &'a DescribedNet,
@@ -299,9 +304,16 @@ impl<'a> Asked<'a> {
             curves.search.completeness = Completeness::Searched;
         }
         curves.search.columns = vec![input];
-        curves.search.values = values.len();
         curves.take(net, &[net.at(&drawn)], input);
-        for value in values {
+        // ends of ranges with at most one branch point, outside of which no circuit is missed
+        let dyads = net.dyads().filter(|_| turns);
+        let account = dyads.and_then(|rows| BranchPoints::of(rows).account());
+        let seeds = values.len();
+        let ends = account.iter().flat_map(|account| account.ends.iter().copied());
+        let values: Vec<f64> = values.into_iter().chain(ends).collect();
+        curves.search.values = values.len();
+        let mut at_ends = Vec::new();
+        for (k, &value) in values.iter().enumerate() {
             let found = parts.and_then(|parts| modes(&self.described.net, parts, input, value));
             let isolated = found
                 .iter()
@@ -315,10 +327,47 @@ impl<'a> Asked<'a> {
             curves.search.completeness = curves.search.completeness.or_less(word);
             let unknown = curves.unknown(net, &modes);
             curves.take(net, &unknown, input);
+            if k >= seeds {
+                at_ends.push((value, unknown));
+            }
         }
         curves.finish(net);
         self.forget_open(net, &mut curves);
+        if let Some(account) = account {
+            curves.search.count = Ok(self.count(net, account, &curves, &at_ends));
+        }
         curves
+    }
+
+    /// The account of the input's branch points, with what is known where curves meet; some modes at ends of ranges should lie on them.
+    fn count<const C: usize, const R: usize, const B: usize>(
+        &self,
+        net: &SizedNet<C, R, B>,
+        account: Counted,
+        curves: &Curves<SizedNet<C, R, B>>,
+        at_ends: &[(f64, Vec<At<SizedNet<C, R, B>>>)],
+    ) -> Count {
+        let input = self.ends.0.inner;
+        let points = curves.change_points.iter().map(|p| net.values(&p.at)[input]);
+        let points: Vec<f64> = points.collect();
+        let narrow = |open: &Open| open.to - open.from < 3.0 * NEAR_BY;
+        let is_known = |open: &Open| narrow(open) && points.iter().any(|at| open.has(*at));
+        let Counted { real, complex, poles, mut open, .. } = account;
+        // the smallest circuits are not followed
+        open.extend(at_ends.iter().filter_map(|(value, modes)| {
+            let lost = curves.unknown(net, modes).len();
+            let missing = Some(lost as i64).filter(|&lost| lost > 0);
+            missing.map(|_| Open { from: value - NEAR_BY, to: value + NEAR_BY, missing })
+        }));
+        open.retain(|open| !is_known(open));
+        Count {
+            column: input,
+            dead_centres: real,
+            complex_branch_points: complex,
+            poles,
+            circles: 1,
+            open,
+        }
     }
 
     /// Forgets curves along which rows that were left out, as they repeat others, do not agree: those of a net without these rows.

@@ -155,6 +155,11 @@ impl<const C: usize, const R: usize, const B: usize> SizedNet<C, R, B> {
         self
     }
 
+    /// Its rows in closed form, where it is made up of dyads in one plane.
+    pub fn dyads(&self) -> Option<&DyadRows> {
+        self.explicit.as_ref()
+    }
+
     /// The place of columns, a ball's three turns as its rotation.
     pub fn at(&self, values: &[f64]) -> At<Self> {
         let mut at = At::<Self>::zero();

@@ -1,5 +1,6 @@
 //! Rows in closed form against Newton's method and the series of the whole net.
 
+use super::dyad_branch_points::BranchPoints;
 use super::dyad_rows::DyadRows;
 use super::dyads::{Dyad, Pair};
 use super::modes::{Part, Stage};
@@ -404,4 +405,44 @@ fn rows_one_by_one_are_those_of_four_at_once() {
             }
         }
     }
+}
+
+#[test]
+fn the_branch_points_of_dyads_are_counted_in_every_range() {
+    // a four-bar that is no crank-rocker turns back at two inputs, a rocker of one with a longer ground at none
+    let z = [0.0, 0.0, 1.0];
+    let four_bar = |ground: f64, coupler: f64, rocker: f64| {
+        let pin = |parent, origin| Step { parent, moves: Move::Turn, origin, axis: z, reads: 0.0 };
+        // drawn with the crank along the ground
+        let far = ground - 1.0;
+        let along = (far * far + coupler * coupler - rocker * rocker) / (2.0 * far);
+        let c = [1.0 + along, (coupler * coupler - along * along).sqrt(), 0.0];
+        let at = [[0.0; 3], [1.0, 0.0, 0.0], c, [ground, 0.0, 0.0]];
+        let steps = vec![pin(None, at[0]), pin(Some(0), at[1]), pin(None, at[3])];
+        let rows = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+            .map(|v| Row::Along { on: [Some(1), Some(2)], at: c, v })
+            .to_vec();
+        let net = Net { steps, rows, facing: Vec::new(), balls: Vec::new(), size: 1.0 };
+        let pairs = [Pair::Hinge(at[1]), Pair::Hinge(c), Pair::Hinge(at[3])];
+        let stage = Stage { dyad: Dyad { normal: z, pairs }, links: [1, 2], known: [Some(0), None] };
+        let rows = DyadRows::of(&net, &[Part::Dyad(stage)], 0, 1.0, 0.0).unwrap();
+        BranchPoints::of(&rows).account().unwrap()
+    };
+    // the ground's and the crank's lengths reach 3.5 to 5.5, the dyad's 4.5 to 0.5 apart: stretched at two inputs
+    let rocks = four_bar(4.5, 2.0, 2.5);
+    assert_eq!((rocks.real, rocks.open.len()), (2, 0));
+    let turns = four_bar(4.0, 3.5, 3.0);
+    assert_eq!((turns.real, turns.open.len(), turns.ends.len()), (0, 0, 0));
+    // nearly stretched at one input alone: two branch points, however near to each other
+    for off in [1e-3, 1e-6, 1e-9, 1e-11] {
+        let nearly = four_bar(4.0, 2.5, 2.5 - off);
+        assert_eq!((nearly.real, nearly.open.len()), (2, 0), "{off}");
+        let beyond = four_bar(4.0, 2.5, 2.5 + off);
+        assert_eq!((beyond.real, beyond.open.len()), (0, 0), "{off}");
+        assert!(beyond.complex >= 2);
+    }
+    // at a change point they are one, which is left to those who know it
+    let touching = four_bar(4.0, 2.5, 2.5);
+    assert_eq!(touching.open.len(), 1, "{touching:?}");
+    assert!((touching.open[0].from..touching.open[0].to).contains(&std::f64::consts::PI));
 }

@@ -60,7 +60,12 @@ pub struct Open {
 
 impl Open {
     fn overlaps(&self, other: &Self) -> bool {
-        within(other.from, self.from, self.to) || within(self.from, other.from, other.to)
+        self.has(other.from) || other.has(self.from)
+    }
+
+    /// Whether an input [rad] lies in it.
+    pub(crate) fn has(&self, input: f64) -> bool {
+        within(input, self.from, self.to)
     }
 }
 

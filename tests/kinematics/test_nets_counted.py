@@ -1,0 +1,108 @@
+"""Circuits of nets of dyads are counted: none is missing between the inputs at which modes are found."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from test_nets import WATT, carried, circles, net, pin
+
+import sevenbar as sb
+
+TURN = 2 * math.pi
+
+#: Pins of a four-bar and of the dyad on its rocker, with a circuit that lies between two of 24 inputs: the width of each.
+NARROW = {
+    "one of 0.012 rad": [
+        (0.49, 0.42), (-0.58, 0.83), (0.51, 0.24), (-0.36, 0.94), (-0.02, -0.43), (-0.09, -0.44), (-0.49, -0.38),
+    ],
+    "one of 0.013 rad": [
+        (-0.2, 0.07), (0.16, -0.86), (0.16, 0.32), (-0.8, -0.68), (0.52, 0.13), (0.35, 0.41), (0.28, -0.79),
+    ],
+    "four, at most 0.02 rad": [
+        (0.73, 0.58), (0.47, 0.12), (-0.02, 0.91), (-0.05, 0.95), (-0.56, 0.54), (-0.58, 0.5), (0.94, 0.41),
+    ],
+}  # fmt: skip
+
+LINKS = [("frame", "crank"), ("crank", "coupler"), ("coupler", "rocker"), ("rocker", "frame")]
+LINKS += [("rocker", "link"), ("link", "lever"), ("lever", "frame")]
+
+
+def watt(places, size=1.0, turned=0.0, mirrored=False):
+    """A six-bar of Watt's with pins at places, written in another way."""
+    pins = []
+    for place, links in zip(places, LINKS, strict=True):
+        at = complex(*place) * size * np.exp(1j * turned)
+        at = at.conjugate() if mirrored else at
+        names = {("frame", "crank"): "crank", ("lever", "frame"): "lever"}
+        pins.append(pin((at.real, at.imag), *links, name=names.get(links)))
+    return net(pins)
+
+
+def modes_by_hand(places, angle):
+    """How many modes there are, by four circles."""
+    at = [np.array(place) for place in places]
+    turned = complex(*(at[1] - at[0])) * complex(math.cos(angle), math.sin(angle))
+    crank = at[0] + (turned.real, turned.imag)
+    count = 0
+    for knee in circles(crank, at[3], math.dist(at[1], at[2]), math.dist(at[3], at[2])):
+        side = carried(at[4], at[3], at[2], at[3], knee)
+        count += len(circles(side, at[6], math.dist(at[4], at[5]), math.dist(at[6], at[5])))
+    return count
+
+
+def passes(circuit, angle):
+    """How often a circuit passes an input, in any turn."""
+    values = circuit.q[:, circuit.input_column]
+    first = values[:1] + (0.0 if circuit.turns_back else TURN * round((values[-1] - values[0]) / TURN))
+    turns = np.floor((np.append(values, first) - angle) / TURN)
+    return int(np.abs(np.diff(turns)).sum())
+
+
+@pytest.mark.parametrize("name", NARROW)
+def test_no_circuit_is_missing_however_narrow(name):
+    places = NARROW[name]
+    motion = watt(places).motion(720)
+    assert (motion.completeness, motion.search.count.open) == ("counted", ())
+    # circuits between the grid's inputs are looked at, too
+    angles = [0.001 + TURN * k / 7200 for k in range(7200)]
+    ends = [end for circuit in motion if circuit.turns_back for end in circuit.input_range]
+    away = [a for a in angles if all(abs((a - end + math.pi) % TURN - math.pi) > 1e-3 for end in ends)]
+    for angle in away:
+        assert sum(passes(circuit, angle) for circuit in motion) == modes_by_hand(places, angle), angle
+
+
+@pytest.mark.parametrize("name", NARROW)
+@pytest.mark.parametrize("how", [{"size": 137.0}, {"size": 1e-3}, {"turned": 1.0}, {"mirrored": True}])
+def test_the_count_is_the_same_however_a_net_is_written(name, how):
+    def account(linkage):
+        motion = linkage.motion(72)
+        count = motion.search.count
+        widths = sorted(c.input_range[1] - c.input_range[0] for c in motion if c.turns_back)
+        return motion.completeness, count.dead_centres, len(motion), np.round(widths, 7).tolist()
+
+    assert account(watt(NARROW[name], **how)) == account(watt(NARROW[name]))
+
+
+@pytest.mark.parametrize("name", ["watt", "stephenson", "klann", "jansen", "tandem_wiper", "peaucellier"])
+def test_nets_of_dyads_of_the_gallery_are_counted(name):
+    motion = sb.load(name).motion(36)
+    assert (motion.completeness, motion.search.uncounted) == ("counted", None)
+
+
+def test_dead_centres_that_are_counted_are_those_of_the_circuits():
+    motion = net(WATT).motion(72)
+    own = [d for circuit in motion for d in circuit.dead_centres if d.kind == "input"]
+    assert motion.search.count.dead_centres == len(own)
+
+
+@pytest.mark.parametrize("off", [1e-3, 1e-6, -1e-6, -1e-3])
+def test_a_dyad_that_is_nearly_stretched_at_one_input_alone(off):
+    # crank 1, ground 4: the ends of the coupler of 2.5 and the rocker of 2.5 + off are 5 apart at one input
+    knee = circles((1, 0), (4, 0), 2.5, 2.5 + off)[0]
+    places = [(0, 0), (1, 0), tuple(knee), (4, 0), (5, 2), (7, 3), (7, 0)]
+    motion = watt(places).motion(72)
+    assert motion.completeness == "counted"
+    for angle in np.linspace(0.05, 6.2, 200):
+        assert sum(passes(circuit, angle) for circuit in motion) == modes_by_hand(places, angle)
