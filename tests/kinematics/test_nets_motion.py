@@ -270,6 +270,27 @@ def test_a_net_at_its_change_point_goes_on_in_each_branch():
     assert sorted(parallel) == [False, False, True, True]
 
 
+def two_rhombi(x):
+    """Two rhombi on one crank, the ends of the second joined to the first's; of change points, two come together at x = -0.3."""
+    first = [pin((0.3, -0.1), "frame", "crank", name="crank"), pin((-0.3, 0.7), "crank", "b")]
+    first += [pin((-0.3, 1.7), "b", "c"), pin((-0.3, 0.7), "c", "frame")]
+    return net([*first, pin((-0.3, 0.7), "crank", "d"), pin((-0.3, 1.7), "d", "e"), pin((x, -0.3), "e", "c")])
+
+
+@pytest.mark.parametrize("x", [0.0, -0.28, -0.29, -0.295, -0.299, -0.301, -0.305, -0.31])
+def test_change_points_near_each_other_are_told_apart(x):
+    motion = two_rhombi(x).motion(72)
+    assert (len(motion), motion.search.unfollowed, len(motion.change_points)) == (4, 0, 10)
+    assert all(circuit.goes_round and len(circuit.q) == 72 for circuit in motion)
+    assert [point.ways for point in motion.change_points] == [4] * 10
+
+
+@pytest.mark.parametrize("x", [-0.3, -0.29999999, -0.299999, -0.29999, -0.2999, -0.3001, -0.300001])
+def test_change_points_too_near_to_each_other_are_said_not_to_be_followed(x):
+    motion = two_rhombi(x).motion(72)
+    assert motion.search.unfollowed
+
+
 def test_a_circuit_of_a_net_is_pickled_with_its_points():
     linkage = suspension()
     circuit = linkage.motion(24).circuits[0]

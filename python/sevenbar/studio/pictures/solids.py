@@ -15,7 +15,7 @@ from sevenbar.drawing.joint_shapes import shape_of
 from sevenbar.drawing.names import named_together
 from sevenbar.drawing.scene import link_colours, paths
 from sevenbar.drawing.skeleton import Skeleton
-from sevenbar.drawing.style import GROUND, JOINT
+from sevenbar.drawing.style import GROUND, JOINT, ROD
 from sevenbar.kinematics.loop.rigid import rotation_of
 from sevenbar.studio.pictures.layout import NOWHERE, JointPlaces, Layout, Pair, layout
 from sevenbar.studio.pictures.poses import SOLID, Colours, Poses, SolidPlan, poses, slices, turns
@@ -33,7 +33,7 @@ THINNEST = 0.4
 NO_LINK = 0.02
 
 #: Radii, and lengths where two are given, in units.
-LINK, POINT, STAY, RAIL, STEM = 0.55, 0.9, 0.2, 0.45, 0.6
+LINK, POINT, STAY, RAIL, STEM, ROD_WIDE, TIP = 0.55, 0.9, 0.2, 0.45, 0.6, 0.42, 0.8
 #: Links that lie in one line would flicker where they are equally thick: of neighbours each is thicker by
 #: this share than the one before, and the ground is thinner than all, and than rails.
 THICKER, THICKNESSES, GROUND_LINK = 0.09, 3, 0.36
@@ -117,6 +117,10 @@ def plan(frame: Skeleton, ends: tuple[str, str]) -> SolidPlan:
             solids.add("cylinder", pair, thick, colour, moves=moves)
         for corner in way[1:-1]:
             solids.add("ball", (corner, corner), thick, colour, length=thick, moves=moves)
+    for start, *_, end in frame.rods:
+        solids.add("cylinder", (start, end), ROD_WIDE * unit, ROD)
+        for tip in (start, end):
+            solids.add("ball", (tip, tip), TIP * unit, BRIGHT, length=TIP * unit)
     for i, (joint, colour) in enumerate(zip(where.joints, joints, strict=True)):
         if joint.kind.rides:
             _add_slide(solids, i, joint, colour, every, unit)

@@ -156,7 +156,9 @@ impl<S: Closed> Arcs<S> {
         if degenerate || self.spheres >= MOST_SPHERES || self.failed.iter().any(tried) {
             return None;
         }
-        let Some(found) = change_points::change_point(chain, pose, wished, stuck, &mut self.spheres) else {
+        let Some(found) =
+            change_points::change_point(chain, pose, (wished, stuck), f64::INFINITY, &mut self.spheres)
+        else {
             if stuck && is_blind(chain, pose) {
                 self.failed.push(*pose);
             }
@@ -180,6 +182,7 @@ impl<S: Closed> Arcs<S> {
     pub fn complete(&mut self, chain: &S, wished: &[usize]) -> Vec<Curve<S>> {
         let mut passing = Vec::new();
         for _ in 0..MOST_ROUNDS {
+            self.keep_apart(chain, wished);
             self.cut(chain);
             let rays: Vec<Ray> = (0..self.points.len())
                 .flat_map(|p| (0..self.done[p].len()).map(move |r| (p, r)))
@@ -257,22 +260,55 @@ impl<S: Closed> Arcs<S> {
         rays.next().filter(|_| rays.next().is_none())
     }
 
+    /// Seeks the ways out of points again, nearer to them, that reach as far as another point.
+    fn keep_apart(&mut self, chain: &S, wished: &[usize]) {
+        for p in 0..self.points.len() {
+            let point = &self.points[p];
+            let others = self.points[..p].iter().chain(&self.points[p + 1..]);
+            let crowded = others.filter_map(|other| point.crowded(chain, other));
+            let within = crowded.fold(f64::INFINITY, f64::min);
+            if within == f64::INFINITY {
+                continue;
+            }
+            let how = (wished, true);
+            match change_points::change_point(chain, &point.at, how, within, &mut self.spheres) {
+                Some(nearer) => self.points[p] = nearer,
+                None => {
+                    self.points[p].blur();
+                    continue;
+                }
+            }
+            self.done[p] = vec![false; self.points[p].rays.len()];
+            self.take_back(|arc| arc.ends.iter().flatten().any(|end| end.0 == p));
+        }
+    }
+
+    /// Takes back arcs; ways out along which they ran are to be followed again.
+    fn take_back(&mut self, wrong: impl Fn(&Arc<S>) -> bool) {
+        let done = &mut self.done;
+        self.arcs.retain(|arc| {
+            let wrong = wrong(arc);
+            if wrong {
+                for &(p, r) in arc.ends.iter().flatten() {
+                    // a point may have other ways out by now
+                    if let Some(done) = done[p].get_mut(r) {
+                        *done = false;
+                    }
+                }
+            }
+            !wrong
+        });
+    }
+
     /// Takes back arcs that run through points that were not known when they were followed.
     fn cut(&mut self, chain: &S) {
         let points = self.stops().split_off(self.respected);
         self.respected = self.points.len();
-        let done = &mut self.done;
-        self.arcs.retain(|arc| {
-            let through = |n: &Node<S>| is_at(chain, n, &points);
-            // an arc that begins where it ends has one node
+        let through = |n: &Node<S>| is_at(chain, n, &points);
+        // an arc that begins where it ends has one node
+        self.take_back(|arc| {
             let inner = arc.curve.nodes.get(1..arc.curve.nodes.len() - 1);
-            let cut = inner.is_some_and(|nodes| nodes.iter().any(through));
-            if cut {
-                for (p, r) in arc.ends.iter().flatten() {
-                    done[*p][*r] = false;
-                }
-            }
-            !cut
+            inner.is_some_and(|nodes| nodes.iter().any(through))
         });
     }
 

@@ -55,6 +55,9 @@ const OPPOSITE: f64 = 0.03;
 /// A pose belongs to a change point up to this many times the distance at which curves are cut there.
 pub(super) const AT_POINT: f64 = 3.0;
 
+/// Ways out reach up to this part of the distance to another change point, so that none starts beyond it.
+const CROWDED: f64 = 2.5;
+
 /// Ends of curves nearer to each other than this [rad, or relative to the size] are at one change point: rounding ends them as far from it.
 const SAME_END: f64 = 1e-2;
 
@@ -88,15 +91,19 @@ pub(crate) struct ChangePoint<S: Closed = Chain> {
     pub finite: usize,
     /// Ways out of it that are not followed.
     pub lost: usize,
+    /// The sphere on which its ways out start [rad, or relative to the size].
+    reach: f64,
+    /// Whether not all of its ways out are told apart, as where another point is so near that those of both are taken for one.
+    pub blurred: bool,
 }
 
 /// The change point at or near a pose, if there is one, judged by the wished columns; `stuck` says that a walk could not go on there.
-/// `spheres` counts those on which its ways out are searched.
+/// Its ways out are searched `within` a distance from it; `spheres` counts those on which they are.
 pub(super) fn change_point<S: Closed>(
     chain: &S,
     rough: &At<S>,
-    wished: &[usize],
-    stuck: bool,
+    (wished, stuck): (&[usize], bool),
+    within: f64,
     spheres: &mut usize,
 ) -> Option<ChangePoint<S>> {
     let place = singular_place(chain, rough)?;
@@ -113,6 +120,8 @@ pub(super) fn change_point<S: Closed>(
         cut,
         finite: 0,
         lost: 0,
+        reach: 0.0,
+        blurred: false,
     };
     let least = LEAST_RADIUS * cut;
     let all = if place.may_touch() {
@@ -120,15 +129,17 @@ pub(super) fn change_point<S: Closed>(
     } else {
         RADII.as_slice()
     };
-    let mut radii: Vec<f64> = all.iter().copied().filter(|&r| r > least).collect();
+    let mut radii: Vec<f64> = all.iter().map(|r| r.min(within)).filter(|&r| r > least).collect();
+    radii.dedup();
     if radii.is_empty() {
-        if least > WIDEST {
+        if least > WIDEST.min(within) {
             return None;
         }
         radii.push(least);
     }
-    // the sphere on which its ways were found
-    let mut widest = RADII[0];
+    // the sphere up to which nothing but the pose itself is seen
+    let mut widest = RADII[0].min(within);
+    let mut seen = None;
     for radius in radii {
         *spheres += 1;
         let ways = ways_out(chain, &place, radius);
@@ -142,8 +153,12 @@ pub(super) fn change_point<S: Closed>(
         if straight || rays.len() > found.rays.len() {
             found.lost = ways.lost.len() + ways.single.len() - rays.len();
             found.rays = rays;
-            widest = radius.max(RADII[0]);
+            found.reach = radius;
+            // there is another such pose between two spheres with different ways out
+            let alone = seen.is_none_or(|seen| seen == ways.single.len());
+            widest = if alone { radius.max(widest) } else { radius };
         }
+        seen = Some(ways.single.len());
         if straight {
             break;
         }
@@ -227,7 +242,21 @@ impl<S: Closed> ChangePoint<S> {
             cut: SAME_END / AT_POINT,
             finite: 1,
             lost: 1,
+            reach: 0.0,
+            blurred: false,
         }
+    }
+
+    /// How far its ways out may reach, where another point is so far from it; `None` where they do not reach farther.
+    pub fn crowded(&self, chain: &S, other: &Self) -> Option<f64> {
+        let most = length(&chain.difference(&self.at, &other.at)) / CROWDED;
+        (self.reach > most).then_some(most)
+    }
+
+    /// Keeps its ways out as they are: they reach over another point, of which it cannot be told apart.
+    pub fn blur(&mut self) {
+        self.reach = 0.0;
+        self.blurred = true;
     }
 
     /// Whether a pose is this one.
@@ -244,11 +273,20 @@ impl<S: Closed> ChangePoint<S> {
             || near(&curve.nodes[last])
     }
 
+    /// Whether all ways out of it are known, and each goes on smoothly by another.
+    pub fn is_smooth(&self) -> bool {
+        self.lost == 0 && self.partner.iter().all(Option::is_some)
+    }
+
     /// How many zeros the determinant has there, two for each pair of curves that cross.
     pub fn zeros(&self) -> usize {
-        let smooth = self.lost == 0 && self.partner.iter().all(Option::is_some);
         let powers: f64 = self.rays.iter().map(|r| r.power.round()).sum();
-        if smooth { (powers / 2.0) as usize } else { 0 }.max(ZEROS_OF_POSE)
+        if self.is_smooth() {
+            (powers / 2.0) as usize
+        } else {
+            0
+        }
+        .max(ZEROS_OF_POSE)
     }
 
     /// Where a walk that runs into it ends.

@@ -143,9 +143,10 @@ impl<S: Closed> Curves<S> {
         });
         self.search.unfollowed += lost.len();
         self.lost = lost;
-        self.search.unfollowed += self.change_points.iter().map(|p| p.lost).sum::<usize>();
         self.search.unfollowed += self.arcs.not_followed();
         self.name_ends(chain);
+        let missing = |p: &ChangePoint<S>| p.lost + usize::from(p.blurred);
+        self.search.unfollowed += self.change_points.iter().map(missing).sum::<usize>();
         let finite = if self.curves.is_empty() {
             self.arcs.finite
         } else {
@@ -173,9 +174,10 @@ impl<S: Closed> Curves<S> {
             for end in curve.singular_ends() {
                 if let Some(known) = self.change_points.iter_mut().find(|p| p.is_at(chain, end)) {
                     known.lost += usize::from(known.rays.is_empty());
+                    // every way out goes on by another, and yet this one ends
+                    known.blurred |= known.is_smooth();
                 } else {
                     self.change_points.push(ChangePoint::of_end(end));
-                    self.search.unfollowed += 1;
                 }
             }
         }
