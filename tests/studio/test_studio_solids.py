@@ -57,6 +57,19 @@ def test_each_link_has_tubes_from_joint_to_joint_in_every_pose(name: str) -> Non
         assert off.max(axis=0).min() < 1e-12 * max(frame.span, np.abs(frame.places).max())
 
 
+@pytest.mark.parametrize("name", ["double_wishbone", "five_rod", "rssr_ss"])
+def test_each_rod_has_a_tube_from_end_to_end_in_every_pose(name: str) -> None:
+    motion, frame, made = planned(name)
+    start, end = ends(poses(made, frame.places)["cylinder"])
+    assert len(frame.rods) == len(motion.linkage.rods)
+    for a, b in frame.rods:
+        off = np.maximum(
+            np.linalg.norm(start - frame.places[:, a, None], axis=2),
+            np.linalg.norm(end - frame.places[:, b, None], axis=2),
+        )
+        assert off.max(axis=0).min() < 1e-12 * max(frame.span, np.abs(frame.places).max())
+
+
 @pytest.mark.parametrize("name", gallery.loops())
 def test_no_solid_of_a_rigid_link_changes_its_size_along_the_motion(name: str) -> None:
     motion, frame, made = planned(name)

@@ -7,7 +7,7 @@ from html import escape
 import viser
 
 from sevenbar.drawing.scene import link_colours
-from sevenbar.drawing.style import ACCELERATION, COUPLER, GROUND, INPUT, OUTPUT, VELOCITY
+from sevenbar.drawing.style import ACCELERATION, COUPLER, GROUND, INPUT, OUTPUT, ROD, VELOCITY
 from sevenbar.studio.panels.controls import settle
 from sevenbar.studio.pictures.stage import MARK_COLOUR
 from sevenbar.studio.state.session import Session
@@ -35,6 +35,8 @@ def legend(view: View) -> str:
     colours, _ = link_colours(view.linkage, (view.motion.input, view.motion.output))
     named = {INPUT: "input", OUTPUT: "output", COUPLER: "other links"}
     signs = [("\u25ac", colour, name) for colour, name in named.items() if colour in colours]
+    if view.linkage.rods:
+        signs.append(("\u25ac", ROD, "rods"))
     signs.append(("\u25ac", GROUND, "ground"))
     if own_points(view):
         signs += [
