@@ -1,4 +1,4 @@
-"""Circuits of nets of dyads are counted: none is missing between the inputs at which modes are found."""
+"""Circuits of nets of dyads or of one block are counted: none is missing between the inputs at which modes are found."""
 
 from __future__ import annotations
 
@@ -85,8 +85,11 @@ def test_the_count_is_the_same_however_a_net_is_written(name, how):
     assert account(watt(NARROW[name], **how)) == account(watt(NARROW[name]))
 
 
-@pytest.mark.parametrize("name", ["watt", "stephenson", "klann", "jansen", "tandem_wiper", "peaucellier"])
-def test_nets_of_dyads_of_the_gallery_are_counted(name):
+@pytest.mark.parametrize(
+    "name",
+    ["watt", "stephenson", "klann", "jansen", "tandem_wiper", "peaucellier", "rssr_ss", "double_wishbone"],
+)
+def test_nets_of_the_gallery_are_counted(name):
     motion = sb.load(name).motion(36)
     assert (motion.completeness, motion.search.uncounted) == ("counted", None)
 
@@ -106,3 +109,71 @@ def test_a_dyad_that_is_nearly_stretched_at_one_input_alone(off):
     assert motion.completeness == "counted"
     for angle in np.linspace(0.05, 6.2, 200):
         assert sum(passes(circuit, angle) for circuit in motion) == modes_by_hand(places, angle)
+
+
+def planar(*pins, drive):
+    """A net of pins: their two links, then their place."""
+    return sb.from_pins(
+        [{"name": f"j{k}", "at": at, "links": links.split()} for k, (links, *at) in enumerate(pins)],
+        ground="F",
+        drive=f"j{drive}",
+    )
+
+
+def spatial(first, second, rod):
+    """Two arms on hinges, each given by a place, an axis and its ball; a link on both balls and a rod."""
+    joints = []
+    for arm, (at, axis, ball) in zip("AC", (first, second), strict=True):
+        joints.append({"name": arm, "kind": "R", "at": at, "axis": axis, "between": ["F", arm]})
+        joints.append({"name": f"ball {arm}", "kind": "S", "at": ball, "between": [arm, "B"]})
+    rods = [{"name": "rod", "between": ["F", "B"], "at": rod}]
+    return sb.from_axes(joints, rods=rods, ground="F", drive="A")
+
+
+#: Nets of one block, and how many circuits they have; some lie between two of 24 inputs. The numbers are those of a scan of another program.
+BLOCKS = {
+    "Stephenson III, driven at its dyad": (
+        lambda: planar(
+            ("F A", 0.867, -0.731), ("A B", -0.924, -0.612), ("B C", 0.437, -0.724), ("C F", 0.382, 0.758),
+            ("B D", 0.807, -0.025), ("D E", 0.777, -0.086), ("E F", -0.81, -0.691), drive=6,
+        ),
+        5,
+    ),
+    "Stephenson II": (
+        lambda: planar(
+            ("F E", -0.311, -0.156), ("E A", -0.284, -0.455), ("A C", 0.188, 0.823), ("C B", 0.213, 0.812),
+            ("A D", -0.885, 0.527), ("D B", -0.842, 0.201), ("B F", 0.247, 0.916), drive=6,
+        ),
+        4,
+    ),
+    "RSSR-SS": (
+        lambda: spatial(
+            ([0.986, -0.823, -0.532], [-0.299, 0.706, -0.642], [0.671, 0.419, 0.713]),
+            ([-0.1, 0.366, -0.35], [0.819, 0.269, 0.507], [0.471, 0.086, -0.181]),
+            [[-0.739, -0.668, 0.555], [0.475, -0.333, -0.053]],
+        ),
+        2,
+    ),
+    "double wishbone": (
+        lambda: spatial(
+            ([0.092, 0.318, 0.199], [1.048, -0.104, -0.024], [0.021, 0.679, 0.213]),
+            ([-0.098, 0.379, 0.508], [1.071, 0.081, 0.062], [0.035, 0.764, 0.427]),
+            [[0.089, 0.303, 0.283], [0.097, 0.719, 0.315]],
+        ),
+        3,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+def test_no_circuit_of_a_block_is_missing(name):
+    made, circuits = BLOCKS[name]
+    linkage = made()
+    motion = linkage.motion(720)
+    assert (motion.completeness, len(motion), motion.search.count.open) == ("counted", circuits, ())
+    own = [d for circuit in motion for d in circuit.dead_centres if d.kind == "input"]
+    assert motion.search.count.dead_centres >= len(own)
+    ends = [d.input for d in own]
+    for angle in 0.003 + TURN * np.arange(96) / 96:
+        if all(abs((angle - end + math.pi) % TURN - math.pi) > 2e-2 for end in ends):
+            assert sum(passes(circuit, angle) for circuit in motion) == len(linkage.assembly_modes(angle))

@@ -314,7 +314,7 @@ def test_a_pin_in_a_slot_is_met_from_both_sides(kind):
             assert np.abs(moves - after[:, joint]).max() < 1e-9 * linkage.size
 
 
-def test_circuits_of_a_block_are_algebraic():
+def test_circuits_of_a_block_are_counted():
     motion = net(PLATFORM).motion(24)
-    assert motion.completeness == "algebraic"
+    assert motion.completeness == "counted"
     assert motion.circuits

@@ -64,7 +64,7 @@ macro_rules! operators {
 
 /// Eight numbers as the compiler sees fit.
 #[derive(Clone, Copy, Debug)]
-struct Plain(Reals);
+pub(crate) struct Plain(Reals);
 
 /// Operators of [`Plain`]. On x86, where it serves machines without AVX2, each is compiled once and called: written out in every kernel
 /// they would be a fifth of the library. Elsewhere it is the only kind.

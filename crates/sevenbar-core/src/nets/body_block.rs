@@ -60,19 +60,7 @@ impl BodyBlock {
 
     /// All ways to put it together; `None` where it has not as many rows as freedoms.
     pub(super) fn together(&self, net: &Net, before: &Before) -> Option<Placed> {
-        let mut layout = Layout::new(self.own()?, net, before);
-        for rows in &self.rows {
-            for row in rows {
-                layout.add(row)?;
-            }
-            layout.shared.clear();
-        }
-        for leg in &self.legs {
-            layout.stand(net, leg)?;
-            layout.shared.clear();
-        }
-        let Layout { mut family, member, middle, .. } = layout;
-        family.vectors = member.len();
+        let Layout { family, member, middle, .. } = self.layout(net, before)?;
         if let ([step], [row]) = (&self.steps[..], &family.rows[..]) {
             let base = net.steps[*step].parent.map_or(Pose::STILL, |p| before.poses[p]);
             let pose = |by: f64| base.then(&net.moving_by(*step, by));
@@ -97,6 +85,28 @@ impl BodyBlock {
         let poses = real.flat_map(|pose| self.placed(net, before, &pose)).collect();
         let completeness = Some(starts.completeness(left_over));
         Some(Placed { poses, completeness, on_curve: false })
+    }
+
+    fn layout<'a>(&self, net: &Net, before: &'a Before<'a>) -> Option<Layout<'a>> {
+        let mut layout = Layout::new(self.own()?, net, before);
+        for rows in &self.rows {
+            for row in rows {
+                layout.add(row)?;
+            }
+            layout.shared.clear();
+        }
+        for leg in &self.legs {
+            layout.stand(net, leg)?;
+            layout.shared.clear();
+        }
+        layout.family.vectors = layout.member.len();
+        Some(layout)
+    }
+
+    /// Its family, and which member it is; `None` where it has not as many rows as freedoms, or is in closed form.
+    pub(super) fn member(&self, net: &Net, before: &Before) -> Option<(BodyFamily, Vec<Triple>)> {
+        let Layout { family, member, .. } = self.layout(net, before)?;
+        family.is_square().then_some((family, member))
     }
 
     /// The poses of all steps where the link has a pose, for each pose of its legs.

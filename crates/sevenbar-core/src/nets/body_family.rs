@@ -82,6 +82,9 @@ impl BodyFamily {
     }
 }
 
+/// By how much the squares of a solution's numbers weigh more, one after the other.
+const WEIGHTS: [f64; 2] = [0.13, 0.37];
+
 /// What sets the scale: `c . (x, y) = 1`.
 static SCALE: LazyLock<Solution<UNKNOWNS>> = LazyLock::new(|| {
     let mut random = Random(0x5ca1e);
@@ -189,6 +192,21 @@ impl Family<UNKNOWNS, 3> for BodyFamily {
     /// Where the axes and the origin are.
     fn traced(&self, z: &Solution<UNKNOWNS>) -> Vec<Complex64> {
         pose(z).concat()
+    }
+
+    /// By squares that vanish for no real solution: so neither depends on the scale.
+    fn measures(&self, z: &Solution<UNKNOWNS>, determinant: Complex64) -> [Complex64; 2] {
+        let square =
+            |by: f64| -> Complex64 { (0..UNKNOWNS).map(|i| z[i] * z[i] * (1.0 + by * i as f64)).sum() };
+        let [first, second] = WEIGHTS.map(square);
+        // the determinant goes with the sixth power of the scale
+        [determinant / first.powu(3), second / first]
+    }
+
+    fn mirrored(&self, z: &Solution<UNKNOWNS>) -> Solution<UNKNOWNS> {
+        let mirrored = z.map(|z| z.conj());
+        let scale = dot(&SCALE, &mirrored);
+        mirrored.map(|z| z / scale)
     }
 
     fn far(&self, z: &Solution<UNKNOWNS>) -> f64 {

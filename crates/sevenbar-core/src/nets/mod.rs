@@ -1,13 +1,15 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `motion`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `block_branch_points`, `motion`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
 
 mod before;
+mod block_branch_points;
 mod body_block;
 mod body_family;
+mod branch_ranges;
 mod described;
 mod dyad_branch_points;
 mod dyad_quads;

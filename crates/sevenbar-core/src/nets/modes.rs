@@ -73,13 +73,8 @@ const CLOSES: f64 = 1e-9;
 /// All isolated modes of a net, each part after those that it hangs at, with a step held at a value; and some poses of each curve of poses that
 /// a dyad has. `None` where a part has more unknowns than are followed.
 pub fn modes(net: &Net, parts: &[Part], driven: usize, value: f64) -> Option<NetModes> {
-    let unit = if net.slides(driven) { net.size } else { 1.0 };
-    let moved: Pose = net.steps[driven].moved(value * unit).into();
+    let (start, moved) = started(net, driven, value);
     let from = net.steps[driven].parent;
-    let mut start = vec![Pose::STILL; net.steps.len()];
-    if from.is_none() {
-        start[driven] = moved;
-    }
     let mut completeness: Option<Completeness> = None;
     let mut partial = vec![(start, false)];
     for part in parts {
@@ -129,6 +124,24 @@ pub fn modes(net: &Net, parts: &[Part], driven: usize, value: f64) -> Option<Net
         }
     }
     Some(NetModes { modes, completeness })
+}
+
+/// The poses of all steps before the first part is placed, and where the held step leads.
+fn started(net: &Net, driven: usize, value: f64) -> (Vec<Pose>, Pose) {
+    let unit = if net.slides(driven) { net.size } else { 1.0 };
+    let moved: Pose = net.steps[driven].moved(value * unit).into();
+    let mut start = vec![Pose::STILL; net.steps.len()];
+    if net.steps[driven].parent.is_none() {
+        start[driven] = moved;
+    }
+    (start, moved)
+}
+
+/// What is known before the first part is placed goes to work.
+pub(super) fn at_first<T>(net: &Net, driven: usize, value: f64, work: impl Fn(&Before) -> T) -> T {
+    let (start, moved) = started(net, driven, value);
+    let from = net.steps[driven].parent;
+    work(&Before { poses: &start, held: driven, from, moved, size: net.size })
 }
 
 /// Poses with those of some steps put in.

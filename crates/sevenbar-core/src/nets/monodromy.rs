@@ -8,7 +8,7 @@
 
 use crate::loops::equation::closure::{Slides, Solution};
 use crate::loops::modes::completeness::Completeness;
-use crate::loops::modes::continuation::{BRISK, CAREFUL, Homotopy, Pace, Place, Way, follow};
+use crate::loops::modes::continuation::{BRISK, CAREFUL, FIRST_STEP, Homotopy, Pace, Place, Way, follow};
 use crate::loops::modes::many_starts::SAME_MODE;
 use crate::loops::modes::starts::{SAME_GENERAL, distinct};
 use crate::random::Random;
@@ -33,6 +33,11 @@ pub(super) trait Family<const N: usize, const D: usize> {
     fn ways_of_constants(&self, random: &mut Random) -> Vec<Vec<[Complex64; D]>>;
     /// What the trace test sums over all solutions.
     fn traced(&self, x: &Solution<N>) -> Vec<Complex64>;
+    /// Of a solution where the rows' columns have this determinant: a number that vanishes where two solutions meet, and one that grows without
+    /// bound, or vanishes, where it runs to infinity. The products of either over all solutions are real for a real member.
+    fn measures(&self, x: &Solution<N>, determinant: Complex64) -> [Complex64; 2];
+    /// The solution that a real member has besides, or the same one: it is real then.
+    fn mirrored(&self, x: &Solution<N>) -> Solution<N>;
     /// How far a solution is, as a logarithm: it grows without bound along a path to infinity.
     fn far(&self, x: &Solution<N>) -> f64;
 }
@@ -290,6 +295,28 @@ fn sums<F: Family<N, D>, const N: usize, const D: usize>(
 /// A stretch of the way from 0 to 1.
 fn straight(from: f64, to: f64, settle: bool) -> Way {
     Way { direction: Complex64::ONE, length: to - from, end: to.into(), settle }
+}
+
+/// The solutions of a member that those of another near by lead to: in one step, where that will do.
+pub(super) fn carried<F: Family<N, D>, const N: usize, const D: usize>(
+    family: &F,
+    (from, solutions): (&[[Complex64; D]], &[Solution<N>]),
+    to: &[[Complex64; D]],
+) -> Vec<Solution<N>> {
+    // a way begins with this part of itself
+    let beyond = |a: Complex64, b: Complex64| a + (b - a) / FIRST_STEP;
+    let far: Vec<[Complex64; D]> = from
+        .iter()
+        .zip(to)
+        .map(|(a, b)| std::array::from_fn(|d| beyond(a[d], b[d])))
+        .collect();
+    let places: Vec<Place<N>> = solutions
+        .iter()
+        .map(|x| Place::start(x, Complex64::ZERO))
+        .collect();
+    let way = [straight(0.0, FIRST_STEP, true)];
+    let ends = follow(&family.between(from, &far), &places, &[&way], BRISK);
+    ends.iter().flatten().map(|place| *place.solution()).collect()
 }
 
 /// The solutions that arrive at the end of a way between general members.

@@ -4,8 +4,10 @@
 //!
 //! Source: docs/theory_nets.md, (8).
 
+use super::block_branch_points;
+use super::branch_ranges::Counted;
 use super::described::DescribedNet;
-use super::dyad_branch_points::{BranchPoints, Counted};
+use super::dyad_branch_points::BranchPoints;
 use super::freedoms::{Freedoms, freedoms};
 use super::modes::{Part, modes};
 use super::net_rows::NetRows;
@@ -15,6 +17,7 @@ use crate::loops::circuits::change_points as curve_points;
 use crate::loops::circuits::curve;
 use crate::loops::circuits::found::Search;
 use crate::loops::circuits::known_curves::Curves;
+use crate::loops::circuits::turnings::turnings;
 use crate::loops::description::described_loop::{Column, Described};
 use crate::loops::equation::closed::{At, Closed};
 use crate::loops::modes::finder::Completeness;
@@ -227,6 +230,9 @@ pub fn ratio_at_rest(
 /// A circuit that is not followed reaches this far [rad] about an input at which it was seen, or farther.
 const NEAR_BY: f64 = 1e-5;
 
+/// An input at the end of a range, its modes that lay on no known curve, and whether others may be missing.
+type AtEnd<S> = (f64, Vec<At<S>>, bool);
+
 /// A motion of a net that is wanted.
 struct Asked<'a> {
     described: &'a DescribedNet,
@@ -306,8 +312,10 @@ impl<'a> Asked<'a> {
         curves.search.columns = vec![input];
         curves.take(net, &[net.at(&drawn)], input);
         // ends of ranges with at most one branch point, outside of which no circuit is missed
-        let dyads = net.dyads().filter(|_| turns);
-        let account = dyads.and_then(|rows| BranchPoints::of(rows).account());
+        let account = parts.filter(|_| turns).and_then(|parts| match net.dyads() {
+            Some(rows) => Some(Counted::of(&BranchPoints::of(rows))),
+            None => block_branch_points::counted(&self.described.net, parts, input),
+        });
         let seeds = values.len();
         let ends = account.iter().flat_map(|account| account.ends.iter().copied());
         let values: Vec<f64> = values.into_iter().chain(ends).collect();
@@ -324,11 +332,12 @@ impl<'a> Asked<'a> {
             if word == Some(Completeness::Searched) {
                 modes.extend(searched(net, input, value, STARTS_OF_MANY));
             }
-            curves.search.completeness = curves.search.completeness.or_less(word);
             let unknown = curves.unknown(net, &modes);
             curves.take(net, &unknown, input);
-            if k >= seeds {
-                at_ends.push((value, unknown));
+            if k < seeds {
+                curves.search.completeness = curves.search.completeness.or_less(word);
+            } else {
+                at_ends.push((value, unknown, word == Some(Completeness::Searched)));
             }
         }
         curves.finish(net);
@@ -345,19 +354,31 @@ impl<'a> Asked<'a> {
         net: &SizedNet<C, R, B>,
         account: Counted,
         curves: &Curves<SizedNet<C, R, B>>,
-        at_ends: &[(f64, Vec<At<SizedNet<C, R, B>>>)],
+        at_ends: &[AtEnd<SizedNet<C, R, B>>],
     ) -> Count {
         let input = self.ends.0.inner;
         let points = curves.change_points.iter().map(|p| net.values(&p.at)[input]);
         let points: Vec<f64> = points.collect();
-        let narrow = |open: &Open| open.to - open.from < 3.0 * NEAR_BY;
-        let is_known = |open: &Open| narrow(open) && points.iter().any(|at| open.has(*at));
-        let Counted { real, complex, poles, mut open, .. } = account;
+        let turnings = curves.curves.iter().flat_map(|curve| turnings(curve, net, input));
+        let turnings = turnings.filter(|turning| !turning.node.is_crossing());
+        let turnings: Vec<f64> = turnings
+            .map(|turning| net.values(&turning.node.at)[input])
+            .collect();
+        let Counted { mut real, complex, poles, mut open, .. } = account;
+        // several circuits turn back at one input, or meet there
+        let mut is_known = |open: &Open| {
+            let turning = turnings.iter().filter(|at| open.has(**at)).count();
+            let all_turn = open.missing.is_some_and(|missing| turning as i64 == missing);
+            real += if all_turn { turning } else { 0 };
+            let narrow = open.to - open.from < 3.0 * NEAR_BY;
+            narrow && (all_turn || points.iter().any(|at| open.has(*at)))
+        };
         // the smallest circuits are not followed
-        open.extend(at_ends.iter().filter_map(|(value, modes)| {
+        open.extend(at_ends.iter().filter_map(|(value, modes, searched)| {
             let lost = curves.unknown(net, modes).len();
-            let missing = Some(lost as i64).filter(|&lost| lost > 0);
-            missing.map(|_| Open { from: value - NEAR_BY, to: value + NEAR_BY, missing })
+            let missing = Some(lost as i64).filter(|_| !searched);
+            let ends = (value - NEAR_BY, value + NEAR_BY);
+            (*searched || lost > 0).then_some(Open { from: ends.0, to: ends.1, missing })
         }));
         open.retain(|open| !is_known(open));
         Count {

@@ -53,6 +53,11 @@ impl PlanarBlock {
         let poses = regular.iter().filter_map(|x| layout.poses(x)).collect();
         Some(Together { poses, completeness: starts.completeness(left_over) })
     }
+
+    /// Its family, and which member it is; `None` where it has more unknowns than are followed.
+    pub(super) fn member(&self, before: &Before) -> Option<(PlanarFamily, Vec<Pair>)> {
+        Layout::of(self, before).map(|layout| (layout.family, layout.member))
+    }
 }
 
 /// An end of a joint: on a link of the block, which another is welded to, or on one that is known.

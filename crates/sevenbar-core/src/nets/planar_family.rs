@@ -176,6 +176,25 @@ impl Family<UNKNOWNS, 2> for PlanarFamily {
         x[..self.unknowns()].to_vec()
     }
 
+    /// Of all unknowns their distances from a number and from what is its mirror image for a real member.
+    fn measures(&self, x: &Solution, determinant: Complex64) -> [Complex64; 2] {
+        let from = |i: usize| {
+            let other = if i < self.turns { x[i].inv() } else { x[i] };
+            (x[i] - WATCHED) * (other - WATCHED.conj())
+        };
+        [determinant, (0..self.unknowns()).map(from).product()]
+    }
+
+    fn mirrored(&self, x: &Solution) -> Solution {
+        std::array::from_fn(|i| {
+            if i < self.turns {
+                x[i].conj().inv()
+            } else {
+                x[i].conj()
+            }
+        })
+    }
+
     /// Of the unknown that is farthest from where it began.
     fn far(&self, x: &Solution) -> f64 {
         let slides = self.slides();
@@ -189,6 +208,9 @@ impl Family<UNKNOWNS, 2> for PlanarFamily {
         })
     }
 }
+
+/// A value that no turn or slide has.
+const WATCHED: Complex64 = Complex64::new(1.37, 2.18);
 
 /// Signs of the exponents of `v+` and `v-`.
 const SIGNS: [f64; 2] = [1.0, -1.0];

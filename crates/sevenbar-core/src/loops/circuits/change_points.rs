@@ -93,7 +93,7 @@ pub(crate) struct ChangePoint<S: Closed = Chain> {
     pub lost: usize,
     /// The sphere on which its ways out start [rad, or relative to the size].
     reach: f64,
-    /// Whether not all of its ways out are told apart, as where another point is so near that those of both are taken for one.
+    /// Whether not all of its ways out are known one by one, as where another point is so near that those of both are taken for one.
     pub blurred: bool,
 }
 
@@ -253,7 +253,7 @@ impl<S: Closed> ChangePoint<S> {
         (self.reach > most).then_some(most)
     }
 
-    /// Keeps its ways out as they are: they reach over another point, of which it cannot be told apart.
+    /// Keeps its ways out as they are: they reach over another point, which is too near.
     pub fn blur(&mut self) {
         self.reach = 0.0;
         self.blurred = true;

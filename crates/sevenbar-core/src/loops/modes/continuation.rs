@@ -59,7 +59,7 @@ const LEAST_MOVE: f64 = 1e-3;
 const LEAST_CORRECTION: f64 = 1e-9;
 
 /// Length of the first step [in the parameter].
-const FIRST_STEP: f64 = 0.02;
+pub(crate) const FIRST_STEP: f64 = 0.02;
 
 /// A path ends where its steps become shorter than this [in the parameter]: it runs to infinity or into a singular solution.
 const SHORTEST_STEP: f64 = 1e-9;

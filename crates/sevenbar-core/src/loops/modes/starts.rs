@@ -202,7 +202,8 @@ pub(crate) fn distinct<const N: usize>(
 /// Solutions at general parameters lie farther apart than this; far ones are not known better.
 pub(crate) const SAME_GENERAL: f64 = 1e-4;
 
-fn same<const N: usize>(slides: &Slides<N>, a: &Solution<N>, b: &Solution<N>, apart: f64) -> bool {
+/// Whether two solutions are nearer to each other than `apart`.
+pub(crate) fn same<const N: usize>(slides: &Slides<N>, a: &Solution<N>, b: &Solution<N>, apart: f64) -> bool {
     (0..N).all(|i| {
         if slides[i] {
             (a[i] - b[i]).norm() < apart * (1.0 + a[i].norm())

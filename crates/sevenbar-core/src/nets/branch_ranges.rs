@@ -1,0 +1,264 @@
+//! The branch points of a turning input, counted by the phases of functions that vanish there.
+//!
+//! Such a function is one of the input alone, and real at real inputs. Its phase round a range counts its zeros there. In a range with at most one
+//! branch point every mode leads to one at an end of the range; so ranges are halved until they have no more.
+//!
+//! Source: docs/theory_nets.md, (24) to (26).
+
+use crate::loops::Open;
+use num_complex::Complex64;
+use std::f64::consts::{PI, TAU};
+
+/// Most functions: in turn one that vanishes at branch points, and one that vanishes, or is infinite, where solutions run to infinity.
+pub(super) const FUNCTIONS: usize = 8;
+
+/// The values of the functions; 1 of those that are not in use.
+pub(super) type Values = [Complex64; FUNCTIONS];
+
+/// What is counted.
+pub(super) trait Functions {
+    /// The functions at a complex input; `None` where not all solutions are known.
+    fn values(&self, at: Complex64) -> Option<Values>;
+    /// Whether it is known that no mode is near to a branch point in the smallest range about an input.
+    fn is_clear(&self, input: f64) -> bool;
+}
+
+/// Ranges to begin with, how high up in the complex inputs they reach [rad], and where the first one begins, as a part of a range: not
+/// where people draw.
+const RANGES: usize = 24;
+const HEIGHT: f64 = 0.05;
+const BEGINS: [f64; 3] = [0.381_966, 0.723_607, 0.145_898];
+
+/// Where a range is parted.
+const PARTS: f64 = 0.478;
+
+/// How often a range is halved: to a millionth of a radian, to rounding where its branch points are of several dyads, as these come near to
+/// each other with the square of a length, and fewer times where it has no whole count.
+const MOST_HALVINGS: usize = 18;
+const MOST_HALVINGS_OF_SEVERAL: usize = 34;
+const MOST_HALVINGS_LOST: usize = 3;
+
+/// A range that is halved so often is narrower [rad].
+const SMALL: f64 = 4e-6;
+
+/// How far from the smallest ranges modes are sought [rad].
+const AWAY: f64 = 1e-4;
+
+/// Ranges that are searched, all together.
+const MOST_RANGES: usize = 2_000;
+
+/// A range is searched up to this height, as part of its width.
+const FLAT: f64 = 0.4;
+
+/// Pieces of an arc and of a way up, the greatest change of a phase on half of one [rad], and how often a piece is halved.
+const ARC: usize = 8;
+const UP: usize = 3;
+const STEADY: f64 = 0.5;
+const MOST_PARTS: usize = 30;
+
+/// How far from a whole number a count may be.
+const WHOLE: f64 = 0.05;
+
+/// The account of the branch points of an input.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Counted {
+    /// Inputs [rad] between which there is at most one branch point; none next to an open range is missing.
+    pub ends: Vec<f64>,
+    /// Real branch points.
+    pub real: usize,
+    /// Complex ones that ranges were halved to leave out.
+    pub complex: usize,
+    /// The same of turns that become infinite.
+    pub poles: usize,
+    /// Ranges with more than one, or with none that is known.
+    pub open: Vec<Open>,
+}
+
+impl Counted {
+    /// The account of functions over a whole turn.
+    pub fn of(functions: &dyn Functions) -> Self {
+        let ranges = Ranges(functions);
+        let mut first = Vec::new();
+        // an input to begin with may be a branch point
+        for begins in BEGINS {
+            first = ranges.first(begins);
+            if first.iter().all(|(_, numbers)| numbers.is_some()) {
+                break;
+            }
+        }
+        ranges.account(&first)
+    }
+
+    /// Leaves a range open, as one with the open range that it goes on from.
+    fn leave_open(&mut self, [from, to]: [f64; 2], missing: Option<i64>) {
+        match self.open.last_mut().filter(|last| last.to == from) {
+            Some(last) => {
+                let both = last.missing.zip(missing);
+                *last = Open { from: last.from, to, missing: both.map(|(a, b)| a + b) };
+            }
+            None => self.open.push(Open { from, to, missing }),
+        }
+    }
+}
+
+/// The change of each function's phase [rad].
+type Change = [f64; FUNCTIONS];
+
+/// Numbers of a range, of each function.
+type Numbers = [i64; FUNCTIONS];
+
+/// A range of the input, up to a height [rad], and the change of phases on the ways up at its ends.
+#[derive(Clone, Copy)]
+struct Range {
+    ends: [f64; 2],
+    height: f64,
+}
+
+/// The ranges of functions.
+struct Ranges<'a>(&'a dyn Functions);
+
+impl Ranges<'_> {
+    /// The change of all phases [rad] on the straight line between two inputs; `None` where they do not settle.
+    fn change(&self, from: Complex64, to: Complex64, pieces: usize) -> Option<Change> {
+        let mut sum = [0.0; FUNCTIONS];
+        let at = |k: usize| from + (to - from) * (k as f64 / pieces as f64);
+        let mut first = self.0.values(from)?;
+        for k in 0..pieces {
+            let last = self.0.values(at(k + 1))?;
+            self.piece([at(k), at(k + 1)], [&first, &last], MOST_PARTS, &mut sum)?;
+            first = last;
+        }
+        Some(sum)
+    }
+
+    fn piece(
+        &self,
+        [from, to]: [Complex64; 2],
+        [first, last]: [&Values; 2],
+        parts: usize,
+        sum: &mut Change,
+    ) -> Option<()> {
+        let middle = 0.5 * (from + to);
+        let between = self.0.values(middle)?;
+        let halves: [[f64; 2]; FUNCTIONS] =
+            std::array::from_fn(|k| [(between[k] / first[k]).arg(), (last[k] / between[k]).arg()]);
+        if halves.as_flattened().iter().all(|x| x.abs() < STEADY) {
+            for (sum, [a, b]) in sum.iter_mut().zip(halves) {
+                *sum += a + b;
+            }
+            return Some(());
+        }
+        if parts == 0 || !halves.as_flattened().iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        self.piece([from, middle], [first, &between], parts - 1, sum)?;
+        self.piece([middle, to], [&between, last], parts - 1, sum)
+    }
+
+    /// The change of all phases [rad] from a real input straight up.
+    fn up(&self, input: f64, height: f64) -> Option<Change> {
+        let from = Complex64::from(input);
+        self.change(from, from + Complex64::new(0.0, height), UP)
+    }
+
+    /// How many zeros less poles each function has in a range, on both sides of the real inputs, with the ways up at its ends.
+    fn numbers(&self, range: &Range, ups: [&Option<Change>; 2]) -> Option<Numbers> {
+        let up = Complex64::new(0.0, range.height);
+        let (first, last) = (ups[0].as_ref()?, ups[1].as_ref()?);
+        let [a, b] = range.ends.map(Complex64::from);
+        let arc = self.change(a + up, b + up, ARC)?;
+        let mut out = [0; FUNCTIONS];
+        for (k, out) in out.iter_mut().enumerate() {
+            let turns = (last[k] - first[k] - arc[k]) / PI;
+            if (turns - turns.round()).abs() > WHOLE {
+                return None;
+            }
+            *out = turns.round() as i64;
+        }
+        Some(out)
+    }
+
+    /// The ranges to begin with from a part of one on, each with its numbers.
+    fn first(&self, begins: f64) -> Vec<(Range, Option<Numbers>)> {
+        let end = |k: usize| (k as f64 + begins) * TAU / RANGES as f64;
+        let ups: Vec<Option<Change>> = (0..RANGES).map(|k| self.up(end(k), HEIGHT)).collect();
+        let ranges = (0..RANGES).map(|k| {
+            let range = Range { ends: [end(k), end(k + 1)], height: HEIGHT };
+            (range, self.numbers(&range, [&ups[k], &ups[(k + 1) % RANGES]]))
+        });
+        ranges.collect()
+    }
+
+    /// The account over a whole turn of ranges to begin with.
+    fn account(&self, first: &[(Range, Option<Numbers>)]) -> Counted {
+        let (mut searched, mut account) = (RANGES, Counted::default());
+        for (range, numbers) in first {
+            self.settle(range, *numbers, 0, &mut searched, &mut account);
+        }
+        account
+    }
+
+    /// Halves a range until at most one branch point is in each.
+    fn settle(
+        &self,
+        range: &Range,
+        numbers: Option<Numbers>,
+        halved: usize,
+        searched: &mut usize,
+        account: &mut Counted,
+    ) {
+        let pairs = numbers.map(|n| n.as_chunks::<2>().0.to_vec());
+        // where a turn becomes infinite the functions after it have poles
+        let infinite = pairs
+            .as_ref()
+            .is_none_or(|pairs| pairs.iter().any(|p| p[1] != 0 || p[0] < 0));
+        let zeros: i64 = pairs.iter().flatten().map(|p| p[0]).sum();
+        if !infinite && zeros <= 1 {
+            account.real += zeros as usize;
+            if zeros == 1 {
+                account.ends.extend(range.ends);
+            }
+            return;
+        }
+        let single = !infinite && pairs.iter().flatten().all(|p| p[0] <= 1);
+        let most = match numbers {
+            Some(_) if single => MOST_HALVINGS_OF_SEVERAL,
+            Some(_) => MOST_HALVINGS,
+            None => MOST_HALVINGS_LOST,
+        };
+        if halved >= most || *searched >= MOST_RANGES {
+            // so near to where they meet modes are not sure to be found
+            account.ends.extend([range.ends[0] - AWAY, range.ends[1] + AWAY]);
+            let [from, to] = range.ends;
+            let wide = to - from;
+            // not at its ends, which may themselves be branch points
+            let clear = || [from - wide, to + wide].iter().all(|at| self.0.is_clear(*at));
+            if wide >= SMALL || !clear() {
+                account.leave_open(range.ends, (!infinite).then_some(zeros));
+            }
+            return;
+        }
+        let [from, to] = range.ends;
+        let middle = from + PARTS * (to - from);
+        let mut within = [0; FUNCTIONS];
+        let height = (FLAT * (middle - from)).min(range.height);
+        let ups = [from, middle, to].map(|end| self.up(end, height));
+        for (k, ends) in [[from, middle], [middle, to]].into_iter().enumerate() {
+            *searched += 1;
+            let half = Range { ends, height };
+            let own = self.numbers(&half, [&ups[k], &ups[k + 1]]);
+            for (sum, x) in within.iter_mut().zip(own.unwrap_or_default()) {
+                *sum += x;
+            }
+            self.settle(&half, own, halved + 1, searched, account);
+        }
+        if let Some(numbers) = numbers {
+            let left_out = |odd: usize| -> i64 {
+                let off = numbers.iter().zip(within).map(|(all, within)| all - within);
+                off.skip(odd).step_by(2).sum()
+            };
+            account.complex += left_out(0).max(0) as usize;
+            account.poles += left_out(1).max(0) as usize;
+        }
+    }
+}
