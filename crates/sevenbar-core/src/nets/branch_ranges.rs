@@ -107,7 +107,7 @@ type Change = [f64; FUNCTIONS];
 /// Numbers of a range, of each function.
 type Numbers = [i64; FUNCTIONS];
 
-/// A range of the input, up to a height [rad], and the change of phases on the ways up at its ends.
+/// A range of the input, up to a height [rad].
 #[derive(Clone, Copy)]
 struct Range {
     ends: [f64; 2],

@@ -55,7 +55,7 @@ const OPPOSITE: f64 = 0.03;
 /// A pose belongs to a change point up to this many times the distance at which curves are cut there.
 pub(super) const AT_POINT: f64 = 3.0;
 
-/// Ways out reach up to this part of the distance to another change point, so that none starts beyond it.
+/// Another change point is at least so many times as far as ways out reach, so that none starts beyond it.
 const CROWDED: f64 = 2.5;
 
 /// Ends of curves nearer to each other than this [rad, or relative to the size] are at one change point: rounding ends them as far from it.
