@@ -62,7 +62,7 @@ const WHOLE: f64 = 0.05;
 /// The account of the branch points of an input.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Counted {
-    /// Inputs [rad] between which there is at most one branch point; none next to an open range is missing.
+    /// Inputs [rad] between which there is at most one branch point; those about the smallest ranges lie a little away.
     pub ends: Vec<f64>,
     /// Real branch points.
     pub real: usize,

@@ -28,9 +28,14 @@ const NOTHING: f64 = 1e-24;
 /// The sides on which dyads are.
 type Sides = [f64; MOST_DYADS];
 
-/// Dyads, each with the ways of those before it: all sides of those on which it depends.
+/// A zero of a dyad's product at one input: the dyad, and on which sides those are on which it depends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Zero(usize, Sides);
+
+/// Dyads, each with those on which it depends, and the ways of these: all of their sides.
 pub(super) struct BranchPoints<'a> {
     rows: &'a DyadRows,
+    before: Vec<Vec<usize>>,
     ways: Vec<Vec<Sides>>,
 }
 
@@ -49,7 +54,7 @@ impl<'a> BranchPoints<'a> {
             all.dedup();
             before.push(all);
         }
-        let mut out = Self { rows, ways: Vec::new() };
+        let mut out = Self { rows, before: Vec::new(), ways: Vec::new() };
         for (k, before) in before.iter().enumerate() {
             // of two ways that lead to one place each zero would be two
             let all = ways(before);
@@ -62,9 +67,23 @@ impl<'a> BranchPoints<'a> {
             };
             let mut ways = ways(&before);
             ways.retain(|sides| !turns_freely(sides));
+            out.before.push(before);
             out.ways.push(ways);
         }
         out
+    }
+
+    /// The zero at a dead centre of the input, by the columns there.
+    pub fn zero_at(&self, values: &[f64]) -> Zero {
+        let sines = self.rows.sines(values);
+        let dyads = 0..self.before.len();
+        let dyad = dyads.min_by(|&a, &b| sines[a].abs().total_cmp(&sines[b].abs()));
+        let dyad = dyad.unwrap_or_default();
+        let mut sides = [1.0; MOST_DYADS];
+        for &j in &self.before[dyad] {
+            sides[j] = sines[j].signum();
+        }
+        Zero(dyad, sides)
     }
 
     /// Whether a dyad is another one on some ways of one before it.

@@ -186,7 +186,7 @@ impl DyadRows {
     }
 
     /// The sines of all dyads at values of the columns.
-    fn sines(&self, values: &[f64]) -> [f64; MOST_SIGNS] {
+    pub fn sines(&self, values: &[f64]) -> [f64; MOST_SIGNS] {
         let mut poses = [InPlane::still(); MOST];
         for (c, column) in self.columns.iter().enumerate() {
             let before = on(&poses, column.parent);

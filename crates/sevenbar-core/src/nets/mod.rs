@@ -1,10 +1,11 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `block_branch_points`, `motion`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `block_branch_points`, `account`, `seeds`, `motion`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
 
+mod account;
 mod before;
 mod block_branch_points;
 mod body_block;
@@ -32,6 +33,7 @@ mod planar_family;
 mod plane_points;
 mod rows;
 mod search;
+mod seeds;
 mod series;
 mod sized;
 mod square;

@@ -4,36 +4,23 @@
 //!
 //! Source: docs/theory_nets.md, (8).
 
-use super::block_branch_points;
-use super::branch_ranges::Counted;
 use super::described::DescribedNet;
-use super::dyad_branch_points::BranchPoints;
 use super::freedoms::{Freedoms, freedoms};
-use super::modes::{Part, modes};
+use super::modes::Part;
 use super::net_rows::NetRows;
-use super::search::{STARTS, STARTS_OF_MANY, is_isolated, searched, settled};
+use super::search::{STARTS, is_isolated, searched, settled};
+use super::seeds::whole_curves;
 use super::sized::{MOST_COLUMNS, SizedNet};
 use crate::loops::circuits::change_points as curve_points;
 use crate::loops::circuits::curve;
 use crate::loops::circuits::found::Search;
 use crate::loops::circuits::known_curves::Curves;
-use crate::loops::circuits::turnings::turnings;
 use crate::loops::description::described_loop::{Column, Described};
 use crate::loops::equation::closed::{At, Closed};
-use crate::loops::modes::finder::Completeness;
 use crate::loops::motions::circuit::{OverInput, Reach};
 use crate::loops::motions::motion::{PUT_RIGHT, common_type, limits_meet, over_input, through};
 use crate::loops::motions::passes::Passes;
-use crate::loops::{Count, Open};
 use crate::outcome::CircuitMeasures;
-use std::f64::consts::TAU;
-
-/// Values of the input in a turn at which modes are sought.
-const SEEDS: usize = 24;
-
-/// Values of a slide at which they are, and how far apart [share of the size].
-const SLIDE_SEEDS: i32 = 24;
-const SLIDE_SEED: f64 = 0.02;
 
 /// A rate by the length of the curve below which a column rests: a dead centre is known to the root of rounding.
 const RESTS: f64 = 1e-6;
@@ -227,12 +214,6 @@ pub fn ratio_at_rest(
     Ok(ratio.map(|ratio| ratio * factor))
 }
 
-/// A circuit that is not followed reaches this far [rad] about an input at which it was seen, or farther.
-const NEAR_BY: f64 = 1e-5;
-
-/// An input at the end of a range, its modes that lay on no known curve, and whether others may be missing.
-type AtEnd<S> = (f64, Vec<At<S>>, bool);
-
 /// A motion of a net that is wanted.
 struct Asked<'a> {
     described: &'a DescribedNet,
@@ -252,7 +233,7 @@ impl<'a> Asked<'a> {
         net: &SizedNet<C, R, B>,
         parts: Option<&[Part]>,
     ) -> NetMotion {
-        let curves = self.curves(net, parts);
+        let curves = whole_curves(self.described, net, parts, [self.ends.0.inner, self.ends.1.inner]);
         let turns = [self.ends.0, self.ends.1].map(|column| net.is_turn(column.inner));
         let (mut motion, reaches) = self.over(net, curves);
         let meeting = limits_meet(reaches.iter(), turns);
@@ -286,127 +267,6 @@ impl<'a> Asked<'a> {
             moving: over.moving,
         };
         (motion, reaches)
-    }
-
-    /// The curves through the modes at many values of the input.
-    fn curves<const C: usize, const R: usize, const B: usize>(
-        &self,
-        net: &SizedNet<C, R, B>,
-        parts: Option<&[Part]>,
-    ) -> Curves<SizedNet<C, R, B>> {
-        let input = self.ends.0.inner;
-        let turns = net.is_turn(input);
-        let drawn = self.described.net.drawn();
-        let values: Vec<f64> = if turns {
-            (0..SEEDS).map(|k| TAU * k as f64 / SEEDS as f64).collect()
-        } else {
-            (-SLIDE_SEEDS..=SLIDE_SEEDS)
-                .map(|k| drawn[input] + f64::from(k) * SLIDE_SEED)
-                .collect()
-        };
-        let mut curves = Curves::new(&[input, self.ends.1.inner]);
-        // modes at some values of a slide say nothing of those beyond
-        if parts.is_none() || !turns {
-            curves.search.completeness = Completeness::Searched;
-        }
-        curves.search.columns = vec![input];
-        curves.take(net, &[net.at(&drawn)], input);
-        // ends of ranges with at most one branch point, outside of which no circuit is missed
-        let account = parts.filter(|_| turns).and_then(|parts| match net.dyads() {
-            Some(rows) => Some(Counted::of(&BranchPoints::of(rows))),
-            None => block_branch_points::counted(&self.described.net, parts, input),
-        });
-        let seeds = values.len();
-        let ends = account.iter().flat_map(|account| account.ends.iter().copied());
-        let values: Vec<f64> = values.into_iter().chain(ends).collect();
-        curves.search.values = values.len();
-        let mut at_ends = Vec::new();
-        for (k, &value) in values.iter().enumerate() {
-            let found = parts.and_then(|parts| modes(&self.described.net, parts, input, value));
-            let isolated = found
-                .iter()
-                .flat_map(|found| &found.modes)
-                .filter(|mode| !mode.on_curve);
-            let mut modes: Vec<At<SizedNet<C, R, B>>> = isolated.map(|mode| net.at(&mode.values)).collect();
-            let word = found.map_or(Some(Completeness::Searched), |found| found.completeness);
-            if word == Some(Completeness::Searched) {
-                modes.extend(searched(net, input, value, STARTS_OF_MANY));
-            }
-            let unknown = curves.unknown(net, &modes);
-            curves.take(net, &unknown, input);
-            if k < seeds {
-                curves.search.completeness = curves.search.completeness.or_less(word);
-            } else {
-                at_ends.push((value, unknown, word == Some(Completeness::Searched)));
-            }
-        }
-        curves.finish(net);
-        self.forget_open(net, &mut curves);
-        if let Some(account) = account {
-            curves.search.count = Ok(self.count(net, account, &curves, &at_ends));
-        }
-        curves
-    }
-
-    /// The account of the input's branch points, with what is known where curves meet; some modes at ends of ranges should lie on them.
-    fn count<const C: usize, const R: usize, const B: usize>(
-        &self,
-        net: &SizedNet<C, R, B>,
-        account: Counted,
-        curves: &Curves<SizedNet<C, R, B>>,
-        at_ends: &[AtEnd<SizedNet<C, R, B>>],
-    ) -> Count {
-        let input = self.ends.0.inner;
-        let points = curves.change_points.iter().map(|p| net.values(&p.at)[input]);
-        let points: Vec<f64> = points.collect();
-        let turnings = curves.curves.iter().flat_map(|curve| turnings(curve, net, input));
-        let turnings = turnings.filter(|turning| !turning.node.is_crossing());
-        let turnings: Vec<f64> = turnings
-            .map(|turning| net.values(&turning.node.at)[input])
-            .collect();
-        let Counted { mut real, complex, poles, mut open, .. } = account;
-        // several circuits turn back at one input, or meet there
-        let mut is_known = |open: &Open| {
-            let turning = turnings.iter().filter(|at| open.has(**at)).count();
-            let all_turn = open.missing.is_some_and(|missing| turning as i64 == missing);
-            real += if all_turn { turning } else { 0 };
-            let narrow = open.to - open.from < 3.0 * NEAR_BY;
-            narrow && (all_turn || points.iter().any(|at| open.has(*at)))
-        };
-        // the smallest circuits are not followed
-        open.extend(at_ends.iter().filter_map(|(value, modes, searched)| {
-            let lost = curves.unknown(net, modes).len();
-            let missing = Some(lost as i64).filter(|_| !searched);
-            let ends = (value - NEAR_BY, value + NEAR_BY);
-            (*searched || lost > 0).then_some(Open { from: ends.0, to: ends.1, missing })
-        }));
-        open.retain(|open| !is_known(open));
-        Count {
-            column: input,
-            dead_centres: real,
-            complex_branch_points: complex,
-            poles,
-            circles: 1,
-            open,
-        }
-    }
-
-    /// Forgets curves along which rows that were left out, as they repeat others, do not agree: those of a net without these rows.
-    fn forget_open<const C: usize, const R: usize, const B: usize>(
-        &self,
-        net: &SizedNet<C, R, B>,
-        curves: &mut Curves<SizedNet<C, R, B>>,
-    ) {
-        let closes = |at: &At<SizedNet<C, R, B>>| self.described.closes(net.values(at), net.balls(at));
-        let before = curves.curves.len();
-        curves.curves.retain(|c| c.nodes.iter().all(|n| closes(&n.at)));
-        if curves.curves.len() < before {
-            curves.search.completeness = Completeness::Searched;
-            let own = &curves.curves;
-            curves
-                .change_points
-                .retain(|p| own.iter().any(|c| p.is_on(net, c)));
-        }
     }
 
     fn through<const C: usize, const R: usize, const B: usize>(
