@@ -111,6 +111,29 @@ def test_a_dyad_that_is_nearly_stretched_at_one_input_alone(off):
         assert sum(passes(circuit, angle) for circuit in motion) == modes_by_hand(places, angle)
 
 
+def test_the_longest_train_of_dyads_is_counted():
+    # four legs of two dyads on one crank: 17 columns, the most that are followed
+    legs = [
+        [(-0.6, 0.3), (-0.9, -0.5), (-0.2, -0.4), (-0.7, 0.7), (-1.1, 0.1), (-1.3, -0.3)],
+        [(0.1, 0.2), (0.9, 0.4), (0.8, -0.3), (1.2, 0.5), (1.5, 0.2), (1.3, -0.4)],
+        [(0.2, 0.1), (0.3, 1.0), (0.9, 0.8), (0.4, 1.4), (1.0, 1.6), (1.2, 1.1)],
+        [(-0.1, 0.2), (-0.4, -1.0), (0.3, -0.9), (-0.2, -1.3), (0.1, -1.6), (0.6, -1.3)],
+    ]
+    pins = [pin((0, 0), "frame", "crank", name="crank")]
+    for k, places in enumerate(legs):
+        joined = [("crank", f"a{k}"), (f"a{k}", f"b{k}"), (f"b{k}", "frame")]
+        joined += [(f"b{k}", f"c{k}"), (f"c{k}", f"d{k}"), (f"d{k}", "frame")]
+        pins += [pin(place, *links) for place, links in zip(places, joined, strict=True)]
+
+    motion = net(pins).motion(360)
+    assert (motion.completeness, len(motion)) == ("counted", 32)
+    ends = [end for circuit in motion if circuit.turns_back for end in circuit.input_range]
+    for angle in 0.001 + TURN * np.arange(180) / 180:
+        if all(abs((angle - end + math.pi) % TURN - math.pi) > 1e-3 for end in ends):
+            by_hand = math.prod(modes_by_hand([(0, 0), *places], angle) for places in legs)
+            assert sum(passes(circuit, angle) for circuit in motion) == by_hand, angle
+
+
 def planar(*pins, drive):
     """A net of pins: their two links, then their place."""
     return sb.from_pins(

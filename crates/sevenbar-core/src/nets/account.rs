@@ -85,7 +85,7 @@ impl<'a> Account<'a> {
             if range.missing == Some(zeros as i64) {
                 real += zeros;
             } else if !meet_in(range) {
-                open.push(range.clone());
+                open.push(*range);
             }
         }
         // the smallest circuits are not followed

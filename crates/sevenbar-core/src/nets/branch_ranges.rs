@@ -10,7 +10,7 @@ use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
 /// Most functions: in turn one that vanishes at branch points, and one that vanishes, or is infinite, where solutions run to infinity.
-pub(super) const FUNCTIONS: usize = 8;
+pub(super) const FUNCTIONS: usize = 16;
 
 /// The values of the functions; 1 of those that are not in use.
 pub(super) type Values = [Complex64; FUNCTIONS];

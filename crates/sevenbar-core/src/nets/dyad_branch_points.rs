@@ -7,12 +7,13 @@
 
 use super::branch_ranges::{FUNCTIONS, Functions, Values};
 use super::dyad_rows::DyadRows;
-use super::dyad_sides::{MOST, Poses};
+use super::dyad_sides::Poses;
 use super::in_plane::InPlane;
+use super::net::MOST_COLUMNS;
 use num_complex::Complex64;
 
 /// Most dyads of a net that is put together in closed form.
-const MOST_DYADS: usize = MOST / 2;
+const MOST_DYADS: usize = MOST_COLUMNS / 2;
 const _: () = assert!(2 * MOST_DYADS <= FUNCTIONS);
 
 /// Squared sines of which a dyad is not near to be stretched nor folded: they change by far less in the smallest range.
@@ -102,7 +103,7 @@ impl<'a> BranchPoints<'a> {
 
     /// The two functions of a dyad, those before it on sides.
     fn pair(&self, k: usize, sides: &Sides, at: Complex64) -> [Complex64; 2] {
-        let mut poses: Poses<Complex64> = [InPlane::still(); MOST];
+        let mut poses: Poses<Complex64> = [InPlane::still(); MOST_COLUMNS];
         self.rows.begin(at, &mut poses);
         let stages = self.rows.stages();
         for (stage, side) in stages[..k].iter().zip(sides) {

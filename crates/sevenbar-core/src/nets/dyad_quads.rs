@@ -49,12 +49,14 @@ impl<S: Closed> Made<'_, S> {
         ]
     }
 
-    /// The row of a net of pins, if it is one.
+    /// Makes the row of a net of pins, if it is one.
     #[inline(always)]
-    fn of_pins<N: Number>(&self, value: N) -> Option<Found<N>> {
+    fn of_pins<N: Number>(&self, value: N, found: &mut Found<N>) -> bool {
         let near = (self.on.from.as_ref(), self.on.turns.as_ref());
-        let pins = self.dyads.pins.as_ref()?;
-        Some(pins.row(&self.on.signs, self.series(value), near))
+        if let Some(pins) = &self.dyads.pins {
+            pins.row(&self.on.signs, self.series(value), near, found);
+        }
+        self.dyads.pins.is_some()
     }
 
     /// The row of a net of any dyads.
@@ -65,7 +67,8 @@ impl<S: Closed> Made<'_, S> {
     }
 
     fn one(mut self, k: usize) {
-        if let Some(found) = self.of_pins(self.values[k]) {
+        let mut found = Found::nothing();
+        if self.of_pins(self.values[k], &mut found) {
             self.put_one(k, &found);
             if self.rows.is_sure[k] {
                 return;
@@ -110,7 +113,8 @@ impl<S: Closed> QuadKernel for Made<'_, S> {
     #[inline(always)]
     fn run<F: Four>(mut self) {
         let value = F::load(self.values);
-        if let Some(found) = self.of_pins(value) {
+        let mut found = Found::nothing();
+        if self.of_pins(value, &mut found) {
             self.put(&found);
             if self.rows.is_sure == [true; QUAD] {
                 return;

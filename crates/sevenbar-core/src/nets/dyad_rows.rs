@@ -6,12 +6,12 @@
 //!
 //! Source: docs/theory_nets.md, (14) to (17).
 
-use super::dyad_sides::{Found, Joined, MOST, Poses, on};
+use super::dyad_sides::{Found, Joined, Poses, on};
 use super::dyads::{Pair, Plane};
 use super::in_plane::{Complex, InPlane};
 use super::joints::TERMS;
 use super::modes::{Part, Stage};
-use super::net::Net;
+use super::net::{MOST_COLUMNS, Net};
 use super::pin_rows::PinRows;
 use super::rows::{On, Row};
 use super::series::Series;
@@ -26,6 +26,8 @@ use std::f64::consts::TAU;
 
 /// Rows of a dyad with a sine of less are left to Newton's method: the closed form loses as many digits as the sine has zeros.
 const LEAST: f64 = 0.02;
+
+const _: () = assert!(MOST_COLUMNS / 2 == MOST_SIGNS);
 
 /// A direction may lean out of the plane, or across it, by rounding.
 const LEAN: f64 = 1e-12;
@@ -104,7 +106,7 @@ impl DyadRows {
                 known[k] = true;
             }
         }
-        let counts = net.steps.len() == 1 + 2 * stages.len() && net.steps.len() <= MOST;
+        let counts = net.steps.len() == 1 + 2 * stages.len() && net.steps.len() <= MOST_COLUMNS;
         if !counts || !known.iter().all(|&k| k) || net.steps[driven].parent.is_some() {
             return None;
         }
@@ -187,7 +189,7 @@ impl DyadRows {
 
     /// The sines of all dyads at values of the columns.
     pub fn sines(&self, values: &[f64]) -> [f64; MOST_SIGNS] {
-        let mut poses = [InPlane::still(); MOST];
+        let mut poses = [InPlane::still(); MOST_COLUMNS];
         for (c, column) in self.columns.iter().enumerate() {
             let before = on(&poses, column.parent);
             let turned = match column.moves {
@@ -242,7 +244,7 @@ impl DyadRows {
     /// The row with the input's series, with turns of columns counted on from those of a place near by.
     #[inline(always)]
     pub fn row<M: Number>(&self, sides: &[f64; MOST_SIGNS], input: [M; TERMS], near: &[f64]) -> Found<M> {
-        let mut poses: Poses<Series<M, TERMS>> = [InPlane::still(); MOST];
+        let mut poses: Poses<Series<M, TERMS>> = [InPlane::still(); MOST_COLUMNS];
         self.begin(Series(input), &mut poses);
         for (k, stage) in self.stages.iter().enumerate() {
             let both = stage.put(&poses, sides[k]);
@@ -256,7 +258,7 @@ impl DyadRows {
             found.rates[order - 1][self.driven] = input[order].scaled(order as f64);
         }
         // links put where the columns say, so that the rows show how well all closes
-        let mut placed: Poses<M> = [InPlane::still(); MOST];
+        let mut placed: Poses<M> = [InPlane::still(); MOST_COLUMNS];
         for (c, column) in self.columns.iter().enumerate() {
             let before = on(&placed, column.parent);
             let z = match column.moves {
@@ -275,7 +277,7 @@ impl DyadRows {
     /// What columns read where all links are.
     #[inline(always)]
     fn read<M: Number>(&self, poses: &Poses<Series<M, TERMS>>, near: &[f64], found: &mut Found<M>) {
-        let mut spins = [[M::splat(0.0); TERMS - 1]; MOST];
+        let mut spins = [[M::splat(0.0); TERMS - 1]; MOST_COLUMNS];
         for (c, column) in self.columns.iter().enumerate() {
             let link = poses[c];
             let before = on(poses, column.parent);
@@ -319,8 +321,8 @@ impl DyadRows {
     fn close<M: Number>(&self, poses: &Poses<M>, found: &mut Found<M>) {
         let zero = M::splat(0.0);
         let count = self.columns.len() - 1;
-        let mut a = [[zero; MOST - 1]; MOST - 1];
-        let mut driven = [zero; MOST - 1];
+        let mut a = [[zero; MOST_COLUMNS - 1]; MOST_COLUMNS - 1];
+        let mut driven = [zero; MOST_COLUMNS - 1];
         let (mut residual, mut squares) = (zero, M::splat(1.0 + self.besides));
         for (r, row) in self.rows.iter().enumerate() {
             let (first, second) = (on(poses, row.on[0]), on(poses, row.on[1]));

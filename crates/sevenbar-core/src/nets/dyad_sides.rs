@@ -8,23 +8,21 @@ use super::dyads::{Pair, Plane};
 use super::in_plane::{Complex, InPlane};
 use super::joints::TERMS;
 use super::modes::Stage;
+use super::net::MOST_COLUMNS;
 use super::rows::On;
 use crate::number::Number;
 use num_complex::Complex64;
 
-/// Most columns of a net of dyads that is put together here.
-pub(super) const MOST: usize = 9;
-
 /// Poses in the plane of what every step moves.
-pub(super) type Poses<N> = [InPlane<N>; MOST];
+pub(super) type Poses<N> = [InPlane<N>; MOST_COLUMNS];
 
 /// A row of numbers of any kind.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found<M> {
     /// The columns [rad, or relative to the size].
-    pub values: [M; MOST],
+    pub values: [M; MOST_COLUMNS],
     /// Series of the rates.
-    pub rates: [[M; MOST]; TERMS - 1],
+    pub rates: [[M; MOST_COLUMNS]; TERMS - 1],
     /// The closure error.
     pub residual: M,
     /// The condition number of `A` with the input's row.
@@ -39,8 +37,8 @@ impl<M: Number> Found<M> {
     pub fn nothing() -> Self {
         let zero = M::splat(0.0);
         Self {
-            values: [zero; MOST],
-            rates: [[zero; MOST]; TERMS - 1],
+            values: [zero; MOST_COLUMNS],
+            rates: [[zero; MOST_COLUMNS]; TERMS - 1],
             residual: zero,
             condition: zero,
             sine: M::splat(1.0),

@@ -7,10 +7,11 @@
 use super::described::DescribedNet;
 use super::freedoms::{Freedoms, freedoms};
 use super::modes::Part;
+use super::net::MOST_COLUMNS;
 use super::net_rows::NetRows;
 use super::search::{STARTS, is_isolated, searched, settled};
 use super::seeds::whole_curves;
-use super::sized::{MOST_COLUMNS, SizedNet};
+use super::sized::SizedNet;
 use crate::loops::circuits::change_points as curve_points;
 use crate::loops::circuits::curve;
 use crate::loops::circuits::found::Search;
@@ -109,7 +110,7 @@ fn sized<W: Sized>(described: &DescribedNet, work: W) -> Result<W::Out, NotFollo
         return Err(NotFollowed::Freedoms(count - rank));
     }
     let net = &described.net;
-    // one size for all: each costs as much code as the chain's
+    // one size for all: each costs as much code as the chain's, and one of twice as many columns twice the time
     if count <= MOST_COLUMNS {
         let mut sized = SizedNet::<MOST_COLUMNS, 16, 5>::new(net, &independent);
         if let Some((parts, input)) = work.parts() {

@@ -9,6 +9,9 @@ use crate::loops::least_squares;
 use crate::number::Number;
 use crate::rigid::{Pose, Vec3};
 
+/// Most columns of a net that is followed.
+pub(super) const MOST_COLUMNS: usize = 17;
+
 /// Singular values below this part of the greatest are zero: in nets of many kinds the least of the others was 8e-3.
 pub(super) const NO_RANK: f64 = 1e-8;
 

@@ -1,7 +1,8 @@
 //! The rows of a circuit of a net as it is followed, one after the other in one array.
 
 use super::joints::TERMS;
-use super::sized::{MOST_COLUMNS, SizedNet};
+use super::net::MOST_COLUMNS;
+use super::sized::SizedNet;
 use crate::loops::equation::closed::{At, Explicits};
 use crate::loops::equation::rotations::Rotation;
 use crate::loops::motions::row::Row;

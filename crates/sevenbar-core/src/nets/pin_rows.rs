@@ -6,12 +6,12 @@
 //!
 //! Source: docs/theory_nets.md, (14) to (18).
 
-use super::dyad_sides::{Found, MOST};
+use super::dyad_sides::Found;
 use super::dyads::{Pair, Plane};
 use super::in_plane::{Complex, Moving, minus_product, plus_product};
 use super::joints::TERMS;
 use super::modes::Stage;
-use super::net::Net;
+use super::net::{MOST_COLUMNS, Net};
 use super::rows::{On, Row};
 use super::steps::Move;
 use crate::loops::equation::closed::MOST_SIGNS;
@@ -187,14 +187,15 @@ impl PinRows {
         (net.rows.len() + 1 == count).then_some(Self { driven, base, columns, dyads, besides })
     }
 
-    /// The row with the input's series, with cosine and sine of each column at a place near by; `sine` is zero where that is too far.
+    /// Makes the row with the input's series, with cosine and sine of each column at a place near by; `sine` is zero where that is too far.
     #[inline(always)]
     pub fn row<N: Number>(
         &self,
         sides: &[f64; MOST_SIGNS],
         input: [N; TERMS],
         (near, turns): (&[f64], &[[f64; 2]]),
-    ) -> Found<N> {
+        found: &mut Found<N>,
+    ) {
         let zero = N::splat(0.0);
         let still = Complex { re: zero, im: zero };
         let ground = Moving::new(
@@ -202,8 +203,8 @@ impl PinRows {
             [still; TERMS],
             [zero; TERMS - 1],
         );
-        let mut links = [ground; MOST];
-        let mut found: Found<N> = Found::nothing();
+        let mut links = [ground; MOST_COLUMNS];
+        found.sine = N::splat(1.0);
         let column = self.columns[self.driven];
         let (im, re) = (input[0] - N::splat(column.reads)).sin_cos();
         let spin = [
@@ -282,7 +283,6 @@ impl PinRows {
         }
         found.sine = N::splat(TAN_EIGHTH).if_greater(farthest, found.sine, zero);
         found.condition = self.condition(&places, &inverses);
-        found
     }
 
     /// The condition number of `A` with the driven column as one more row: by blocks along the dyads.
@@ -291,8 +291,8 @@ impl PinRows {
         let zero = N::splat(0.0);
         let still = Complex { re: zero, im: zero };
         let (mut squares, mut inverse) = (N::splat(1.0 + self.besides), N::splat(1.0));
-        let mut entries = [[still; MOST]; MOST_SIGNS];
-        let mut free = [zero; MOST];
+        let mut entries = [[still; MOST_COLUMNS]; MOST_SIGNS];
+        let mut free = [zero; MOST_COLUMNS];
         for (k, dyad) in self.dyads.iter().enumerate() {
             let at = places[k][dyad.chord];
             for (link, by) in dyad.links.into_iter().zip(dyad.own) {
@@ -380,7 +380,7 @@ impl PinRows {
 
 /// A place with three derivatives.
 #[inline(always)]
-fn carried<N: Number>(links: &[Moving<N>; MOST], place: Place) -> [Complex<N>; TERMS] {
+fn carried<N: Number>(links: &[Moving<N>; MOST_COLUMNS], place: Place) -> [Complex<N>; TERMS] {
     match place.on {
         Some(link) => links[link].carry(place.off),
         None => {

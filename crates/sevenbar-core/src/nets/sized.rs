@@ -21,9 +21,6 @@ use crate::rigid::{Vec3, dot, norm, sub};
 use crate::vectors::QUAD;
 use std::fmt::Debug;
 
-/// Most columns of a net that is followed.
-pub(super) const MOST_COLUMNS: usize = 17;
-
 /// A net of one freedom with at most so many columns and one row less; lengths relative to the size.
 pub(super) struct SizedNet<const C: usize, const R: usize, const B: usize> {
     pub net: Net,

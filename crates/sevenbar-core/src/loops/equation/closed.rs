@@ -35,7 +35,7 @@ impl Joint {
 }
 
 /// Most signs by which a stretch of a pass is distinguished from others at the same inputs.
-pub(crate) const MOST_SIGNS: usize = 4;
+pub(crate) const MOST_SIGNS: usize = 8;
 
 /// The signs of a stretch of a pass, and its first end.
 #[derive(Debug)]

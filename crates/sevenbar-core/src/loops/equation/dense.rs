@@ -175,10 +175,11 @@ pub(crate) fn singular_values(columns: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>)
         .map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect())
         .collect();
     let product = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
+    let turning = sharing(columns);
     for _ in 0..MOST_SWEEPS {
         let mut turned = false;
-        for p in 0..n {
-            for q in p + 1..n {
+        for (k, &p) in turning.iter().enumerate() {
+            for &q in &turning[k + 1..] {
                 let (pp, qq, pq) = (
                     product(&a[p], &a[p]),
                     product(&a[q], &a[q]),
@@ -212,6 +213,19 @@ pub(crate) fn singular_values(columns: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>)
         order.iter().map(|&i| lengths[i]).collect(),
         order.iter().map(|&i| v[i].clone()).collect(),
     )
+}
+
+/// The columns that have a row in common with others; the rest, as those that a net has in store, are at right angles to all.
+fn sharing(columns: &[Vec<f64>]) -> Vec<usize> {
+    let mut used = vec![0; columns.first().map_or(0, Vec::len)];
+    for column in columns {
+        for (used, x) in used.iter_mut().zip(column) {
+            *used += usize::from(*x != 0.0);
+        }
+    }
+    let shares = |column: &[f64]| column.iter().zip(&used).any(|(x, used)| *x != 0.0 && *used > 1);
+    let all = 0..columns.len();
+    all.filter(|&c| shares(&columns[c])).collect()
 }
 
 /// The shortest least-squares solution of a matrix given column by column; singular values below a part of the greatest are zero.
