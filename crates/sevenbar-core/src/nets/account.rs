@@ -3,7 +3,7 @@
 //! Source: docs/theory_nets.md, (24) to (27).
 
 use super::block_branch_points;
-use super::branch_ranges::Counted;
+use super::branch_ranges::{Counted, Inputs};
 use super::dyad_branch_points::{BranchPoints, Zero};
 use super::modes::Part;
 use super::net::Net;
@@ -36,22 +36,28 @@ pub(super) struct Account<'a> {
 }
 
 impl<'a> Account<'a> {
-    /// Of a net and its parts, over a turning input; `None` where they are not counted.
+    /// Of a net and its parts, over an input; `None` where they are not counted.
     pub fn of<const C: usize, const R: usize, const B: usize>(
         sized: &'a SizedNet<C, R, B>,
         net: &Net,
         parts: &[Part],
         input: usize,
     ) -> Option<Self> {
+        let in_space = parts.iter().any(|part| matches!(part, Part::Body(_)));
+        let inputs = if sized.is_turn(input) {
+            Inputs::Turn
+        } else {
+            Inputs::Slide(sized.reach_of_slide(input, if in_space { 3 } else { 2 })?)
+        };
         let dyads = sized.dyads().map(BranchPoints::of);
         let counted = match &dyads {
-            Some(dyads) => Counted::of(dyads),
-            None => block_branch_points::counted(net, parts, input)?,
+            Some(dyads) => Counted::of(dyads, inputs),
+            None => block_branch_points::counted(net, parts, input, inputs)?,
         };
         Some(Self { counted, dyads })
     }
 
-    /// Inputs [rad] between which there is at most one branch point, outside of the ranges that are open.
+    /// Inputs [rad, or relative to the size] between which there is at most one branch point, outside of the ranges that are open.
     pub fn ends(&self) -> impl Iterator<Item = f64> {
         self.counted.ends.iter().copied()
     }

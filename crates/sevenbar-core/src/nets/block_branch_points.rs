@@ -1,12 +1,12 @@
 //! The functions by which branch points of a net of one block are counted: inputs at which two of its solutions meet.
 //!
-//! A member of a family is a polynomial in `e^(i t)` and `e^(-i t)` of the input, so it is known at complex inputs, too. There all of its solutions
-//! are carried on from those at another one.
+//! A member of a family is a polynomial in `e^(i t)` and `e^(-i t)` of an input that turns, in one that slides, so it is known at complex inputs,
+//! too. There all of its solutions are carried on from those at another one.
 //!
 //! Source: docs/theory_nets.md, (27).
 
 use super::body_family::BodyFamily;
-use super::branch_ranges::{Counted, FUNCTIONS, Functions, Values};
+use super::branch_ranges::{Counted, FUNCTIONS, Functions, Inputs, Values, turned};
 use super::modes::{Part, at_first};
 use super::monodromy::{Family, Starts, carried};
 use super::net::Net;
@@ -22,9 +22,10 @@ use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Inputs at which members are read, one for each power of `e^(i t)` from -2 to 2, and at which they are compared [rad].
+/// How many members are read, one for each power of `e^(i t)` from -2 to 2, or of a slide up to 4; and where others are compared, as parts of all
+/// inputs.
 const READ: usize = 5;
-const COMPARED: [f64; 2] = [0.427, 2.913];
+const COMPARED: [f64; 2] = [0.068, 0.464];
 
 /// A number of a member that differs by less is the same, relative to the size.
 const SAME: f64 = 1e-10;
@@ -38,94 +39,124 @@ const NEAR: f64 = 0.03;
 /// A complex input at which solutions are found first.
 const FIRST: Complex64 = Complex64::new(0.713, 0.31);
 
-/// The numbers of a member at an input: of each the factors of the powers.
-type Waves<const D: usize> = Vec<[[Complex64; READ]; D]>;
+/// A member of a family.
+type Member<const D: usize> = Vec<[Complex64; D]>;
 
 /// A member and its solutions.
-type Solved<const N: usize, const D: usize> = (Vec<[Complex64; D]>, Vec<Solution<N>>);
+type Solved<const N: usize, const D: usize> = (Member<D>, Vec<Solution<N>>);
 
 /// A block at complex inputs.
 struct Block<F, const N: usize, const D: usize> {
     family: F,
     starts: Arc<Starts<N, D>>,
-    waves: Waves<D>,
+    inputs: Inputs,
+    /// What was read.
+    read: Vec<Member<D>>,
     /// Where solutions were found last.
     last: RefCell<Solved<N, D>>,
 }
 
-/// The account of the branch points of a turning input of a net; `None` where it is not of one block all of whose modes are known.
-pub(super) fn counted(net: &Net, parts: &[Part], driven: usize) -> Option<Counted> {
+/// The account of the branch points of an input of a net; `None` where it is not of one block all of whose modes are known.
+pub(super) fn counted(net: &Net, parts: &[Part], driven: usize, inputs: Inputs) -> Option<Counted> {
     match parts {
         [Part::Planar(block)] => {
             let member = |value: f64| at_first(net, driven, value, |before| block.member(before));
-            Some(Counted::of(&Block::of(&member, PlanarFamily::starts)?))
+            Some(Counted::of(
+                &Block::of(&member, inputs, PlanarFamily::starts)?,
+                inputs,
+            ))
         }
         [Part::Body(block)] => {
             let member = |value: f64| at_first(net, driven, value, |before| block.member(net, before));
-            Some(Counted::of(&Block::of(&member, BodyFamily::starts)?))
+            Some(Counted::of(
+                &Block::of(&member, inputs, BodyFamily::starts)?,
+                inputs,
+            ))
         }
         _ => None,
     }
 }
 
 /// A family and the member that a block is with the input at a value.
-type AtInput<'a, F, const D: usize> = &'a dyn Fn(f64) -> Option<(F, Vec<[Complex64; D]>)>;
+type AtInput<'a, F, const D: usize> = &'a dyn Fn(f64) -> Option<(F, Member<D>)>;
 
 impl<F: Family<N, D> + PartialEq, const N: usize, const D: usize> Block<F, N, D> {
-    fn of(at: AtInput<F, D>, starts: impl Fn(&F) -> Arc<Starts<N, D>>) -> Option<Self> {
+    fn of(at: AtInput<F, D>, inputs: Inputs, starts: impl Fn(&F) -> Arc<Starts<N, D>>) -> Option<Self> {
         let (family, _) = at(0.0)?;
         let read = |value: f64| {
             at(value)
                 .filter(|(own, _)| *own == family)
                 .map(|(_, member)| member)
         };
-        let step = TAU / READ as f64;
-        let members: Vec<Vec<[Complex64; D]>> =
-            (0..READ).map(|k| read(k as f64 * step)).collect::<Option<_>>()?;
-        let factor = |number: usize, part: usize, power: usize| -> Complex64 {
-            let terms = members.iter().enumerate().map(|(k, member)| {
-                let by = (power as f64 - 2.0) * k as f64 * step;
-                member[number][part] * Complex64::cis(-by)
-            });
-            terms.sum::<Complex64>() / READ as f64
-        };
-        let count = members[0].len();
-        let waves: Waves<D> = (0..count)
-            .map(|n| from_fn(|d| from_fn(|power| factor(n, d, power))))
+        let members: Option<Vec<Member<D>>> = (0..READ)
+            .map(|k| read(inputs.part(k as f64 / READ as f64)))
             .collect();
-        for value in COMPARED {
+        let members = members?;
+        for part in COMPARED {
+            let value = inputs.part(part);
             let differs = |(a, b): (&[Complex64; D], &[Complex64; D])| {
                 a.iter()
                     .zip(b)
                     .any(|(a, b)| (a - b).norm() > SAME * (1.0 + a.norm()))
             };
-            if read(value)?
-                .iter()
-                .zip(&member(&waves, value.into()))
-                .any(differs)
-            {
+            let made = member(inputs, &members, value.into());
+            if read(value)?.iter().zip(&made).any(differs) {
                 return None;
             }
         }
         let starts = starts(&family);
-        let first = member(&waves, FIRST);
+        let first = member(inputs, &members, FIRST);
         let ends = starts.ends(&family, &first);
         let all = starts.certified && ends.left_over == 0;
-        all.then(|| Self { family, starts, waves, last: RefCell::new((first, ends.regular)) })
+        all.then(|| Self {
+            family,
+            starts,
+            inputs,
+            read: members,
+            last: RefCell::new((first, ends.regular)),
+        })
     }
 }
 
-/// The member at a complex input.
-fn member<const D: usize>(waves: &Waves<D>, at: Complex64) -> Vec<[Complex64; D]> {
-    let powers: [Complex64; READ] = from_fn(|power| (Complex64::I * at * (power as f64 - 2.0)).exp());
-    let number = |factors: &[Complex64; READ]| factors.iter().zip(&powers).map(|(f, p)| f * p).sum();
-    waves.iter().map(|parts| from_fn(|d| number(&parts[d]))).collect()
+impl Inputs {
+    /// An input by its part of all.
+    fn part(self, part: f64) -> f64 {
+        match self {
+            Self::Turn => TAU * part,
+            Self::Slide([from, to]) => from + part * (to - from),
+        }
+    }
+
+    /// What those that were read count at a complex input.
+    fn weights(self, at: Complex64) -> [Complex64; READ] {
+        let read: [f64; READ] = from_fn(|k| self.part(k as f64 / READ as f64));
+        match self {
+            Self::Turn => read.map(|own| {
+                let step = (Complex64::I * (at - own)).exp();
+                (1.0 + step + step.inv() + step * step + (step * step).inv()) / READ as f64
+            }),
+            Self::Slide(_) => from_fn(|k| {
+                let others = (0..READ).filter(|other| *other != k);
+                others
+                    .map(|other| (at - read[other]) / (read[k] - read[other]))
+                    .product()
+            }),
+        }
+    }
+}
+
+/// The member at a complex input, from those that were read.
+fn member<const D: usize>(inputs: Inputs, read: &[Member<D>], at: Complex64) -> Member<D> {
+    let weights = inputs.weights(at);
+    let count = read[0].len();
+    let number = |n: usize, d: usize| read.iter().zip(&weights).map(|(own, by)| own[n][d] * by).sum();
+    (0..count).map(|n| from_fn(|d| number(n, d))).collect()
 }
 
 impl<F: Family<N, D>, const N: usize, const D: usize> Block<F, N, D> {
     /// The member at a complex input and all of its solutions; `None` where some are lost.
     fn solved(&self, at: Complex64) -> Option<Solved<N, D>> {
-        let member = member(&self.waves, at);
+        let member = member(self.inputs, &self.read, at);
         let mut last = self.last.borrow_mut();
         let (slides, count) = (self.family.slides(), last.1.len());
         let carried = carried(&self.family, (&last.0, &last.1), &member);
@@ -158,8 +189,8 @@ impl<F: Family<N, D>, const N: usize, const D: usize> Functions for Block<F, N, 
             let [re, im] = [determinant.re, determinant.im].map(|v| v.store());
             for (k, x) in some.iter().enumerate() {
                 let [meets, far] = self.family.measures(x, Complex64::new(re[k], im[k]));
-                values[0] *= meets;
-                values[1] *= far;
+                values[0] = turned(values[0], meets);
+                values[1] = turned(values[1], far);
             }
         }
         Some(values)

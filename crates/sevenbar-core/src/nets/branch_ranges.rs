@@ -1,4 +1,4 @@
-//! The branch points of a turning input, counted by the phases of functions that vanish there.
+//! The branch points of an input, counted by the phases of functions that vanish there.
 //!
 //! Such a function is one of the input alone, and real at real inputs. Its phase round a range counts its zeros there. In a range with at most one
 //! branch point every mode leads to one at an end of the range; so ranges are halved until they have no more.
@@ -12,8 +12,22 @@ use std::f64::consts::{PI, TAU};
 /// Most functions: in turn one that vanishes at branch points, and one that vanishes, or is infinite, where solutions run to infinity.
 pub(super) const FUNCTIONS: usize = 16;
 
-/// The values of the functions; 1 of those that are not in use.
+/// The values of the functions, as far as their phases go; 1 of those that are not in use.
 pub(super) type Values = [Complex64; FUNCTIONS];
+
+/// The phase of a product with one more factor: products of many are too great or too small for a number.
+pub(super) fn turned(product: Complex64, by: Complex64) -> Complex64 {
+    product * by / by.norm()
+}
+
+/// The inputs over which branch points are counted.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Inputs {
+    /// A whole turn [rad].
+    Turn,
+    /// Of a slide, outside of which no mode closes [relative to the size].
+    Slide([f64; 2]),
+}
 
 /// What is counted.
 pub(super) trait Functions {
@@ -23,10 +37,10 @@ pub(super) trait Functions {
     fn is_clear(&self, input: f64) -> bool;
 }
 
-/// Ranges to begin with, how high up in the complex inputs they reach [rad], and where the first one begins, as a part of a range: not
-/// where people draw.
+/// Ranges to begin with, how high up in the complex inputs they reach, as a part of their width, and where the first one begins, as a part of
+/// it: not where people draw.
 const RANGES: usize = 24;
-const HEIGHT: f64 = 0.05;
+const HEIGHT: f64 = 0.19;
 const BEGINS: [f64; 3] = [0.381_966, 0.723_607, 0.145_898];
 
 /// Where a range is parted.
@@ -75,13 +89,13 @@ pub(super) struct Counted {
 }
 
 impl Counted {
-    /// The account of functions over a whole turn.
-    pub fn of(functions: &dyn Functions) -> Self {
+    /// The account of functions over inputs.
+    pub fn of(functions: &dyn Functions, inputs: Inputs) -> Self {
         let ranges = Ranges(functions);
         let mut first = Vec::new();
         // an input to begin with may be a branch point
         for begins in BEGINS {
-            first = ranges.first(begins);
+            first = ranges.first(inputs, begins);
             if first.iter().all(|(_, numbers)| numbers.is_some()) {
                 break;
             }
@@ -179,17 +193,27 @@ impl Ranges<'_> {
     }
 
     /// The ranges to begin with from a part of one on, each with its numbers.
-    fn first(&self, begins: f64) -> Vec<(Range, Option<Numbers>)> {
-        let end = |k: usize| (k as f64 + begins) * TAU / RANGES as f64;
-        let ups: Vec<Option<Change>> = (0..RANGES).map(|k| self.up(end(k), HEIGHT)).collect();
-        let ranges = (0..RANGES).map(|k| {
-            let range = Range { ends: [end(k), end(k + 1)], height: HEIGHT };
-            (range, self.numbers(&range, [&ups[k], &ups[(k + 1) % RANGES]]))
+    fn first(&self, inputs: Inputs, begins: f64) -> Vec<(Range, Option<Numbers>)> {
+        let (from, wide, count) = match inputs {
+            Inputs::Turn => (begins * TAU / RANGES as f64, TAU, RANGES),
+            // one more, so that both ends lie within
+            Inputs::Slide([from, to]) => {
+                let wide = to - from;
+                (from - begins * wide / RANGES as f64, wide, RANGES + 1)
+            }
+        };
+        let step = wide / RANGES as f64;
+        let height = HEIGHT * step;
+        let end = |k: usize| from + k as f64 * step;
+        let ups: Vec<Option<Change>> = (0..=count).map(|k| self.up(end(k), height)).collect();
+        let ranges = (0..count).map(|k| {
+            let range = Range { ends: [end(k), end(k + 1)], height };
+            (range, self.numbers(&range, [&ups[k], &ups[k + 1]]))
         });
         ranges.collect()
     }
 
-    /// The account over a whole turn of ranges to begin with.
+    /// The account of ranges to begin with.
     fn account(&self, first: &[(Range, Option<Numbers>)]) -> Counted {
         let (mut searched, mut account) = (RANGES, Counted::default());
         for (range, numbers) in first {

@@ -5,7 +5,7 @@
 //!
 //! Source: docs/theory_nets.md, (24) and (25).
 
-use super::branch_ranges::{FUNCTIONS, Functions, Values};
+use super::branch_ranges::{FUNCTIONS, Functions, Values, turned};
 use super::dyad_rows::DyadRows;
 use super::dyad_sides::Poses;
 use super::in_plane::InPlane;
@@ -122,8 +122,8 @@ impl Functions for BranchPoints<'_> {
         for (k, ways) in self.ways.iter().enumerate() {
             for sides in ways {
                 let [root, line] = self.pair(k, sides, at);
-                out[2 * k] *= root;
-                out[2 * k + 1] *= line;
+                out[2 * k] = turned(out[2 * k], root);
+                out[2 * k + 1] = turned(out[2 * k + 1], line);
             }
         }
         Some(out)

@@ -39,15 +39,13 @@ pub(super) fn whole_curves<const C: usize, const R: usize, const B: usize>(
             .collect()
     };
     let mut curves = Curves::new(&ends);
+    let account = parts.and_then(|parts| Account::of(net, &described.net, parts, input));
     // modes at some values of a slide say nothing of those beyond
-    if parts.is_none() || !turns {
+    if parts.is_none() || !(turns || account.is_some()) {
         curves.search.completeness = Completeness::Searched;
     }
     curves.search.columns = vec![input];
     curves.take(net, &[net.at(&drawn)], input);
-    let account = parts
-        .filter(|_| turns)
-        .and_then(|parts| Account::of(net, &described.net, parts, input));
     let seeds = values.len();
     let ends = account.iter().flat_map(|account| account.ends());
     let values: Vec<f64> = values.into_iter().chain(ends).collect();

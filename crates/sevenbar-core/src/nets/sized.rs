@@ -21,6 +21,9 @@ use crate::rigid::{Vec3, dot, norm, sub};
 use crate::vectors::QUAD;
 use std::fmt::Debug;
 
+/// A cycle that is open by rounding reaches so much farther.
+const BEYOND: f64 = 1.02;
+
 /// A net of one freedom with at most so many columns and one row less; lengths relative to the size.
 pub(super) struct SizedNet<const C: usize, const R: usize, const B: usize> {
     pub net: Net,
@@ -186,6 +189,28 @@ impl<const C: usize, const R: usize, const B: usize> SizedNet<C, R, B> {
         self.net.steps.len()
     }
 
+    /// Values of a slide beyond which a cycle through it, of turns and rods besides, does not close [relative to the size]; the cycle's two links
+    /// share a place, of so many coordinates. `None` where no cycle bounds it.
+    pub fn reach_of_slide(&self, column: usize, coordinates: usize) -> Option<[f64; 2]> {
+        let is_bounded = |r: usize| match self.cycles[r].kind {
+            Bounded::Rod(_) => true,
+            Bounded::Place => {
+                let others = self.cycles[r + 1..].iter();
+                1 + others.take_while(|c| matches!(c.kind, Bounded::Counted)).count() >= coordinates
+            }
+            Bounded::Angle | Bounded::Counted => false,
+        };
+        let bounding = self.cycles.iter().enumerate().filter(|(r, cycle)| {
+            let only = |slides: &[(usize, f64)]| matches!(slides, [(c, _)] if *c == column);
+            only(&cycle.slides) && is_bounded(*r)
+        });
+        let far = bounding
+            .map(|(_, cycle)| BEYOND * cycle.around)
+            .min_by(f64::total_cmp)?;
+        let drawn = self.net.drawn()[column];
+        Some([drawn - far, drawn + far])
+    }
+
     fn placed<N: Number>(&self, values: &[N; C], balls: &[Rotation<N>]) -> Placed<Self, N> {
         let zero = N::splat(0.0);
         let (mut poses, mut screws) = ([Placement::still(); C], [Screw::still(); C]);
@@ -312,7 +337,7 @@ impl<const C: usize, const R: usize, const B: usize> Closed for SizedNet<C, R, B
         let mut far = [N::splat(0.0); R];
         for (far, cycle) in far.iter_mut().zip(&self.cycles) {
             // half the way round, and a little more where it does not quite close
-            let mut around = N::splat(1.02 * cycle.around);
+            let mut around = N::splat(BEYOND * cycle.around);
             let mut least = N::splat(0.0);
             for &(c, advance) in &cycle.slides {
                 around = around + (at.values[c] * N::splat(advance)).size();

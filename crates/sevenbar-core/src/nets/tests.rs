@@ -1,6 +1,6 @@
 //! Rows in closed form against Newton's method and the series of the whole net.
 
-use super::branch_ranges::Counted;
+use super::branch_ranges::{Counted, Inputs};
 use super::dyad_branch_points::BranchPoints;
 use super::dyad_rows::DyadRows;
 use super::dyads::{Dyad, Pair};
@@ -427,7 +427,7 @@ fn the_branch_points_of_dyads_are_counted_in_every_range() {
         let pairs = [Pair::Hinge(at[1]), Pair::Hinge(c), Pair::Hinge(at[3])];
         let stage = Stage { dyad: Dyad { normal: z, pairs }, links: [1, 2], known: [Some(0), None] };
         let rows = DyadRows::of(&net, &[Part::Dyad(stage)], 0, 1.0, 0.0).unwrap();
-        Counted::of(&BranchPoints::of(&rows))
+        Counted::of(&BranchPoints::of(&rows), Inputs::Turn)
     };
     // the ground's and the crank's lengths reach 3.5 to 5.5, the dyad's 4.5 to 0.5 apart: stretched at two inputs
     let rocks = four_bar(4.5, 2.0, 2.5);
