@@ -1,0 +1,91 @@
+"""Wrong nets as people type them into files, tables, commands and Python: each has one message and leaves no file."""
+
+from __future__ import annotations
+
+import pytest
+
+from command_runs import mistake
+
+KINDS = "R, P, H, C, U, S, E, K, L"
+
+#: A planar net of seven pins as a table.
+PINS = """name,x [mm],y [mm],links,input
+crank,0,0,frame crank,60 rpm
+,10,40,crank coupler,
+,110,80,coupler rocker,
+rocker,100,0,frame rocker,
+,150,60,rocker link,
+,220,70,link lever,
+lever,200,0,frame lever,
+"""
+
+#: A double wishbone with a track rod and a point as a table.
+JOINTS = """name,kind,x,y,z,x 2,y 2,z 2,axis x,axis y,axis z,between,link,input
+lower,R,0,0,0,,,,1,0,0,frame; lower arm,,x
+upper,R,0,50,200,,,,1,0.1,0,frame; upper arm,,
+foot,S,0,350,-20,,,,,,,lower arm; upright,,
+head,S,10,300,210,,,,,,,upper arm; upright,,
+track rod,rod,120,60,80,110,340,90,,,,frame; upright,,
+wheel,point,0,400,90,,,,,,,,upright,
+"""
+
+
+def but(text, *changes):
+    """A text with other words in it, each in one place."""
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return text
+
+
+def said(folder, name, text, *words, command="analyze"):
+    """The one line that a command says of a file, which remains alone in its folder."""
+    (folder / name).write_text(text, encoding="utf-8")
+    message = mistake(command, name, *words, cwd=folder)
+    assert [file.name for file in folder.iterdir()] == [name]
+    assert len(message.splitlines()) == 1
+    return message
+
+
+NO_LINKS = "\n".join(",".join(line.split(",")[:3]) for line in PINS.splitlines())
+NOT_A_JOINT = "is marked and no joint; mark the input in a joint's row"
+OTHER_END = "line 6: is a rod without its other end; give it in columns x 2, y 2, z 2"
+
+OF_TABLES = [
+    (but(PINS, (",10,40,", ",ten,40,")), "line 3, column 'x [mm]': 'ten': no 'ten' is known; give a length"),
+    (but(PINS, (",10,40,", ",,40,")), "line 3, column 'x [mm]': is empty; give a number, 0 where it is none"),
+    (but(PINS, (",10,40,", ",,,")), "line 3: columns 'x [mm]', 'y [mm]' are empty; give numbers, 0 where one is none"),
+    (but(PINS, (",10,40,", ",inf,40,")), "line 3, column 'x [mm]': 'inf' is no number; give a number, 0 where it is none"),
+    (but(PINS, (",10,40,", ',"10,5",40,')), "line 3, column 'x [mm]': '10,5': it has a comma; write a decimal point"),
+    (but(PINS, (",10,40,", ",1 kg,40,")), "line 3, column 'x [mm]': '1 kg': 'kg' is not a unit known here"),
+    (but(PINS, ("x [mm]", "x [deg]")), "column 'x [deg]': 'deg' is not a unit of lengths; give one like mm"),
+    (but(PINS, ("links", "lnks")), "column 'lnks': is not known here; did you mean 'links'?"),
+    (but(PINS, ("crank coupler", "crank")), "line 3, column 'links': 'crank' names 1 link; give two or more"),
+    (but(PINS, ("crank coupler", "crank-coupler")), "'crank-coupler' names 1 link; give two or more, as in 'frame; crank'"),
+    (but(PINS, ("crank coupler", "Crank coupler")), "line 3, column 'links': 'Crank' is written 'crank' elsewhere; give one name"),
+    (but(PINS, ("crank coupler", "crank crank")), "line 3, column 'links': ['crank', 'crank'] names a link twice"),
+    (but(PINS, (",220,70,link lever,", ",220,70,link lever,x")), "line 7, column 'input': is a second input; mark one row"),
+    (but(PINS, ("60 rpm", "60 rmp")), "line 2, column 'input': 'rmp' is not a unit known here; did you mean 'rpm'?"),
+    (but(PINS, ("lever,200,0,frame lever,", "lever,200,0,frame lever,\ntotal,790,250,,")), "line 9, column 'links': names no link"),
+    (PINS.replace("frame", "chassis"), "name the link that stands still in a column 'ground', one of chassis, crank"),
+    (NO_LINKS, f"no kind of joint; give one of {KINDS} in a column 'kind', or pins their links in a column 'links'"),
+    (but(PINS, ("links", "link")), "in a column 'kind', or pins their links in a column 'links'"),
+    # a mark or a place that nothing would read
+    (but(JOINTS, ("frame; upright,,", "frame; upright,,x"), ("lower arm,,x", "lower arm,,")), f"line 6, column 'input': {NOT_A_JOINT}"),
+    (but(JOINTS, ("upright,\n", "upright,x\n")), f"line 7, column 'input': {NOT_A_JOINT}"),
+    (but(JOINTS, ("lower,R,0,0,0,,,", "lower,R,0,0,0,5,5,5")), "line 2: is a joint with two places; leave x 2, y 2, z 2 empty, or give it the kind rod"),
+    (but(JOINTS, ("110,340,90", ",,")), OTHER_END),
+    (but(JOINTS, ("x 2,y 2,z 2", "q,w,e")), OTHER_END),
+    (but(JOINTS, ("110,340,90", "120,60,80")), "line 6, columns 'x 2', 'y 2', 'z 2': its two ends are one place; give joint S there"),
+    (but(JOINTS, (",1,0,0,frame", ",1,,,frame")), "line 2: columns 'axis y', 'axis z' are empty; give numbers, 0 where one is none"),
+    (but(JOINTS, (",1,0,0,frame", ",,,,frame")), "line 2: no axis; a joint of kind R needs one, in columns axis x, axis y, axis z"),
+    (but(JOINTS, ("frame; lower arm", "frame lower arm")), "line 2, column 'between': 'frame lower arm' names 3 links; give two"),
+    (but(JOINTS, ("frame; lower arm", "frame; frame")), "line 2, column 'between': 'frame' is joined to itself; give two links"),
+    (but(JOINTS, (",,,,,,,upright,\n", ",,,,,,,uprigt,\n")), "line 7, column 'link': no link 'uprigt'; did you mean 'upright'?"),
+    (but(JOINTS, ("upright,,\nhead", "upright,,x\nhead"), ("lower arm,,x", "lower arm,,")), "line 4, column 'input': joint 'foot' is a ball"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "message"), OF_TABLES)
+def test_a_wrong_table_has_one_message_with_its_line(tmp_path, text, message):
+    assert message in said(tmp_path, "net.csv", text)
