@@ -89,3 +89,89 @@ OF_TABLES = [
 @pytest.mark.parametrize(("text", "message"), OF_TABLES)
 def test_a_wrong_table_has_one_message_with_its_line(tmp_path, text, message):
     assert message in said(tmp_path, "net.csv", text)
+
+
+#: The same two nets as files.
+WATT = """format = 1
+ground = "frame"
+[drive]
+joint = "crank"
+[[pin]]
+name = "crank"
+at = [0, 0]
+links = ["frame", "crank"]
+[[pin]]
+at = [10, 40]
+links = ["crank", "coupler"]
+[[pin]]
+at = [110, 80]
+links = ["coupler", "rocker"]
+[[pin]]
+name = "rocker"
+at = [100, 0]
+links = ["frame", "rocker"]
+[[pin]]
+at = [150, 60]
+links = ["rocker", "link"]
+[[pin]]
+at = [220, 70]
+links = ["link", "lever"]
+[[pin]]
+name = "lever"
+at = [200, 0]
+links = ["frame", "lever"]
+"""
+HUB = """format = 1
+ground = "frame"
+[drive]
+joint = "lower"
+[[joint]]
+name = "lower"
+kind = "R"
+at = [0, 0, 0]
+axis = [1, 0, 0]
+between = ["frame", "lower arm"]
+[[joint]]
+name = "upper"
+kind = "R"
+at = [0, 50, 200]
+axis = [1, 0.1, 0]
+between = ["frame", "upper arm"]
+[[joint]]
+name = "foot"
+kind = "S"
+at = [0, 350, -20]
+between = ["lower arm", "upright"]
+[[joint]]
+name = "head"
+kind = "S"
+at = [10, 300, 210]
+between = ["upper arm", "upright"]
+[[rod]]
+name = "track rod"
+between = ["frame", "upright"]
+at = [[120, 60, 80], [110, 340, 90]]
+"""
+
+
+OF_CALLS = [
+    # the words of a file and of options are the same
+    (HUB, ("analyze", "--input", "track rod"), "--input: 'track rod' is a rod, whose length stays; give a joint: lower, upper"),
+    (HUB, ("analyze", "--input", "lower arm"), "--input: 'lower arm' is a link; give one of its joints: lower"),
+    (HUB, ("analyze", "--output", "upright"), "output: 'upright' is a link that balls and rods alone hold; give a joint: lower, upper"),
+    (HUB, ("modes", "--input", "foot"), "--input: joint 'foot' is a ball; give a joint with one freedom: lower, upper"),
+    (HUB, ("analyze", "--output", "wheel"), "output: no joint 'wheel'; this linkage has lower, upper, foot, head"),
+    (WATT, ("analyze", "--input", "Crank"), "--input: no joint 'Crank'; did you mean 'crank'?"),
+    (WATT, ("modes", "--input", "coupler"), "--input: 'coupler' is a link; give one of its joints: pin_2, pin_3"),
+    (WATT, ("analyze", "--input", "lever", "--output", "lever"), "output: joint 'lever' is the input; give another:"),
+    (WATT, ("analyze", "--input", "lever", "--input", "crank"), "--input: given 2 times; one joint drives"),
+    (WATT, ("analyze", "--speed", "10 mm/s"), "speed: '10 mm/s' is a sliding speed, and the input turns"),
+    (WATT, ("modes", "--at", "20mm"), "--at: '20mm' is no value of crank, which turns; give 30, 30deg or 0.5rad"),
+    (WATT, ("modes", "--at", "nan"), "--at: 'nan' is no value of crank, which turns; give 30, 30deg or 0.5rad"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "call", "message"), OF_CALLS)
+def test_a_wrong_call_has_one_message(tmp_path, text, call, message):
+    command, *words = call
+    assert message in said(tmp_path, "net.toml", text, *words, command=command)

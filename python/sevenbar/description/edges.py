@@ -40,6 +40,12 @@ class Edge:
         return tuple(column_names(self.name, KINDS[kind].freedoms))
 
     @property
+    def is_ball(self) -> bool:
+        """Whether it is known to be a ball."""
+        kind = self.table.get("kind")
+        return isinstance(kind, str) and kind in KINDS and KINDS[kind].is_ball
+
+    @property
     def links_place(self) -> str:
         """Where the file has its links."""
         return f"{self.place}.{'links' if self.place.startswith('pin') else 'between'}"

@@ -10,7 +10,7 @@ from typing import Any
 
 from sevenbar.description.edges import Edge
 from sevenbar.description.written import entries
-from sevenbar.errors import Problem, is_name, nearest, shown, suggestion
+from sevenbar.errors import Problem, is_name, nearest, no_joint_but, shown, suggestion
 
 #: Most joints and rods of a net.
 MOST_EDGES = 40
@@ -191,18 +191,16 @@ def drive_flaws(drive: Mapping[str, Any], joints: Sequence[Edge], rods: Sequence
     """Links and rods that are named where a joint drives."""
     problems = []
     names = {joint.name for joint in joints}
+    links = {link for joint in joints for link in joint.between}
+    may = [joint for joint in joints if not joint.is_ball]
     for key in ("joint", "output"):
         word = drive.get(key)
-        if not isinstance(word, str) or word.strip() in names:
+        if not isinstance(word, str) or (name := word.strip()) in names:
             continue
-        of_link = dict.fromkeys(joint.name for joint in joints if word.strip() in joint.between)
-        if of_link:
-            what = f"{shown(word)} is a link; give one of its joints: {', '.join(of_link)}"
-        elif word.strip() in [rod.name for rod in rods]:
-            what = f"{shown(word)} is a rod, whose length stays; give a joint: {', '.join(sorted(names))}"
-        else:
-            continue
-        problems.append(Problem(f"drive.{key}", what))
+        of_link = [joint.name for joint in may if name in joint.between] if name in links else None
+        if of_link is not None or name in [rod.name for rod in rods]:
+            what = no_joint_but(name, [joint.name for joint in may], of_link)
+            problems.append(Problem(f"drive.{key}", what))
     return problems
 
 

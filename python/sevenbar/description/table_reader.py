@@ -440,18 +440,20 @@ class _Reader(LinkCells):
         at = self.vector(row, "", "length", letters)
         return {"name": name, "link": int(link or 1) if whole else 1, "at": at}
 
+    def _is_marked(self, row: int, key: str) -> bool:
+        return self.text(row, key).lower() not in NO_MARKS
+
     def _drive(self, names: Mapping[int, str]) -> dict[str, Any]:
         """Input, output and speed as marked."""
         drive: dict[str, Any] = {}
         for key, target in (("input", "joint"), ("output", "output")):
             if key not in self.columns:
                 continue
-            marks = [row for row in self.filled if self.text(row, key).lower() not in NO_MARKS]
-            marked = [row for row in names if row in marks]
-            for row in marks:
-                if row not in marked:
+            for row in self.filled:
+                if row not in names and self._is_marked(row, key):
                     what = f"is marked and no joint; mark the {key} in a joint's row"
                     self.wrong(what, row, self.columns[key])
+            marked = [row for row in names if self._is_marked(row, key)]
             for row in marked[1:]:
                 self.wrong(f"is a second {key}; mark one row", row, self.columns[key])
             if not marked:
