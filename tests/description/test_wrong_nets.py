@@ -175,3 +175,32 @@ OF_CALLS = [
 def test_a_wrong_call_has_one_message(tmp_path, text, call, message):
     command, *words = call
     assert message in said(tmp_path, "net.toml", text, *words, command=command)
+
+
+OF_FILES = [
+    # heads and keys of the whole file
+    (WATT.replace("[[pin]]", "[[pins]]"), "pins: is not known here; write [[pin]]"),
+    (WATT.replace("[[pin]]", "[[Pin]]"), "Pin: is not known here; write [[pin]]"),
+    (WATT.replace("[[pin]]", "[[hinge]]"), "hinge: is not known here; write [[pin]]"),
+    (WATT.replace("[[pin]]", "[pin]"), "line 9: '[pin]' stands twice; write [[pin]] before each one"),
+    (HUB.replace("[[joint]]", "[[joints]]"), "joints: is not known here; write [[joint]]"),
+    (HUB.replace("[[rod]]", "[[bar]]"), "bar: is not known here; write [[rod]]"),
+    (HUB.replace("[[rod]]", "[[rods]]"), "rods: is not known here; write [[rod]]"),
+    (but(WATT, ("[drive]", "[[drive]]")), "drive: [{'joint': 'crank'}] is a list; write [drive], once"),
+    (but(WATT, ('[drive]\njoint = "crank"', 'drive = "crank"')), "drive: 'crank' is not a table; give keys with values"),
+    (but(WATT, ('ground = "frame"', 'ground = frame')), "line 2: 'ground = frame' is not valid TOML: invalid value; write a text in quotes"),
+    (but(WATT, ('ground = "frame"\n', ""), ('joint = "crank"', 'joint = "crank"\nground = "frame"')), "drive.ground: is a key of the whole file; write it above the first table"),
+    (but(WATT, ('ground = "frame"', "ground = true")), "ground: True is not the name of a link"),
+    (but(WATT, ('ground = "frame"', 'ground = "FRAME"')), "ground: no joint is at a link 'FRAME'; did you mean 'frame'?"),
+    (but(WATT, ('ground = "frame"', 'ground = "frame"\ninput = "crank"')), "input: is not known here; the input is the joint of [drive]"),
+    (but(WATT, ('joint = "crank"', 'joint = "crank"\nrange = [0, 90]')), "drive.range: is not known here; allowed: speed, joint, output"),
+    (but(WATT, ('joint = "crank"', 'joint = "crank"\nspeed = "60 rmp"')), "drive.speed: 'rmp' is not a unit known here; did you mean 'rpm'?"),
+    (but(WATT, ('joint = "crank"', 'joint = ""')), "drive.joint: '' is not a name; give some text in quotes"),
+    (but(WATT, ('joint = "crank"', 'joint = "Crank"')), "drive.joint: no joint 'Crank'; did you mean 'crank'?"),
+    (but(HUB, ('joint = "lower"', 'joint = "lower"\noutput = "upright"')), "drive.output: 'upright' is a link that balls and rods alone hold; give a joint: lower, upper"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "message"), OF_FILES)
+def test_a_wrong_file_has_one_message_with_its_place(tmp_path, text, message):
+    assert message in said(tmp_path, "net.toml", text)

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sevenbar.description.edges import Edge
-from sevenbar.description.written import entries
+from sevenbar.description.written import drive_of, entries
 from sevenbar.errors import Problem, is_name, nearest, no_joint_but, shown, suggestion
 
 #: Most joints and rods of a net.
@@ -31,11 +31,10 @@ def ground_flaws(raw: Mapping[str, Any], edges: Sequence[Edge]) -> list[Problem]
     written = raw.get("ground")
     if is_name(written) and written.strip() in named:
         return []
-    for head in LISTS:
-        for i, table in enumerate(entries(raw, head), 1):
-            if written is None and "ground" in table:
-                message = "is a key of the whole file; write it above the first table"
-                return [Problem(f"{head}[{i}].ground", message)]
+    below = {f"{head}[{i}]": table for head in LISTS for i, table in enumerate(entries(raw, head), 1)}
+    for place, table in {"drive": drive_of(raw), **below}.items():
+        if written is None and "ground" in table:
+            return [Problem(f"{place}.ground", "is a key of the whole file; write it above the first table")]
     known = ", ".join(named)
     if written is None:
         return [Problem("ground", f"is missing; name the link that stands still, one of {known}")]

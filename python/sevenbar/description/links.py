@@ -21,8 +21,8 @@ from sevenbar.description.link_flaws import (
     naming_flaws,
     spelling_flaws,
 )
-from sevenbar.description.written import drive_of, entries, has_links
-from sevenbar.errors import DescriptionError, Problem, is_name, shown
+from sevenbar.description.written import drive_of, entries, has_links, misnamed_heads
+from sevenbar.errors import DescriptionError, Problem, bare, is_name, shown
 from sevenbar.kinematics.loop.graph import Graph
 
 #: Keys of a whole file that only links by name need.
@@ -45,6 +45,11 @@ class NamedLinks:
     rods: list[Edge] = field(default_factory=list)
 
     def __post_init__(self) -> None:
+        for word, head in sorted(misnamed_heads(self.raw).items()):
+            self.problems.append(Problem(bare(word), f"is not known here; write [[{head}]]"))
+        if self.problems:
+            # joints and links are not known without them
+            return
         for head in ("joint", "pin"):
             if head in self.raw and not entries(self.raw, head) and self.raw[head] != []:
                 self.problems.append(Problem(head, f"{shown(self.raw[head])} is no list; write [[{head}]]"))

@@ -67,6 +67,8 @@ class FileForms:
             case "union_tag_invalid" | "union_tag_not_found":
                 message = self._kind(str(location[0]), detail["input"])
                 location.append("kind")
+            case "model_type" if isinstance(detail["input"], list) and location[-1] in self.once:
+                message = f"{value} is a list; write [{location[-1]}], once"
             case "model_type" | "dict_type" | "model_attributes_type":
                 message = f"{value} is not a table; give keys with values"
             case "tuple_type" | "too_short" | "too_long":
