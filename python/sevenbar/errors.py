@@ -86,7 +86,7 @@ LONGEST_PATH = 4_096
 LONGEST_NAME = 200
 
 #: What to give for a name.
-NAME_TO_GIVE = f"some text in quotes, at most {LONGEST_NAME} characters"
+NAME_TO_GIVE = f"printable text in quotes, at most {LONGEST_NAME} characters"
 
 #: Mistakes that one message lists; more of them come from a program, and all from one cause.
 MOST_LISTED = 50

@@ -159,10 +159,10 @@ OF_NAMES = [
     (rod(name="lower"), f"rod[1].name: 'lower' is taken already, by joint[1]; {TAKEN}"),
     (rods(HUB["rod"][0] | {"at": [[0, 60, 80], [110, 340, 99]]}), f"rod[2].name: 'track rod' is taken already, by rod[1]; {TAKEN}"),
     (HUB | {"joint": [*HUB["joint"][:2], HUB["joint"][2] | {"name": "a"}, HUB["joint"][3] | {"name": "a.2"}]}, f"joint[4].name: 'a.2' is taken already, by joint[3]; {TAKEN}"),
-    (pin(2, name=3), "pin[2].name: 3 is not a name; give some text in quotes, at most 200 characters"),
+    (pin(2, name=3), "pin[2].name: 3 is not a name; give printable text in quotes, at most 200 characters"),
     (more("point", POINT, POINT), "point[2].name: 'P' is taken already; give each point its own name"),
     (more("point", POINT | {"link": "Lever"}), f"point[1].link: no link 'Lever'; did you mean 'lever'? this linkage has {LINKS}"),
-    (more("point", POINT | {"link": 3}), "point[1].link: 3 is not a name; give some text in quotes, at most 200 characters"),
+    (more("point", POINT | {"link": 3}), "point[1].link: 3 is not the name of a link; give one, as in link = \"crank\""),
     (more("point", without(POINT, "link")), "point[1].link: is missing; needed here: name, link, at"),
     (more("point", without(POINT, "name")), "point[1].name: is missing; needed here: name, link, at"),
     (HUB | {"point": [POINT | {"link": "track rod"}]}, "point[1].link: 'track rod' is a rod, which takes part with its length alone; give one of lower arm, upper arm, upright, frame"),
@@ -230,7 +230,7 @@ OF_VALUES = [
     (WATT | {"angle_unit": "degrees"}, f"angle_unit: 'degrees' {UNITS}did you mean 'deg'? allowed: rad, deg"),
     (WATT | {"format": 2}, "format: 2 is not a format of this version; give format = 1"),
     (without(WATT, "format"), "format: is missing; give format = 1"),
-    (WATT | {"name": 3}, "name: 3 is not a name; give some text in quotes, at most 200 characters"),
+    (WATT | {"name": 3}, "name: 3 is not a name; give printable text in quotes, at most 200 characters"),
     ({"format": 1, "ground": "frame", "link": [{"length": 1}] * 4}, "ground: is not known here; link 4 is the ground already; leave it out"),
 ]  # fmt: skip
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from command_runs import mistake
@@ -195,8 +197,26 @@ OF_FILES = [
     (but(WATT, ('ground = "frame"', 'ground = "frame"\ninput = "crank"')), "input: is not known here; the input is the joint of [drive]"),
     (but(WATT, ('joint = "crank"', 'joint = "crank"\nrange = [0, 90]')), "drive.range: is not known here; allowed: speed, joint, output"),
     (but(WATT, ('joint = "crank"', 'joint = "crank"\nspeed = "60 rmp"')), "drive.speed: 'rmp' is not a unit known here; did you mean 'rpm'?"),
-    (but(WATT, ('joint = "crank"', 'joint = ""')), "drive.joint: '' is not a name; give some text in quotes"),
+    (but(WATT, ('joint = "crank"', 'joint = ""')), "drive.joint: '' is not a name; give printable text in quotes"),
     (but(WATT, ('joint = "crank"', 'joint = "Crank"')), "drive.joint: no joint 'Crank'; did you mean 'crank'?"),
+    # one mistake in several keys or places is one message
+    (WATT.replace('"coupler"', '"co\\nupler"', 1), "pin[2].links: 'co\\nupler' is not the name of a link; give printable text in quotes, at most 200 characters"),
+    (WATT.replace('"coupler"', '"' + "x" * 201 + '"', 1), "is not the name of a link; give printable text in quotes, at most 200 characters"),
+    (but(WATT, ('name = "crank"', 'name = "  "')), "pin[1].name: '  ' is not a name; give printable text in quotes"),
+    (but(WATT, ("at = [10, 40]", "x = 10\ny = 40")), "pin[2].at: is missing; give x and y, as in [40, 0]"),
+    (but(WATT, ('links = ["crank", "coupler"]', 'link = ["crank", "coupler"]')), "pin[2].links: is missing; give the names of two or more"),
+    (but(WATT, ('links = ["crank", "coupler"]', 'links = "crank-coupler"')), "'crank-coupler' is one text; give the links that turn on the pin, as a list: [\"frame\", \"crank\"]"),
+    (but(HUB, ("at = [0, 0, 0]", "x = 0\ny = 0\nz = 0")), "joint[1].at: is missing; needed here: kind, at, between; not known here: x, y, z"),
+    (but(HUB, ("at = [[120, 60, 80], [110, 340, 90]]", "from = [120, 60, 80]\nto = [110, 340, 90]")), "rod[1].at: is missing; needed here: between, at; not known here: from, to"),
+    (but(HUB, ('between = ["frame", "lower arm"]', 'parent = "frame"\nchild = "lower arm"')), "joint[1].between: is missing; a joint has it in place of parent and child, as in between"),
+    (but(HUB, ('between = ["frame", "lower arm"]', 'link = "lower arm"')), "joint[1].between: is missing; a joint has it in place of link, as in between"),
+    (but(HUB, ('between = ["frame", "lower arm"]', 'between = ["frame", "lower arm"]\nlink = "lower arm"')), "joint[1].link: is not known here; a joint has its links in between"),
+    (but(HUB, ('between = ["frame", "upright"]', 'links = ["frame", "upright"]')), "rod[1].between: is missing; a rod has it in place of links"),
+    (re.sub(r"between = .*arm.*\n", "", HUB), "joint: do not name their links; each needs between, as in between"),
+    (but(HUB, ('name = "foot"\nkind = "S"', 'name = "foot"\nkind = "U"\naxis = [0, 0, 1]')), "joint[3].axis: does not belong to a joint of kind U; give its axes, as in axes = [[1, 0, 0], [0, 1, 0]]"),
+    (but(HUB, ('name = "foot"\nkind = "S"', 'name = "foot"\nkind = "E"\naxes = [[0, 0, 1], [1, 0, 0]]')), "joint[3].axes: does not belong to a joint of kind E; give its axis, as in axis = [0, 0, 1]"),
+    (WATT + '[[point]]\nname = "P"\nlink = 2\nat = [0, 0, 0]\n', "point[1].link: 2 is not the name of a link; give one, as in link = \"crank\""),
+    (WATT + '[[rod]]\nlink = "cranc"\nradius = 3\n', "rod[1].link: no link 'cranc'; did you mean 'crank'?"),
     (but(HUB, ('joint = "lower"', 'joint = "lower"\noutput = "upright"')), "drive.output: 'upright' is a link that balls and rods alone hold; give a joint: lower, upper"),
 ]  # fmt: skip
 

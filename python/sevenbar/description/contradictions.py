@@ -101,12 +101,23 @@ def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list
     return problems
 
 
+#: The keys of directions, of which a kind has one at most, each with an example.
+_DIRECTIONS = {"axis": "[0, 0, 1]", "axes": "[[1, 0, 0], [0, 1, 0]]"}
+
+
 def wrong_keys(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Keys of a drawn joint that its kind needs and that are missing, or that its kind has no use for."""
     kind = joint["kind"]
     needs = set(KINDS[kind].drawn_keys)
     given = joint.keys() & {key for row in KINDS.values() for key in row.drawn_keys}
-    missing = [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - given)]
+    missing = []
+    for own, other in (("axis", "axes"), ("axes", "axis")):
+        # one in place of the other is one mistake
+        if own in needs - given and other in given - needs:
+            give = f"give its {own}, as in {own} = {_DIRECTIONS[own]}"
+            missing.append((other, f"does not belong to a joint of kind {kind}; {give}"))
+            needs, given = needs - {own}, given - {other}
+    missing += [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - given)]
     if "value" in joint and kind not in READ_KINDS:
         missing.append(("value", no_reading(kind)))
     return missing + [

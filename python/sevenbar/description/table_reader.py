@@ -425,6 +425,10 @@ class _Reader(LinkCells):
         name = self.text(row, "name") or self.text(row, "joint") or f"P{k + 1}"
         if self.by_name or self.names_links:
             carrier = self.text(row, "link") or " ".join(self.links_of(row))
+            if not carrier:
+                self.wrong(
+                    "names no link; give the one that carries the point", row, self.columns.get("link")
+                )
             if "link" not in self.columns:
                 self.note_place(
                     f"{place}.link", row, next(k for k in ("between", *BETWEEN) if k in self.columns)

@@ -160,7 +160,8 @@ def has_links(raw: Mapping[str, Any]) -> bool:
     """Whether a file has links by name."""
     if "pin" in raw or misnamed_heads(raw):
         return True
-    return any("between" in table for head in ("joint", "rod") for table in entries(raw, head))
+    named = any("between" in table for head in ("joint", "rod") for table in entries(raw, head))
+    return named or any("links" in table and "kind" not in table for table in entries(raw, "joint"))
 
 
 def misnamed_heads(raw: Mapping[str, Any]) -> dict[str, str]:
