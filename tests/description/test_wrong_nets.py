@@ -215,6 +215,12 @@ OF_FILES = [
     (re.sub(r"between = .*arm.*\n", "", HUB), "joint: do not name their links; each needs between, as in between"),
     (but(HUB, ('name = "foot"\nkind = "S"', 'name = "foot"\nkind = "U"\naxis = [0, 0, 1]')), "joint[3].axis: does not belong to a joint of kind U; give its axes, as in axes = [[1, 0, 0], [0, 1, 0]]"),
     (but(HUB, ('name = "foot"\nkind = "S"', 'name = "foot"\nkind = "E"\naxes = [[0, 0, 1], [1, 0, 0]]')), "joint[3].axes: does not belong to a joint of kind E; give its axis, as in axis = [0, 0, 1]"),
+    # slips of many digits
+    (but(WATT, ("at = [10, 40]", "at = [1e6, 40]")), "pin[2].at: [1000000.0, 40.0, 0.0] is 1e+06 mm from most of the others, and 100 mm is too short to be followed with that"),
+    (but(WATT, ("at = [10, 40]", "at = [1e90, 40]")), "pin[2].at: [1e+90, 40.0, 0.0] is 1e+90 mm from most of the others"),
+    (but(HUB, ("at = [10, 300, 210]", "at = [1e12, 300, 210]")), "joint[4].at: [1000000000000.0, 300.0, 210.0] is 1e+12 mm from most of the others"),
+    (but(HUB, ("[110, 340, 90]", "[120, 60, 1e9]")), "rod[1].at: [120.0, 60.0, 1000000000.0] is 1e+09 mm from most of the others"),
+    (but(HUB, ("[110, 340, 90]", "[120, 60, 80.00000000001]")), "rod[1].at: its two ends are one place; give joint S there"),
     (WATT + '[[point]]\nname = "P"\nlink = 2\nat = [0, 0, 0]\n', "point[1].link: 2 is not the name of a link; give one, as in link = \"crank\""),
     (WATT + '[[rod]]\nlink = "cranc"\nradius = 3\n', "rod[1].link: no link 'cranc'; did you mean 'crank'?"),
     (but(HUB, ('joint = "lower"', 'joint = "lower"\noutput = "upright"')), "drive.output: 'upright' is a link that balls and rods alone hold; give a joint: lower, upper"),

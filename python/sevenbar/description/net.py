@@ -9,6 +9,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.links import NamedLinks
+from sevenbar.description.proportions import net_disproportions
 from sevenbar.description.written import drive_of, driven, entries, joints_of
 from sevenbar.errors import DescriptionError, Problem
 from sevenbar.kinematics.linkage import Linkage
@@ -39,6 +40,8 @@ def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
     if problems:
         raise DescriptionError(problems, source)
     form = check_net({**with_numbers(whole, context), "pin": []}, context, source=source)
+    if problems := net_disproportions(form, [edge.place for edge in links.edges]):
+        raise DescriptionError(problems, source)
     number = {name: i for i, name in enumerate(links.links, 1)}
     points = tuple(Point(point.name, number[point.link], point.at) for point in form.point)
     joints, frames = [], []

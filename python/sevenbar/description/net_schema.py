@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
@@ -13,6 +14,7 @@ from sevenbar.description.formulas import context_of
 from sevenbar.description.loop_schema import DriveForm, JointForm
 from sevenbar.description.mistakes import FileForms, with_unknown
 from sevenbar.description.not_covered import OF_JOINTS
+from sevenbar.description.proportions import MEANT
 from sevenbar.description.slots import slots_aslant
 from sevenbar.description.values import (
     Component,
@@ -43,7 +45,7 @@ def _in_plane(value: object, info: ValidationInfo) -> tuple[float, float]:
 def _ends(value: object, info: ValidationInfo) -> tuple[tuple[float, float, float], ...]:
     ends = parts_of(value, 2, "are not two places; give that on each link, as in [[0, 0, 0], [100, 0, 0]]")
     first, second = (three(end, info, "length") for end in ends)
-    if first == second:
+    if math.dist(first, second) < MEANT:
         raise refuse("its two ends are one place; give joint S there")
     return first, second
 
