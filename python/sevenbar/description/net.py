@@ -9,7 +9,6 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.links import NamedLinks
-from sevenbar.description.proportions import net_disproportions
 from sevenbar.description.written import drive_of, driven, entries, joints_of
 from sevenbar.errors import DescriptionError, Problem
 from sevenbar.kinematics.linkage import Linkage
@@ -21,6 +20,7 @@ from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, 
 def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
     """The net of links by name; raises `DescriptionError` with all that is wrong."""
     from sevenbar.description.formulas import context_of, with_numbers
+    from sevenbar.description.net_proportions import net_disproportions
     from sevenbar.description.net_schema import check_net
 
     thick = [

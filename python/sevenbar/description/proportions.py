@@ -12,14 +12,9 @@ from sevenbar.errors import Problem, shown
 if TYPE_CHECKING:
     from sevenbar.arrays import Floats
     from sevenbar.description.loop_schema import JointForm, LinkForm, LoopForm
-    from sevenbar.description.net_schema import NetForm
-    from sevenbar.description.values import Vector
 
 #: A length below this part of the greatest may be lost: poses count as closed when they miss by less.
 LEAST_SHARE = 1e-11
-
-#: The same of a net. Its circuits are followed in steps of its size, which takes minutes next to 1e5.
-LEAST_SHARE_OF_NETS = 1e-4
 
 #: Shorter ones [length] are rounding of computed zeros: nobody draws a billionth of a unit.
 MEANT = 1e-9
@@ -47,39 +42,17 @@ def _of_drawing(drawn: Sequence[JointForm], unit: str) -> list[Problem]:
     nearest = [float(min(pair)) for pair in beside if pair]
     pitches = [abs(joint.pitch or 0.0) for joint in drawn]
     steepest = int(np.argmax(pitches))
-    lost = _lost([*nearest, *pitches], max(float(ahead.max()), pitches[steepest]))
+    lost = lost_lengths([*nearest, *pitches], max(float(ahead.max()), pitches[steepest]))
     if not lost:
         return []
     if pitches[steepest] > ahead.max():
         message = f"{pitches[steepest]:.3g} {unit} is too long"
-        return [Problem(f"joint[{steepest + 1}].pitch", f"{message}, {_loss_text(lost, unit)}")]
-    far, message = _farthest(places, unit)
-    return [Problem(f"joint[{far + 1}].at", f"{message}, {_loss_text(lost, unit)}")]
+        return [Problem(f"joint[{steepest + 1}].pitch", f"{message}, {loss_text(lost, unit)}")]
+    far, message = farthest(places, unit)
+    return [Problem(f"joint[{far + 1}].at", f"{message}, {loss_text(lost, unit)}")]
 
 
-def net_disproportions(form: NetForm, written: Sequence[str]) -> list[Problem]:
-    """The same of a net, whose joints and rods are `written` at these places of the file.
-
-    Links may have many joints; ends of a rod are places of its links.
-    """
-    ends: list[tuple[int, tuple[str, ...], Vector]]
-    ends = [(i, joint.between, joint.at) for i, joint in enumerate(form.joint)]
-    for i, rod in enumerate(form.rod, len(form.joint)):
-        ends += [(i, (link,), at) for link, at in zip(rod.between, rod.at, strict=True)]
-    places = np.array([at for _, _, at in ends], dtype=np.float64)
-    apart = np.linalg.norm(places[:, None] - places, axis=2)
-    meet = np.array([[i == j or not {*one}.isdisjoint(other) for j, other, _ in ends] for i, one, _ in ends])
-    meant = np.where(meet & (apart >= MEANT), apart, np.inf).min(axis=1)
-    nearest = [float(distance) for distance in meant if np.isfinite(distance)]
-    lost = _lost(nearest, float(apart[meet].max()), LEAST_SHARE_OF_NETS)
-    if not lost:
-        return []
-    far, message = _farthest(places, form.length_unit)
-    loss = _loss_text(lost, form.length_unit, "too short to be followed with", LEAST_SHARE_OF_NETS)
-    return [Problem(f"{written[ends[far][0]]}.at", f"{message}, {loss}")]
-
-
-def _farthest(places: Floats, unit: str) -> tuple[int, str]:
+def farthest(places: Floats, unit: str) -> tuple[int, str]:
     """Which of some places is far from the others, and how far."""
     away = np.linalg.norm(places - np.median(places, axis=0), axis=1)
     far = int(away.argmax())
@@ -96,22 +69,23 @@ def _of_rows(rows: Sequence[LinkForm], unit: str) -> list[Problem]:
     if not numbers:
         return []
     place = max(numbers, key=lambda place: abs(numbers[place]))
-    lost = _lost([abs(value) for value in numbers.values()], abs(numbers[place]))
+    lost = lost_lengths([abs(value) for value in numbers.values()], abs(numbers[place]))
     return (
-        [Problem(place, f"{numbers[place]:.3g} {unit} is too long, {_loss_text(lost, unit)}")] if lost else []
+        [Problem(place, f"{numbers[place]:.3g} {unit} is too long, {loss_text(lost, unit)}")] if lost else []
     )
 
 
-def _lost(lengths: Sequence[float], greatest: float, least_share: float = LEAST_SHARE) -> list[float]:
+def lost_lengths(lengths: Sequence[float], greatest: float, least_share: float = LEAST_SHARE) -> list[float]:
     """The lengths lost next to the greatest, where they are at least half of those that are meant."""
     meant = [length for length in lengths if length >= MEANT]
     lost = [length for length in meant if length < least_share * greatest]
     return lost if 2 * len(lost) >= len(meant) else []
 
 
-def _loss_text(
+def loss_text(
     lost: Sequence[float], unit: str, why: str = "lost in rounding beside", least_share: float = LEAST_SHARE
 ) -> str:
+    """What is wrong with the greatest length next to those that are lost, and what to give."""
     return (
         f"and {max(lost):.3g} {unit} is {why} that; give lengths of which the greatest is "
         f"at most {1 / least_share:.0e} times the others"
