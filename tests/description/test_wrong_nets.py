@@ -156,6 +156,19 @@ at = [[120, 60, 80], [110, 340, 90]]
 """
 
 
+def pinned(*pins):
+    """Watt's six-bar with more pins, each the two coordinates and the links."""
+    return WATT + "".join(f"[[pin]]\nat = [{x}, {y}]\nlinks = {links.split()}\n" for x, y, links in pins)
+
+
+#: With a brace, so that nothing moves; with a chain of four links, so that it has two freedoms; with a triangle.
+BRACED = pinned((10, 20, "crank brace"), (60, 10, "frame brace"))
+LOOSE = pinned((0, 150, "crank u"), (50, 200, "u v"), (150, 200, "v w"), (200, 150, "w lever"))
+STILL = pinned((310, 20, "p q"), (330, 0, "frame q")) + (
+    '[[pin]]\nname = "still"\nat = [300, 0]\nlinks = ["frame", "p"]\n'
+)
+
+
 OF_CALLS = [
     # the words of a file and of options are the same
     (HUB, ("analyze", "--input", "track rod"), "--input: 'track rod' is a rod, whose length stays; give a joint: lower, upper"),
@@ -168,6 +181,17 @@ OF_CALLS = [
     (WATT, ("analyze", "--input", "lever", "--output", "lever"), "output: joint 'lever' is the input; give another:"),
     (WATT, ("analyze", "--input", "lever", "--input", "crank"), "--input: given 2 times; one joint drives"),
     (WATT, ("analyze", "--speed", "10 mm/s"), "speed: '10 mm/s' is a sliding speed, and the input turns"),
+    # nets that no one input moves
+    (BRACED, ("modes",), "net: motion is found of nets that one input moves; here it has 0 freedoms; leave out a joint or a rod"),
+    (LOOSE, ("modes", "--at", "30deg"), "here it has 2 freedoms; join links by more joints or rods"),
+    (LOOSE, ("plot", "--out", "figures"), "here it has 2 freedoms; join links by more joints or rods"),
+    (LOOSE, ("export", "--to", "csv"), "here it has 2 freedoms; join links by more joints or rods"),
+    (LOOSE, ("analyze", "--animate", "film.gif"), "--animate: no one input moves it; leave it out, the report says why"),
+    (BRACED, ("analyze", "--output", "levr"), "output: no joint 'levr'; did you mean 'lever'?"),
+    (BRACED, ("analyze", "--samples", "-3"), "samples: -3 is not a count; give 4 to 1000000"),
+    (BRACED, ("analyze", "--law", "law.csv"), "law.csv: no such file; give the path of a table of an input law"),
+    (STILL, ("analyze", "--input", "still"), "input: joint 'still' stands still while others move, so it cannot drive; give another: crank"),
+    (WATT, ("modes", "--out", "modes.foo"), "modes.foo: '.foo' is not a figure format; give .png, .svg, .pdf or .eps"),
     (WATT, ("modes", "--at", "20mm"), "--at: '20mm' is no value of crank, which turns; give 30, 30deg or 0.5rad"),
     (WATT, ("modes", "--at", "nan"), "--at: 'nan' is no value of crank, which turns; give 30, 30deg or 0.5rad"),
 ]  # fmt: skip

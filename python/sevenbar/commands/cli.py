@@ -184,17 +184,21 @@ def analyze(
         # the report has it
         warnings.simplefilter("ignore", AngleUnitWarning)
     loaded = opened(linkage, agree)
+    read = law_of(law, loaded, input_joint, law_joint, law_circuit)
     if loaded.net is not None:
         from sevenbar.reporting.net import NET, driven_by
 
     if loaded.net is not None and (moved_net := driven_by(loaded, input_joint, speed)).mobility().finite != 1:
         # there is no motion to report
+        if animate is not None:
+            raise RequestError("--animate: no one input moves it; leave it out, the report says why")
+        sample_count("samples", samples)
+        loaded.end_columns(input_joint, output)
         check_out(NET, out, force=force)
         deliver(moved_net, NET, out, json=json, force=force)
         return
     report = motion_report(formats)
     check_out(report, out, force=force)
-    read = law_of(law, loaded, input_joint, law_joint, law_circuit)
     moved = partial(loaded.motion, input=input_joint, output=output, speed=speed, law=read)
     if out is not None and read is None:
         confirm(table_ahead(moved, samples, "motion.csv"), yes=yes)
@@ -280,7 +284,11 @@ def modes(
 
     loaded = opened(linkage, agree)
     column = loaded.input_column(input_joint, "--input")
-    check_targets([] if out is None else [out], force=force)
+    if out is not None:
+        from sevenbar.drawing.figure import format_of
+
+        format_of(out)
+        check_targets([out], force=force)
     value = input_value("--at", "0" if at is None else at, loaded, input_joint)
     result = loaded.assembly_modes(value, input=loaded.columns[column])
     poses, limit = rates_at(loaded, column, value, speed, result)
