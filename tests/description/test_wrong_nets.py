@@ -6,7 +6,9 @@ import re
 
 import pytest
 
-from command_runs import mistake
+import sevenbar as sb
+from command_runs import mistake, sevenbar
+from sevenbar.errors import SevenbarError
 
 KINDS = "R, P, H, C, U, S, E, K, L"
 
@@ -181,6 +183,14 @@ OF_CALLS = [
     (WATT, ("analyze", "--input", "lever", "--output", "lever"), "output: joint 'lever' is the input; give another:"),
     (WATT, ("analyze", "--input", "lever", "--input", "crank"), "--input: given 2 times; one joint drives"),
     (WATT, ("analyze", "--speed", "10 mm/s"), "speed: '10 mm/s' is a sliding speed, and the input turns"),
+    (WATT, ("plot", "--out", "figures", "--kind", "point", "--link", "levr", "--at", "0,0,0"), "--link: 'levr' is not a link; did you mean 'lever'? give crank, coupler"),
+    (WATT, ("plot", "--out", "figures", "--kind", "point", "--link", "9", "--at", "0,0,0"), "--link: 9 is not a link; give 1 to 6, the last is the ground"),
+    (WATT, ("plot", "--out", "figures", "--kind", "point", "--link", "lever", "--at", "0,0"), "--at: '0,0' is not a place; give three numbers"),
+    (WATT, ("plot", "--out", "figures", "--kind", "bends"), "--kind: 'bends' is not a figure; give curves, joints"),
+    (WATT, ("axodes", "--link", "lever", "--relative-to", "lever"), "--relative-to: lever is one of --link; give another"),
+    (WATT, ("analyze", "--agree", "1e-3"), "agree: 0.001 is of a single loop; of a net redundant constraints agree to 1e-09, so leave it out"),
+    (WATT, ("forces",), "net: this linkage has several loops; its freedoms, modes and motion"),
+    (WATT, ("export", "--to", "step"), "net: this linkage has several loops; its freedoms, modes and motion"),
     # nets that no one input moves
     (BRACED, ("modes",), "net: motion is found of nets that one input moves; here it has 0 freedoms; leave out a joint or a rod"),
     (LOOSE, ("modes", "--at", "30deg"), "here it has 2 freedoms; join links by more joints or rods"),
@@ -201,6 +211,33 @@ OF_CALLS = [
 def test_a_wrong_call_has_one_message(tmp_path, text, call, message):
     command, *words = call
     assert message in said(tmp_path, "net.toml", text, *words, command=command)
+
+
+def test_links_of_a_net_may_be_given_by_name(tmp_path):
+    (tmp_path / "net.toml").write_text(WATT)
+    by_name, by_number = (
+        sevenbar("axodes", "net.toml", "--link", link, "--relative-to", other, cwd=tmp_path)
+        for link, other in (("lever", "coupler"), (5, 2))
+    )
+    assert by_name.returncode == 0
+    assert by_name.stdout == by_number.stdout
+
+
+OF_PYTHON = [
+    (lambda net: net.loaded(bodies={1: sb.Body(mass=1, centre=(0, 0, 0))}), "forces, stops, sweeps of dimensions, bodies, engines"),
+    (lambda net: net.stopped(ranges={"lever": (0, 1)}), "forces, stops, sweeps of dimensions, bodies, engines"),
+    (lambda net: net.agreeing(1e-5), "agree: 1e-05 is of a single loop"),
+    (lambda net: net.motion(output="coupler"), "output: 'coupler' is a link; give one of its joints: pin_2, pin_3"),
+    (lambda net: net.motion(input="cranc"), "input: no joint 'cranc'; did you mean 'crank'?"),
+    (lambda net: net.assembly_modes("3 mm"), "theta: '3 mm' is not a number with a unit that fits"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("call", "message"), OF_PYTHON)
+def test_a_wrong_question_to_a_net_has_one_message(call, message):
+    with pytest.raises(SevenbarError) as caught:
+        call(sb.load("watt"))
+    assert message in str(caught.value)
 
 
 OF_FILES = [

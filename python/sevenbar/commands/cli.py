@@ -17,7 +17,6 @@ import typer
 import typer.core
 
 import sevenbar as sb
-from sevenbar.arrays import whole_number
 from sevenbar.commands import options
 from sevenbar.commands.command import Command
 from sevenbar.commands.consent import confirm, long_motion, table_ahead
@@ -345,7 +344,7 @@ def plot_(
         check_word("--parts", part, PATH_PARTS, "a part of a point's figure")
     look = replace(look_of(view, size, style), title=not no_title, parts=chosen)
     loaded = opened(linkage, agree)
-    points = _points(loaded, point_of(point, link, at))
+    points = _points(loaded, point_of(point, link, at, loaded))
     for one in {"point", "coupler"} & set(kinds) if not points else ():
         if kind is not None and one in options.words(kind):
             raise RequestError(
@@ -388,8 +387,7 @@ def _points(linkage: sb.Linkage, asked: str | tuple[int, Place] | None) -> Place
             raise RequestError(f"--point: no point {shown(asked)}; this linkage has {known}")
         return {asked: named[asked]}
     link, (u, v, w) = asked
-    whole_number("--link", link, 1, linkage.graph.ground, "a link", ", the last is the ground")
-    return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
+    return {f"{linkage.link_name(link)} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
 
 
 @app.command(cls=Command)

@@ -67,6 +67,7 @@ class Linkage(Solvable):
         """
         from sevenbar.kinematics.dynamics.loaded import loaded
 
+        check_single(self)
         return loaded(self, bodies=bodies, gravity=gravity, loads=loads, springs=springs)
 
     @ends_here
@@ -87,6 +88,7 @@ class Linkage(Solvable):
         """
         from sevenbar.kinematics.ranges.stopped import stopped
 
+        check_single(self)
         return stopped(self, ranges=ranges, cones=cones, radii=radii)
 
     @property
@@ -144,6 +146,11 @@ class Linkage(Solvable):
         value = closure_tolerance("agree", agree)
         if value == AGREE and self.agree is None:
             return self
+        if self.net is not None:
+            raise RequestError(
+                f"agree: {value:g} is of a single loop; of a net redundant constraints agree to {AGREE:g}, "
+                "so leave it out"
+            )
         if value not in self._agreeing:
             self._agreeing[value] = replace(self, agree=value)
         return self._agreeing[value]
