@@ -201,6 +201,7 @@ OF_CALLS = [
     (BRACED, ("analyze", "--samples", "-3"), "samples: -3 is not a count; give 4 to 1000000"),
     (BRACED, ("analyze", "--law", "law.csv"), "law.csv: no such file; give the path of a table of an input law"),
     (STILL, ("analyze", "--input", "still"), "input: joint 'still' stands still while others move, so it cannot drive; give another: crank"),
+    (but(WATT, ("at = [110, 80]", "at = [10, 40]")), ("analyze",), "give another: pin_2, pin_3; pin_2 and pin_3 are on one axis, so the link between them has no length"),
     (WATT, ("modes", "--out", "modes.foo"), "modes.foo: '.foo' is not a figure format; give .png, .svg, .pdf or .eps"),
     (WATT, ("modes", "--at", "20mm"), "--at: '20mm' is no value of crank, which turns; give 30, 30deg or 0.5rad"),
     (WATT, ("modes", "--at", "nan"), "--at: 'nan' is no value of crank, which turns; give 30, 30deg or 0.5rad"),
@@ -211,6 +212,12 @@ OF_CALLS = [
 def test_a_wrong_call_has_one_message(tmp_path, text, call, message):
     command, *words = call
     assert message in said(tmp_path, "net.toml", text, *words, command=command)
+
+
+def test_a_link_of_a_net_without_length_is_named(tmp_path):
+    (tmp_path / "net.toml").write_text(but(WATT, ("at = [220, 70]", "at = [200, 0]")))
+    run = sevenbar("analyze", "net.toml", "--input", "lever", cwd=tmp_path)
+    assert "pin_6 and lever are on one axis: link lever has length 0" in " ".join(run.stdout.split())
 
 
 def test_links_of_a_net_may_be_given_by_name(tmp_path):
