@@ -90,6 +90,12 @@ OF_TABLES = [
 ]  # fmt: skip
 
 
+def test_cells_past_the_header_are_in_the_note(tmp_path):
+    (tmp_path / "net.csv").write_text(but(PINS, (",220,70,link lever,", ",220,70,link lever,,,9")))
+    run = sevenbar("modes", "net.csv", cwd=tmp_path)
+    assert "not read: cells past the header in line 7" in run.stderr
+
+
 @pytest.mark.parametrize(("text", "message"), OF_TABLES)
 def test_a_wrong_table_has_one_message_with_its_line(tmp_path, text, message):
     assert message in said(tmp_path, "net.csv", text)
@@ -230,7 +236,22 @@ def test_links_of_a_net_may_be_given_by_name(tmp_path):
     assert by_name.stdout == by_number.stdout
 
 
+FOUR = {"x": [0, 1, 5, 6], "y": [0, 4, 5, 0], "links": ["frame a", "a b", "b c", "frame c"]}
+
 OF_PYTHON = [
+    # a list for one linkage
+    (lambda _: sb.from_pins({"crank": {"at": (0, 0), "links": ["frame", "crank"]}}, ground="frame"), "pins: {'crank': {'at': [0, 0]"),
+    (lambda _: sb.from_pins({"at": (0, 0), "links": ("a", "b")}, ground="a"), "is not a list; give one with a mapping for each of the pins"),
+    (lambda _: sb.from_axes({"kind": "R", "at": (0, 0, 0)}, ground="a"), "is not a list; give one with a mapping for each of the joints"),
+    (lambda _: sb.from_pins("watt.toml"), "pins: watt.toml is a linkage file, no table; give it to sevenbar.load"),
+    (lambda _: sb.from_pins(FOUR, rods=3), "rods: 3 is not a list; give one with a mapping for each of the rods"),
+    (lambda _: sb.from_pins(FOUR, points="P"), "points: 'P' is not a list; give one with a mapping for each of the points"),
+    (lambda _: sb.from_pins(FOUR, ground="wall"), "table: ground: no joint is at a link 'wall'; name the link that stands still"),
+    (lambda _: sb.from_pins({"foo": [1, 2], "bar": [1, 2]}), "table: the columns describe no linkage; name them as in"),
+    (lambda _: sb.from_pins([{"at": (0, 0, 0), "kind": "R", "between": ["a", "b"]}], ground="a"), "pin[1]: is a joint, with between and a kind; write it as [[joint]]"),
+    (lambda _: sb.from_axes([{"at": (0, 0), "links": ["a", "b"]}], ground="a"), "joint[1]: is a pin, with links and no kind; write it as [[pin]]"),
+    (lambda _: sb.from_pins([{"at": (0, 0), "links": {"a", "b"}}], ground="a"), "pin[1].links: {'"),
+    # questions that a net does not answer
     (lambda net: net.loaded(bodies={1: sb.Body(mass=1, centre=(0, 0, 0))}), "forces, stops, sweeps of dimensions, bodies, engines"),
     (lambda net: net.stopped(ranges={"lever": (0, 1)}), "forces, stops, sweeps of dimensions, bodies, engines"),
     (lambda net: net.agreeing(1e-5), "agree: 1e-05 is of a single loop"),
@@ -245,6 +266,7 @@ def test_a_wrong_question_to_a_net_has_one_message(call, message):
     with pytest.raises(SevenbarError) as caught:
         call(sb.load("watt"))
     assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
 
 
 OF_FILES = [

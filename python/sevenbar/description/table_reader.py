@@ -136,7 +136,9 @@ class _Reader(LinkCells):
 
     def description(self) -> TableDescription:
         """The description of the table."""
-        if not self.filled and not self.problems:
+        if not self.columns and not self.problems:
+            self.wrong(f"the columns describe no linkage; name them as in {EXAMPLES}")
+        elif not self.filled and not self.problems:
             self.wrong("has a header but no rows; give one for each joint")
         self.finish()
         described = {
@@ -169,6 +171,9 @@ class _Reader(LinkCells):
         if not result[0]:
             self.finish()
         raw, what = result
+        width = len(self.grid.names)
+        past = [self.grid.place(row) for row in self.filled if any(self.grid.rows[row][width:])]
+        self.unread += [f"cells past the header in {', '.join(past)}"] if past else []
         unread = f"; not read: {', '.join(self.unread)}" if self.unread else ""
         return TableDescription({**described, **raw}, what + unread, self.places, self.problems)
 
