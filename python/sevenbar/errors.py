@@ -244,4 +244,8 @@ def no_joint_but(name: str, joints: Sequence[str], of_link: Sequence[str] | None
 def no_joint(name: object, names: Sequence[str]) -> str:
     """The message for a joint that does not exist."""
     known = ", ".join(map(bare, names))
-    return f"no joint {shown(name)}; {suggestion(name, names)}this linkage has {known}"
+    # the first of a pin that has several hinges
+    near = next(
+        (f"did you mean {shown(one)}? " for one in names if one == f"{name}.1"), suggestion(name, names)
+    )
+    return f"no joint {shown(name)}; {near}this linkage has {known}"

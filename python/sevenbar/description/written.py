@@ -160,8 +160,16 @@ def has_links(raw: Mapping[str, Any]) -> bool:
     """Whether a file has links by name."""
     if "pin" in raw or misnamed_heads(raw):
         return True
-    named = any("between" in table for head in ("joint", "rod") for table in entries(raw, head))
+    named = any("between" in table for head in ("joint", "rod") for table in _tables(raw, head))
     return named or any("links" in table and "kind" not in table for table in entries(raw, "joint"))
+
+
+def _tables(raw: Mapping[str, Any], head: str) -> list[Mapping[str, Any]]:
+    """The tables of a head, also where they are no list but one table, or have names."""
+    value = raw.get(head)
+    if not isinstance(value, Mapping):
+        return entries(raw, head)
+    return [value, *(table for table in value.values() if isinstance(table, Mapping))]
 
 
 def misnamed_heads(raw: Mapping[str, Any]) -> dict[str, str]:
