@@ -109,19 +109,19 @@ def wrong_keys(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Keys of a drawn joint that its kind needs and that are missing, or that its kind has no use for."""
     kind = joint["kind"]
     needs = set(KINDS[kind].drawn_keys)
-    given = joint.keys() & {key for row in KINDS.values() for key in row.drawn_keys}
+    present = joint.keys() & {key for row in KINDS.values() for key in row.drawn_keys}
     missing = []
-    for own, other in (("axis", "axes"), ("axes", "axis")):
-        # one in place of the other is one mistake
-        if own in needs - given and other in given - needs:
-            give = f"give its {own}, as in {own} = {_DIRECTIONS[own]}"
-            missing.append((other, f"does not belong to a joint of kind {kind}; {give}"))
-            needs, given = needs - {own}, given - {other}
-    missing += [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - given)]
+    for right, wrong in (("axis", "axes"), ("axes", "axis")):
+        # one in place of the wrong is one mistake
+        if right in needs - present and wrong in present - needs:
+            give = f"give its {right}, as in {right} = {_DIRECTIONS[right]}"
+            missing.append((wrong, f"does not belong to a joint of kind {kind}; {give}"))
+            needs, present = needs - {right}, present - {wrong}
+    missing += [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - present)]
     if "value" in joint and kind not in READ_KINDS:
         missing.append(("value", no_reading(kind)))
     return missing + [
-        (key, f"does not belong to a joint of kind {kind}; leave it out") for key in sorted(given - needs)
+        (key, f"does not belong to a joint of kind {kind}; leave it out") for key in sorted(present - needs)
     ]
 
 

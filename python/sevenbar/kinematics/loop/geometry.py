@@ -521,9 +521,10 @@ class Loop(Drawable):
     def _no_column(self, name: str, names: Sequence[str]) -> str:
         """What to give in place of a name that no column has: perhaps of a link or of a rod."""
         if name in self.link_names:
-            own = self.graph.joints_of(self.link_names.index(name) + 1)
-            firsts = [self.joints[joint] for joint in own if not self.joints[joint].row.is_ball]
-            return no_joint_but(name, self.drivable(), [joint.name for joint in firsts])
+            numbers = self.graph.joints_of(self.link_names.index(name) + 1)
+            joints = [self.joints[number] for number in numbers]
+            of_link = [joint.name for joint in joints if not joint.row.is_ball]
+            return no_joint_but(name, self.drivable(), of_link)
         if any(name == rod.name for rod in self.rods):
             return no_joint_but(name, self.drivable())
         return no_joint(name, names)
