@@ -112,7 +112,7 @@ def wrong_keys(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
     present = joint.keys() & {key for row in KINDS.values() for key in row.drawn_keys}
     missing = []
     for right, wrong in (("axis", "axes"), ("axes", "axis")):
-        # one in place of the wrong is one mistake
+        # one in place of the other is one mistake
         if right in needs - present and wrong in present - needs:
             give = f"give its {right}, as in {right} = {_DIRECTIONS[right]}"
             missing.append((wrong, f"does not belong to a joint of kind {kind}; {give}"))

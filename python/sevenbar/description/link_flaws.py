@@ -139,7 +139,7 @@ def _apart(edges: Sequence[Edge], ground: str) -> list[Problem]:
 
 def name_flaws(edges: Sequence[Edge]) -> list[Problem]:
     """Names of joints and rods that another one has already; where only one is written, at that one."""
-    problems, taken = [], dict[str, Edge]()
+    problems, taken = dict[str, Problem](), dict[str, Edge]()
     for edge in edges:
         labels = (edge.name, *edge.columns)
         first = next((taken[label] for label in labels if label in taken), edge)
@@ -147,14 +147,11 @@ def name_flaws(edges: Sequence[Edge]) -> list[Problem]:
         if first.place == edge.place:
             continue
         at, other = (edge, first) if edge.is_named else (first, edge)
-        problems.append(
-            Problem(
-                f"{at.place}.name",
-                f"{shown(edge.name)} is taken already, by {other.place}; "
-                "give each joint and rod its own name",
-            )
-        )
-    return problems
+        place = f"{at.place}.name"
+        what = f"{shown(edge.name)} is taken already, by {other.place}; give each joint and rod its own name"
+        # hinges of one pin have one name
+        problems.setdefault(place, Problem(place, what))
+    return list(problems.values())
 
 
 def naming_flaws(

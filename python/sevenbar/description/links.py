@@ -105,7 +105,7 @@ class NamedLinks:
         if problems := spelling_flaws(self.edges) or ground_flaws(self.raw, self.edges):
             return problems
         of_graph = graph_flaws(self.joints, self.rods, self.ground)
-        again = [problem.place for problem in of_graph]
+        again = [problem.place.partition(".")[0] for problem in of_graph]
         return [
             *of_graph,
             *name_flaws([edge for edge in self.edges if edge.place not in again]),
