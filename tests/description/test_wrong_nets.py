@@ -313,6 +313,8 @@ OF_FILES = [
     (re.sub(r"between = .*arm.*\n", "", HUB), "joint: do not name their links; each needs between, as in between"),
     (but(HUB, ('name = "foot"\nkind = "S"', 'name = "foot"\nkind = "U"\naxis = [0, 0, 1]')), "joint[3].axis: does not belong to a joint of kind U; give its axes, as in axes = [[1, 0, 0], [0, 1, 0]]"),
     (but(HUB, ('name = "foot"\nkind = "S"', 'name = "foot"\nkind = "E"\naxes = [[0, 0, 1], [1, 0, 0]]')), "joint[3].axes: does not belong to a joint of kind E; give its axis, as in axis = [0, 0, 1]"),
+    (WATT + "[[point]]\n", "point[1].name: is missing; needed here: name, link, at"),
+    (WATT.partition("[[pin]]")[0], "joint: there is none; give the joints of the linkage"),
     # slips of many digits
     (but(WATT, ("at = [10, 40]", "at = [1e6, 40]")), "pin[2].at: [1000000.0, 40.0, 0.0] is 1e+06 mm from most of the others, and 100 mm is too short to be followed with that"),
     (but(WATT, ("at = [10, 40]", "at = [1e90, 40]")), "pin[2].at: [1e+90, 40.0, 0.0] is 1e+90 mm from most of the others"),

@@ -46,7 +46,11 @@ def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
     """All contradictions of a description, in the order of its keys."""
     written = [key for key in FORMS if key in raw]
     if len(written) != 1:
-        what = f"{' and '.join(written)} are given together" if written else "no linkage is described"
+        if not written:
+            return [
+                Problem("", "no linkage is described; give one of [rssr], [[joint]], [[pin]] or [[link]]")
+            ]
+        what = f"{' and '.join(written)} are given together"
         return [Problem("", f"{what}; give exactly one of [rssr], [[joint]] or [[link]]")]
     (key,) = written
     joints = joints_of(raw)

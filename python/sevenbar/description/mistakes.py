@@ -114,7 +114,7 @@ def with_unknown(
     """Errors, each with the unknown keys of its table that are no errors of their own.
 
     What is unknown in a table that lacks a key was most often written in its place: both are one mistake.
-    Unknown keys for which `is_known` has words remain.
+    Unknown keys for which `is_known` has words remain. The first key that is missing names all needed ones.
     """
     lacking = {detail["loc"][:-1]: detail for detail in reversed(details) if detail["type"] == "missing"}
     lacking.pop((), None)
@@ -124,7 +124,7 @@ def with_unknown(
         owner = lacking.get(detail["loc"][:-1])
         if owner is not None and detail["type"] == "extra_forbidden" and not is_known(detail):
             unknown[id(owner)].append(str(detail["loc"][-1]))
-        else:
+        elif detail["type"] != "missing" or owner in (None, detail):
             remaining.append(detail)
     return [(detail, unknown[id(detail)]) for detail in remaining]
 

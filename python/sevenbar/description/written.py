@@ -160,6 +160,8 @@ def has_links(raw: Mapping[str, Any]) -> bool:
     """Whether a file has links by name."""
     if "pin" in raw or misnamed_heads(raw):
         return True
+    if "ground" in raw and raw.keys().isdisjoint(("rssr", "joint", "link")):
+        return True
     named = any("between" in table for head in ("joint", "rod") for table in _tables(raw, head))
     return named or any("links" in table and "kind" not in table for table in entries(raw, "joint"))
 
