@@ -74,6 +74,7 @@ OF_TABLES = [
     (PINS.replace("frame", "chassis"), "name the link that stands still in a column 'ground', one of chassis, crank"),
     (NO_LINKS, f"no kind of joint; give one of {KINDS} in a column 'kind', or pins their links in a column 'links'"),
     (but(PINS, ("links", "link")), "in a column 'kind', or pins their links in a column 'links'"),
+    (but(PINS, (",220,70", "name,x [mm],y [mm],links,input\n,220,70")), "line 7: is the header again; leave it out"),
     # a mark or a place that nothing would read
     (but(JOINTS, ("frame; upright,,", "frame; upright,,x"), ("lower arm,,x", "lower arm,,")), f"line 6, column 'input': {NOT_A_JOINT}"),
     (but(JOINTS, ("upright,\n", "upright,x\n")), f"line 7, column 'input': {NOT_A_JOINT}"),

@@ -136,6 +136,9 @@ class _Reader(LinkCells):
 
     def description(self) -> TableDescription:
         """The description of the table."""
+        for row in self.filled:
+            if self.grid.rows[row] == self.grid.names:
+                self.wrong("is the header again; leave it out", row)
         if not self.columns and not self.problems:
             self.wrong(f"the columns describe no linkage; name them as in {EXAMPLES}")
         elif not self.filled and not self.problems:
