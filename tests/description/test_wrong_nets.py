@@ -256,6 +256,8 @@ OF_PYTHON = [
     (lambda net: net.loaded(bodies={1: sb.Body(mass=1, centre=(0, 0, 0))}), "forces, stops, sweeps of dimensions, bodies, engines"),
     (lambda net: net.stopped(ranges={"lever": (0, 1)}), "forces, stops, sweeps of dimensions, bodies, engines"),
     (lambda net: net.agreeing(1e-5), "agree: 1e-05 is of a single loop"),
+    (lambda net: net.mobility(agree=1e-5), "agree: 1e-05 is of a single loop"),
+    (lambda net: net.circuit([0] * 7, agree=1e-5), "agree: 1e-05 is of a single loop"),
     (lambda net: net.motion(output="coupler"), "output: 'coupler' is a link; give one of its joints: pin_2, pin_3"),
     (lambda net: net.motion(input="cranc"), "input: no joint 'cranc'; did you mean 'crank'?"),
     (lambda net: net.assembly_modes("3 mm"), "theta: '3 mm' is not a number with a unit that fits"),

@@ -255,7 +255,8 @@ class Linkage(Solvable):
         Gruebler -2, redundant constraints 3, moves with 1
         """
         column = self.input_column(input)
-        return self._net.mobility(column) if self.net else self.agreeing(agree)._general.mobility(column)
+        agreeing = self.agreeing(agree)
+        return self._net.mobility(column) if self.net else agreeing._general.mobility(column)
 
     @property
     def order(self) -> Order:
@@ -455,10 +456,11 @@ class Linkage(Solvable):
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
         values = self._pose(pose)
+        agreeing = self.agreeing(agree)
         if self.net:
             return self._net.circuit(values, column, output_column, samples, rate, law)
         self._refuse_unheld()
-        return self.agreeing(agree)._general.circuit(values, column, output_column, samples, rate, law)
+        return agreeing._general.circuit(values, column, output_column, samples, rate, law)
 
     def _net_ratio_at_rest(self, pose: Floats, column: int, output: int) -> float | None:
         """d(output)/d(input) of a net at a pose (columns,) where both rest; `None` where one moves."""
