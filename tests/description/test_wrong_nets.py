@@ -258,6 +258,8 @@ OF_PYTHON = [
     (lambda net: net.agreeing(1e-5), "agree: 1e-05 is of a single loop"),
     (lambda net: net.mobility(agree=1e-5), "agree: 1e-05 is of a single loop"),
     (lambda net: net.circuit([0] * 7, agree=1e-5), "agree: 1e-05 is of a single loop"),
+    (lambda net: net.motion(method="closed"), "method: 'closed' is not offered; give auto or general"),
+    (lambda net: net.assembly_modes(0, method="closed"), "method: 'closed' is not offered; give auto or general"),
     (lambda net: net.motion(output="coupler"), "output: 'coupler' is a link; give one of its joints: pin_2, pin_3"),
     (lambda net: net.motion(input="cranc"), "input: no joint 'cranc'; did you mean 'crank'?"),
     (lambda net: net.assembly_modes("3 mm"), "theta: '3 mm' is not a number with a unit that fits"),

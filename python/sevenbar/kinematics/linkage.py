@@ -236,10 +236,10 @@ class Linkage(Solvable):
         """
         column = self.input_column(input)
         value = joint_number("theta", theta, self, column)
-        agreeing = self.agreeing(agree)
+        agreeing, closed_form = self.agreeing(agree), self._has_closed_form(method)
         if self.net:
             return self._net.modes(column, value)
-        if self._has_closed_form(method):
+        if closed_form:
             return self._closed_form.modes(column, value)
         self._refuse_unheld()
         return agreeing._general.modes(column, value)
@@ -418,10 +418,10 @@ class Linkage(Solvable):
             [('crank-rocker', 1), ('double-rocker', 0), ('crank-rocker', 1)]
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
-        agreeing = self.agreeing(agree)
+        agreeing, closed_form = self.agreeing(agree), self._has_closed_form(method)
         if self.net:
             result = self._net.motion(column, output_column, samples, rate, law)
-        elif self._has_closed_form(method):
+        elif closed_form:
             result = self._closed_form.motion(column, samples, rate, law)
         else:
             self._refuse_unheld()
