@@ -86,7 +86,7 @@ LONGEST_PATH = 4_096
 LONGEST_NAME = 200
 
 #: What to give for a name.
-NAME_TO_GIVE = f"some text in quotes, at most {LONGEST_NAME} characters"
+NAME_TO_GIVE = f"printable text in quotes, at most {LONGEST_NAME} characters"
 
 #: Mistakes that one message lists; more of them come from a program, and all from one cause.
 MOST_LISTED = 50
@@ -229,7 +229,23 @@ def given_path(key: str, value: str | os.PathLike[str]) -> Path:
     return Path(value)
 
 
+def no_joint_but(name: str, joints: Sequence[str], of_link: Sequence[str] | None = None) -> str:
+    """The message for a rod where a joint belongs, or for a link, of which some joints may be given.
+
+    >>> no_joint_but("coupler", ["pin_2", "pin_3", "rocker"], of_link=["pin_2", "pin_3"])
+    "'coupler' is a link; give one of its joints: pin_2, pin_3"
+    """
+    if of_link:
+        return f"{shown(name)} is a link; give one of its joints: {', '.join(map(bare, of_link))}"
+    what = "a rod, whose length stays" if of_link is None else "a link that balls and rods alone hold"
+    return f"{shown(name)} is {what}; give a joint: {', '.join(map(bare, joints))}"
+
+
 def no_joint(name: object, names: Sequence[str]) -> str:
     """The message for a joint that does not exist."""
     known = ", ".join(map(bare, names))
-    return f"no joint {shown(name)}; {suggestion(name, names)}this linkage has {known}"
+    # the first of a pin that has several hinges
+    near = next(
+        (f"did you mean {shown(one)}? " for one in names if one == f"{name}.1"), suggestion(name, names)
+    )
+    return f"no joint {shown(name)}; {near}this linkage has {known}"

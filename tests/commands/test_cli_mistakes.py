@@ -150,7 +150,7 @@ def test_a_name_nested_a_thousand_times_is_one_short_message(folder):
                 "M: is a key of [rssr]; write it below that head",
                 "speed: is a key of [drive]; write it below that head",
                 "twist: is a key of [[link]]; write it below that head",
-                "no linkage is described; give exactly one of [rssr], [[joint]] or [[link]]",
+                "no linkage is described; give one of [rssr], [[joint]], [[pin]] or [[link]]",
             ],
         ),
         (

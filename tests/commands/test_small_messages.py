@@ -165,7 +165,9 @@ def test_a_column_that_is_not_read_is_named_where_a_kind_lacks(tmp_path):
     table = tmp_path / "loop.csv"
     rows = [f"{name};R;{x};0;0;0;0;1" for x, name in enumerate("abcd")]
     table.write_text("\n".join(["name;Typ;x [mm];y [mm];z [mm];ax;ay;az", *rows]), encoding="utf-8")
-    assert "in a column 'kind'; not read: 'Typ'" in mistake("analyze", str(table))
+    assert "in a column 'kind', or pins their links in a column 'links'; not read: 'Typ'" in mistake(
+        "analyze", str(table)
+    )
     for index in ("_(i-1)", " (i-1)", "[i-1]", "_{i-1}"):
         table.write_text(f"a{index},alpha{index},d_i,theta_i\n0,0,0,0\n1,0,0,0\n", encoding="utf-8")
         assert "modified (Craig's) Denavit-Hartenberg rows" in mistake("analyze", str(table))

@@ -180,7 +180,7 @@ def test_each_mistake_in_the_drawing_has_its_own_message(old, new, message):
 
 def test_a_text_must_describe_exactly_one_linkage():
     assert complaints("format = 1") == [
-        "f.toml: no linkage is described; give exactly one of [rssr], [[joint]] or [[link]]"
+        "f.toml: no linkage is described; give one of [rssr], [[joint]], [[pin]] or [[link]]"
     ]
     assert "given together" in complaints(DIMENSIONS + DRAWN[DRAWN.index("[[joint]]") :])[0]
     assert complaints("format = 1\njoint = 3\ndrive = 4") == [

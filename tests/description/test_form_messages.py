@@ -161,8 +161,7 @@ def with_changes(index, **changes):
         (
             toml(with_changes(1, axes=None, axis=[0, 0, 1])),
             [
-                "joint[2].axes: is missing; a joint of kind U needs it",
-                "joint[2].axis: does not belong to a joint of kind U; leave it out",
+                "joint[2].axis: does not belong to a joint of kind U; give its axes, as in axes = [[1, 0, 0], [0, 1, 0]]",
             ],
         ),
         (

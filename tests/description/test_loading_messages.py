@@ -97,7 +97,7 @@ KNOWN = (
         ("[body]\nlink = 2\nmass = 2\nsolid = 'rod'\n",
          ["body: {'link': 2, 'mass': 2, 'solid': 'rod'} does not fit here; write [[body]] before each one"]),
         ("[[forces]]\ngravity = [0, 0, 1]\n",
-         ["forces: [{'gravity': [0, 0, 1]}] is not a table; give keys with values"]),
+         ["forces: [{'gravity': [0, 0, 1]}] is a list; write [forces], once"]),
         (
             "[forces]\ngravity = 9.81\n",
             ["forces.gravity: 9.81 is not a point or direction; give three numbers, as in [0, 0, 1]"],

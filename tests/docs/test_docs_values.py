@@ -68,7 +68,7 @@ def boxed(text: str) -> str:
 
 
 def placed(text: str) -> str:
-    point = point_of(None, 4, text)
+    point = point_of(None, "4", text, LINKAGE)
     assert isinstance(point, tuple)
     return f"({', '.join(f'{value:g}' for value in point[1])})"
 
@@ -96,7 +96,7 @@ READERS: dict[str, Callable[[str], str]] = {
 REFUSING: dict[str, Callable[[str], object]] = {
     "--over": lambda text: axes_of(DRAFT, split_ranges([text, "L3=1:2"])),
     "--size": lambda text: lengths("--size", text, "mm"),
-    "--at": lambda text: point_of(None, 4, text),
+    "--at": lambda text: point_of(None, "4", text, LINKAGE),
     "--box": lambda text: parsed_box(text, "mm"),
     "L1": lambda text: value_of(text, "length"),
     "mass": lambda text: quantity_of(text, "mass"),

@@ -78,7 +78,7 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "array for points": (lambda: sb.slider_crank(1, 2, points=np.zeros(3)), "points: array([0., 0., 0.]) is not points by"),
     "deep list for a unit": (lambda: sb.bennett(1, 1, 1, length_unit=nested()), "length_unit: a value too large to print"),
     "body of no link": (lambda: sb.Loading(bodies={"a": sb.Body(1, (0, 0, 0))}), "bodies: 'a' is not a link; give 1"),
-    "point without a name": (lambda: sb.Point(1, "b", [1]), "name: 1 is not a name; give some text in quotes"),
+    "point without a name": (lambda: sb.Point(1, "b", [1]), "name: 1 is not a name; give printable text in quotes"),
     "point of no link": (lambda: sb.Point("P", 0, (1, 2, 3)), "link: 0 is not a link; give 1 or more"),
     "point of one number": (lambda: sb.Point("P", 1, [1]), "at: 1 numbers; give three"),
     "joint of no kind": (lambda: sb.Joint("Q", "a"), "kind: 'Q' is not a joint kind; give R, P, H, C, U, S, E, K or L"),
@@ -87,7 +87,7 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "drive at no speed": (lambda: sb.Drive("a", "b", float("nan")), "speed: nan is not a finite number"),
     "load on no link": (lambda: sb.Load(1.5, torque=(0, 0, 1)), "link: 1.5 is not a link; give 1 or more"),
     "spring of a number": (lambda: sb.Spring(1, links=3), "links: 3 are not two different links"),
-    "spring of no joint": (lambda: sb.Spring(1, joint=3), "joint: 3 is not a name; give some text in quotes"),
+    "spring of no joint": (lambda: sb.Spring(1, joint=3), "joint: 3 is not a name; give printable text in quotes"),
     "linkage of shapes": (
         lambda: replace(sb.load("rssr"), frames=np.eye(4)), "frames: an array of shape (4, 4), not (4, 2, 4, 4); make"),
     "linkage without a drive": (lambda: replace(sb.load("rssr"), drive=None), "drive: None is not a drive; make"),

@@ -7,20 +7,20 @@ from typing import Annotated
 
 import typer
 
-from sevenbar.arrays import whole_number
 from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
-from sevenbar.commands.given import opened
+from sevenbar.commands.given import link_of, opened
 from sevenbar.errors import RequestError
 
 
 def axodes(
     linkage: options.Source,
     link: Annotated[
-        list[int] | None, typer.Option(help="A link, counted from 1; may be repeated; all moving ones.")
+        list[str] | None,
+        typer.Option(help="A link, counted from 1; of a net, or its name; may be repeated; all moving ones."),
     ] = None,
     relative_to: Annotated[
-        int | None, typer.Option(help="The link against which they move; the ground by default.")
+        str | None, typer.Option(help="The link against which they move; the ground by default.")
     ] = None,
     samples: options.Samples = 360,
     input_joint: options.InputJoint = None,
@@ -37,14 +37,13 @@ def axodes(
     from sevenbar.reporting.screws import axodes_report
 
     loaded = opened(linkage, agree)
-    ground = loaded.graph.ground
-    against = ground if relative_to is None else relative_to
-    links = list(dict.fromkeys(link or [n for n in loaded.graph.moving if n != against]))
-    for name, value in (*(("link", n) for n in links), ("relative-to", against)):
-        whole_number(f"--{name}", value, 1, ground, "a link", ", the last is the ground")
+    base = None if relative_to is None else link_of("--relative-to", relative_to, loaded)
+    against = loaded.graph.ground if base is None else base
+    asked = [link_of("--link", one, loaded) for one in link or ()]
+    links = list(dict.fromkeys(asked or [n for n in loaded.graph.moving if n != against]))
     if against in links:
-        raise RequestError(f"--relative-to: link {against} is one of --link; give another")
-    report = axodes_report(links, relative_to)
+        raise RequestError(f"--relative-to: {loaded.link_name(against)} is one of --link; give another")
+    report = axodes_report(links, base)
     check_out(report, out, force=force)
     motion = loaded.motion(samples, input=input_joint, output=output, speed=speed)
     deliver(motion, report, out, json=json, force=force)

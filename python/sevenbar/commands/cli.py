@@ -17,7 +17,6 @@ import typer
 import typer.core
 
 import sevenbar as sb
-from sevenbar.arrays import whole_number
 from sevenbar.commands import options
 from sevenbar.commands.command import Command
 from sevenbar.commands.consent import confirm, long_motion, table_ahead
@@ -184,17 +183,21 @@ def analyze(
         # the report has it
         warnings.simplefilter("ignore", AngleUnitWarning)
     loaded = opened(linkage, agree)
+    read = law_of(law, loaded, input_joint, law_joint, law_circuit)
     if loaded.net is not None:
         from sevenbar.reporting.net import NET, driven_by
 
     if loaded.net is not None and (moved_net := driven_by(loaded, input_joint, speed)).mobility().finite != 1:
         # there is no motion to report
+        if animate is not None:
+            raise RequestError("--animate: no one input moves it; leave it out, the report says why")
+        sample_count("samples", samples)
+        loaded.end_columns(input_joint, output)
         check_out(NET, out, force=force)
         deliver(moved_net, NET, out, json=json, force=force)
         return
     report = motion_report(formats)
     check_out(report, out, force=force)
-    read = law_of(law, loaded, input_joint, law_joint, law_circuit)
     moved = partial(loaded.motion, input=input_joint, output=output, speed=speed, law=read)
     if out is not None and read is None:
         confirm(table_ahead(moved, samples, "motion.csv"), yes=yes)
@@ -280,7 +283,11 @@ def modes(
 
     loaded = opened(linkage, agree)
     column = loaded.input_column(input_joint, "--input")
-    check_targets([] if out is None else [out], force=force)
+    if out is not None:
+        from sevenbar.drawing.figure import format_of
+
+        format_of(out)
+        check_targets([out], force=force)
     value = input_value("--at", "0" if at is None else at, loaded, input_joint)
     result = loaded.assembly_modes(value, input=loaded.columns[column])
     poses, limit = rates_at(loaded, column, value, speed, result)
@@ -337,7 +344,7 @@ def plot_(
         check_word("--parts", part, PATH_PARTS, "a part of a point's figure")
     look = replace(look_of(view, size, style), title=not no_title, parts=chosen)
     loaded = opened(linkage, agree)
-    points = _points(loaded, point_of(point, link, at))
+    points = _points(loaded, point_of(point, link, at, loaded))
     for one in {"point", "coupler"} & set(kinds) if not points else ():
         if kind is not None and one in options.words(kind):
             raise RequestError(
@@ -380,8 +387,7 @@ def _points(linkage: sb.Linkage, asked: str | tuple[int, Place] | None) -> Place
             raise RequestError(f"--point: no point {shown(asked)}; this linkage has {known}")
         return {asked: named[asked]}
     link, (u, v, w) = asked
-    whole_number("--link", link, 1, linkage.graph.ground, "a link", ", the last is the ground")
-    return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
+    return {f"{linkage.link_name(link)} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
 
 
 @app.command(cls=Command)

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import sevenbar as sb
-from sevenbar.errors import RequestError, shown
+from sevenbar.arrays import whole_number
+from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.linkage import closure_tolerance
 from sevenbar.kinematics.loop.joint_text import joint_value
 from sevenbar.text.amounts import amount_in
@@ -66,7 +67,27 @@ def input_value(option: str, text: str, linkage: sb.Linkage, input_joint: str | 
     return joint_value(text, option, linkage, linkage.input_column(input_joint, "--input"))
 
 
-def point_of(name: str | None, link: int | None, at: str | None) -> str | tuple[int, Place] | None:
+def link_of(option: str, text: str, linkage: sb.Linkage) -> int:
+    """The link, counted from 1, of an option that gives its number, or its name in a net.
+
+    >>> link_of("--link", "lever", sb.load("watt"))
+    5
+    """
+    names = linkage.link_names
+    if text in names:
+        return names.index(text) + 1
+    try:
+        number = int(text)
+    except ValueError:
+        known = ", ".join(names) or f"1 to {linkage.graph.ground}, the last is the ground"
+        what = f"{shown(text)} is not a link; {suggestion(text, names)}give {known}"
+        raise RequestError(f"{option}: {what}") from None
+    return whole_number(option, number, 1, linkage.graph.ground, "a link", ", the last is the ground")
+
+
+def point_of(
+    name: str | None, link: str | None, at: str | None, linkage: sb.Linkage
+) -> str | tuple[int, Place] | None:
     """The point of --point, or of --link with --at; `None` where nothing is given."""
     if name is not None:
         if link is not None or at is not None:
@@ -77,7 +98,7 @@ def point_of(name: str | None, link: int | None, at: str | None) -> str | tuple[
     if link is None or at is None:
         missing = "--at" if at is None else "--link"
         raise RequestError(f"{missing}: missing; give --point NAME, or --link with --at")
-    return link, three_numbers("--at", at, "a place", "-100,-90,-80")
+    return link_of("--link", link, linkage), three_numbers("--at", at, "a place", "-100,-90,-80")
 
 
 def look_of(view: str | None, size: str | None, style: str | None) -> FigureLook:

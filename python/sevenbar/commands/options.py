@@ -123,7 +123,8 @@ LawCircuit = Annotated[
 ]
 PointName = Annotated[str | None, typer.Option("--point", help="A named point of the linkage.")]
 PointLink = Annotated[
-    int | None, typer.Option("--link", help="The link of a point given by --at, counted from 1.")
+    str | None,
+    typer.Option("--link", help="The link of a point given by --at, counted from 1; of a net, or its name."),
 ]
 PointPlace = Annotated[
     str | None,

@@ -70,7 +70,7 @@ def path(
         )
     if phase and not timing:
         raise RequestError("--phase: inputs have no say without --timing; give both, or leave --phase out")
-    asked = point_of(point, link, at)
+    asked = point_of(point, link, at, draft.linkage)
     if asked is None:
         raise RequestError(
             f"--point: missing; {missing_point(draft.linkage)}, or a place on a link, as in "

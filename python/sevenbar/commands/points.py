@@ -12,7 +12,7 @@ import typer
 import sevenbar as sb
 from sevenbar.commands import options
 from sevenbar.commands.deliver import check_out, deliver
-from sevenbar.commands.given import check_law, drafted, law_of, opened
+from sevenbar.commands.given import check_law, drafted, law_of, link_of, opened
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, check_word, shown
 from sevenbar.text.amounts import amount_in
@@ -34,7 +34,9 @@ LEAST = ("acceleration", "velocity", "jerk", "rms")
 
 def point(
     linkage: options.Source,
-    link: Annotated[int, typer.Option(help="The link that carries the point, counted from 1.")],
+    link: Annotated[
+        str, typer.Option(help="The link that carries the point, counted from 1; of a net, or its name.")
+    ],
     box: Annotated[
         str, typer.Option(help="Where on the link, as points are written: '-200:200,-200:200,0:50'.")
     ],
@@ -71,13 +73,14 @@ def point(
         raise RequestError("--least: a path near a curve is looked for with --curve; leave one of them out")
     draft = drafted(linkage, agree)
     loaded = draft.linkage
+    carrier = link_of("--link", link, loaded)
     sides = parsed_box(box, loaded.length_unit)
     called = name or ("nearest_path" if curve is not None else f"least_{least or 'acceleration'}")
     if out is not None and called in [point.name for point in draft.linkage.points]:
         raise RequestError(f"--name: {linkage} has a point {shown(called)} already; give another name")
 
     def toml(result: LeastPoint | NearestPath) -> str:
-        longer = draft.with_point(called, link, result.at.tolist())
+        longer = draft.with_point(called, carrier, result.at.tolist())
         # a name that no file may have is refused here
         _ = longer.linkage
         return longer.toml()
@@ -88,11 +91,11 @@ def point(
     search: Callable[..., Any]
     if curve is not None:
         places, inputs = read_curve(curve, motion.linkage, motion.input)
-        search = partial(nearest_path_point, motion, link, places, sides, inputs=inputs)
+        search = partial(nearest_path_point, motion, carrier, places, sides, inputs=inputs)
     else:
         of, measure = _least(least or "acceleration")
-        search = partial(least_point, motion, link, sides, of=of, measure=measure)
-    with progress_bar(f"searching a point of link {link} of {loaded.heading}") as progress:
+        search = partial(least_point, motion, carrier, sides, of=of, measure=measure)
+    with progress_bar(f"searching a point of {loaded.link_name(carrier)} of {loaded.heading}") as progress:
         result = search(circuit=circuit, branch=branch, progress=progress)
     deliver(result, report, out, json=json, force=force)
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any
+from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -138,7 +139,13 @@ def _drawn(
 ) -> Linkage:
     """The linkage of tables as drawn, those that are not empty; the first may be a data frame or a file."""
     key, first = next(iter(lists.items()))
-    if isinstance(first, str | os.PathLike | Mapping) or hasattr(first, "columns"):
+    # one mapping for each joint, by name, is no mapping of columns, nor is that of one joint
+    columns = (
+        isinstance(first, Mapping)
+        and "at" not in first
+        and not any(isinstance(value, Mapping) for value in first.values())
+    )
+    if isinstance(first, str | os.PathLike) or columns or hasattr(first, "columns"):
         return _of_table(key, first, name, length_unit, speed, drive, ground, lists)
     raw = head_of(name, length_unit, speed)
     if drive is not None:
@@ -146,11 +153,17 @@ def _drawn(
     if ground is not None:
         raw["ground"] = ground
     for key, values in lists.items():
-        rows = _plain(values)
-        check_kind(key, rows, list, f"a list; give one with a mapping for each of the {key}")
+        rows = _rows_of(key, values)
         if rows or key in ("joints", "pins", "points"):
             raw[key.removesuffix("s")] = rows
     return from_description(raw)
+
+
+def _rows_of(key: str, values: Any) -> list[Any]:
+    """The tables of a list, or `RequestError` for what is none."""
+    rows = _plain(values)
+    check_kind(key, rows, list, f"a list; give one with a mapping for each of the {key}")
+    return cast("list[Any]", rows)
 
 
 def _of_table(
@@ -166,6 +179,8 @@ def _of_table(
     """The linkage of a table as drawn, with points and rods besides."""
     from sevenbar.description.table_files import table_of
 
+    if isinstance(source, str | os.PathLike) and Path(source).suffix.lower() == ".toml":
+        raise RequestError(f"{key}: {source} is a linkage file, no table; give it to sevenbar.load")
     if length_unit != "mm":
         raise RequestError("length_unit: is given in addition to a table; write it in the head, as in x [cm]")
     result, place = table_of(source, ground or "")
@@ -175,7 +190,7 @@ def _of_table(
         result.raw["name"] = name
     result.drive_by(drive, None if speed == 1.0 else _plain(speed))
     for head in ("point", "rod"):
-        if more := _plain(lists.get(f"{head}s", ())):
+        if more := _rows_of(f"{head}s", lists.get(f"{head}s", ())):
             result.raw[head] = [*result.raw.get(head, []), *more]
     return result.linkage(from_description, place)
 

@@ -46,7 +46,11 @@ def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
     """All contradictions of a description, in the order of its keys."""
     written = [key for key in FORMS if key in raw]
     if len(written) != 1:
-        what = f"{' and '.join(written)} are given together" if written else "no linkage is described"
+        if not written:
+            return [
+                Problem("", "no linkage is described; give one of [rssr], [[joint]], [[pin]] or [[link]]")
+            ]
+        what = f"{' and '.join(written)} are given together"
         return [Problem("", f"{what}; give exactly one of [rssr], [[joint]] or [[link]]")]
     (key,) = written
     joints = joints_of(raw)
@@ -101,16 +105,27 @@ def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list
     return problems
 
 
+#: The keys of directions, of which a kind has one at most, each with an example.
+_DIRECTIONS = {"axis": "[0, 0, 1]", "axes": "[[1, 0, 0], [0, 1, 0]]"}
+
+
 def wrong_keys(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Keys of a drawn joint that its kind needs and that are missing, or that its kind has no use for."""
     kind = joint["kind"]
     needs = set(KINDS[kind].drawn_keys)
-    given = joint.keys() & {key for row in KINDS.values() for key in row.drawn_keys}
-    missing = [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - given)]
+    present = joint.keys() & {key for row in KINDS.values() for key in row.drawn_keys}
+    missing = []
+    for right, wrong in (("axis", "axes"), ("axes", "axis")):
+        # one in place of the other is one mistake
+        if right in needs - present and wrong in present - needs:
+            give = f"give its {right}, as in {right} = {_DIRECTIONS[right]}"
+            missing.append((wrong, f"does not belong to a joint of kind {kind}; {give}"))
+            needs, present = needs - {right}, present - {wrong}
+    missing += [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - present)]
     if "value" in joint and kind not in READ_KINDS:
         missing.append(("value", no_reading(kind)))
     return missing + [
-        (key, f"does not belong to a joint of kind {kind}; leave it out") for key in sorted(given - needs)
+        (key, f"does not belong to a joint of kind {kind}; leave it out") for key in sorted(present - needs)
     ]
 
 

@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from sevenbar.errors import Problem, is_name, shown
+from sevenbar.description.not_covered import OF_JOINTS
+from sevenbar.errors import NAME_TO_GIVE, Problem, is_name, shown
 from sevenbar.kinematics.loop.joints import KINDS, column_names
 
 #: The axis of a pin.
@@ -40,6 +41,12 @@ class Edge:
         return tuple(column_names(self.name, KINDS[kind].freedoms))
 
     @property
+    def is_ball(self) -> bool:
+        """Whether it is known to be a ball."""
+        kind = self.table.get("kind")
+        return isinstance(kind, str) and kind in KINDS and KINDS[kind].is_ball
+
+    @property
     def links_place(self) -> str:
         """Where the file has its links."""
         return f"{self.place}.{'links' if self.place.startswith('pin') else 'between'}"
@@ -47,10 +54,15 @@ class Edge:
 
 def edge_of(place: str, table: Mapping[str, Any], default: str) -> Edge | Problem:
     """A joint or a rod, with a `default` for its name; or what is wrong with its links."""
+    if "links" in table and "kind" not in table and place.startswith("joint"):
+        return Problem(place, "is a pin, with links and no kind; write it as [[pin]]")
     if "between" not in table:
         message = "is missing; where one joint says which two links it is between, all do"
-        if "links" in table:
-            message = f"is missing; a joint has it in place of links, as in between = {EXAMPLE}"
+        if others := [key for key in OF_JOINTS if key in table]:
+            what = place.partition("[")[0]
+            message = (
+                f"is missing; a {what} has it in place of {' and '.join(others)}, as in between = {EXAMPLE}"
+            )
         return Problem(f"{place}.between", message)
     between = table["between"]
     if wrong := _no_names(between, "two links, one after the other"):
@@ -67,6 +79,8 @@ def edge_of(place: str, table: Mapping[str, Any], default: str) -> Edge | Proble
 
 def hinges_of(place: str, table: Mapping[str, Any], default: str) -> list[Edge] | Problem:
     """The hinges of a pin, with a `default` for its name; or what is wrong with its links or its place."""
+    if "between" in table and "kind" in table:
+        return Problem(place, "is a joint, with between and a kind; write it as [[joint]]")
     if "links" not in table:
         message = f"is missing; give the names of two or more, as in {EXAMPLE}"
         if "between" in table:
@@ -113,11 +127,14 @@ def names_in(text: str) -> list[str]:
 def _no_names(links: Any, what: str) -> str:
     """What is wrong with a value that should be a list of names; empty for one that is."""
     if isinstance(links, str) and links.strip():
-        names = json.dumps(names_in(links), ensure_ascii=False)
-        return f"{shown(links)} is one text; give {what}, as a list: {names}"
+        names = names_in(links)
+        example = json.dumps(names, ensure_ascii=False) if len(names) > 1 else EXAMPLE
+        return f"{shown(links)} is one text; give {what}, as a list: {example}"
     if not isinstance(links, list | tuple) or not links:
         return f"{shown(links)} are no links; give {what}, as in {EXAMPLE}"
     wrong = next((link for link in links if not is_name(link)), None)
+    if isinstance(wrong, str) and wrong.strip():
+        return f"{shown(wrong)} is not the name of a link; give {NAME_TO_GIVE}"
     if wrong is not None or None in links:
         return f"{shown(wrong)} is not the name of a link; give {what}, as in {EXAMPLE}"
     return ""

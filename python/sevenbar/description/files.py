@@ -92,8 +92,14 @@ _SLIPS = (
     ),
     (r"[^=]+=\s*[-+]?\d+,\d+\s*(#.*)?", "write a decimal point, as in 0.5"),
     (r"\s*[A-Za-z_]\w*\s*=\s*[A-Za-z_][^\"']*", 'write a text in quotes, as in kind = "R"'),
+    (
+        r"[^=#]+=\s*\[.*[\[,]\s*[A-Za-z_][^\"'\[\],]*[\],].*",
+        'write each text in quotes, as in ["frame", "crank"]',
+    ),
+    (r"[^=#]+=.*\d\s+[-+.\d].*\].*", "write a comma between numbers, as in [10, 40]"),
+    (r"[^=#]+=[^\]#]*\[[^\]#]*", "close the list with ]"),
     (r"\s*\w+\s*:.*", "write a key and its value with '=', as in M = 700"),
-    (r"\s*\[+[^\]]*", "close the head of a table, as in [rssr] or [[joint]]"),
+    (r"\s*\[\[[^\]]*\]?\s*|\s*\[[^\]]*", "close the head of a table, as in [rssr] or [[joint]]"),
 )
 
 
@@ -200,14 +206,19 @@ def _syntax_problem(error: ValueError, lines: list[str]) -> str:
     reason = match[1][:1].lower() + match[1][1:_LONGEST_REASON]
     if match[2] is None:
         return f"not valid TOML: {reason}, at the end of the file; {example}"
-    line = lines[int(match[2]) - 1]
+    number = int(match[2])
+    if reason == "unclosed array":
+        # what is read there belongs to no list: the line above that opens one is at fault
+        above = (n for n in range(number, 0, -1) if lines[n - 1].count("[") > lines[n - 1].count("]"))
+        number = next(above, number)
+    line = lines[number - 1]
     if reason.startswith(("cannot overwrite", "cannot declare")):
         head = re.fullmatch(r"\s*\[\s*(\w+)\s*\]\s*(#.*)?", line)
         listed = head is not None and head[1] in LISTED
         remedy = f"write [[{head[1]}]] before each one" if head and listed else "leave one of them out"
-        return f"line {match[2]}: {shown(line.strip())} stands twice; {remedy}"
+        return f"line {number}: {shown(line.strip())} stands twice; {remedy}"
     remedy = next((hint for slip, hint in _SLIPS if re.fullmatch(slip, line)), example)
-    return f"line {match[2]}: {shown(line.strip())} is not valid TOML: {reason}; {remedy}"
+    return f"line {number}: {shown(line.strip())} is not valid TOML: {reason}; {remedy}"
 
 
 def _in_gallery(source: str | os.PathLike[str]) -> bool:

@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sevenbar.description.edges import Edge
-from sevenbar.description.written import entries
-from sevenbar.errors import Problem, is_name, nearest, shown, suggestion
+from sevenbar.description.written import drive_of, entries
+from sevenbar.errors import Problem, is_name, nearest, no_joint_but, shown, suggestion
 
 #: Most joints and rods of a net.
 MOST_EDGES = 40
@@ -31,11 +31,10 @@ def ground_flaws(raw: Mapping[str, Any], edges: Sequence[Edge]) -> list[Problem]
     written = raw.get("ground")
     if is_name(written) and written.strip() in named:
         return []
-    for head in LISTS:
-        for i, table in enumerate(entries(raw, head), 1):
-            if written is None and "ground" in table:
-                message = "is a key of the whole file; write it above the first table"
-                return [Problem(f"{head}[{i}].ground", message)]
+    below = {f"{head}[{i}]": table for head in LISTS for i, table in enumerate(entries(raw, head), 1)}
+    for place, table in {"drive": drive_of(raw), **below}.items():
+        if written is None and "ground" in table:
+            return [Problem(f"{place}.ground", "is a key of the whole file; write it above the first table")]
     known = ", ".join(named)
     if written is None:
         return [Problem("ground", f"is missing; name the link that stands still, one of {known}")]
@@ -140,7 +139,7 @@ def _apart(edges: Sequence[Edge], ground: str) -> list[Problem]:
 
 def name_flaws(edges: Sequence[Edge]) -> list[Problem]:
     """Names of joints and rods that another one has already; where only one is written, at that one."""
-    problems, taken = [], dict[str, Edge]()
+    problems, taken = dict[str, Problem](), dict[str, Edge]()
     for edge in edges:
         labels = (edge.name, *edge.columns)
         first = next((taken[label] for label in labels if label in taken), edge)
@@ -148,14 +147,11 @@ def name_flaws(edges: Sequence[Edge]) -> list[Problem]:
         if first.place == edge.place:
             continue
         at, other = (edge, first) if edge.is_named else (first, edge)
-        problems.append(
-            Problem(
-                f"{at.place}.name",
-                f"{shown(edge.name)} is taken already, by {other.place}; "
-                "give each joint and rod its own name",
-            )
-        )
-    return problems
+        place = f"{at.place}.name"
+        what = f"{shown(edge.name)} is taken already, by {other.place}; give each joint and rod its own name"
+        # hinges of one pin have one name
+        problems.setdefault(place, Problem(place, what))
+    return list(problems.values())
 
 
 def naming_flaws(
@@ -191,18 +187,16 @@ def drive_flaws(drive: Mapping[str, Any], joints: Sequence[Edge], rods: Sequence
     """Links and rods that are named where a joint drives."""
     problems = []
     names = {joint.name for joint in joints}
+    links = {link for joint in joints for link in joint.between}
+    may = [joint for joint in joints if not joint.is_ball]
     for key in ("joint", "output"):
         word = drive.get(key)
-        if not isinstance(word, str) or word.strip() in names:
+        if not isinstance(word, str) or (name := word.strip()) in names:
             continue
-        of_link = dict.fromkeys(joint.name for joint in joints if word.strip() in joint.between)
-        if of_link:
-            what = f"{shown(word)} is a link; give one of its joints: {', '.join(of_link)}"
-        elif word.strip() in [rod.name for rod in rods]:
-            what = f"{shown(word)} is a rod, whose length stays; give a joint: {', '.join(sorted(names))}"
-        else:
-            continue
-        problems.append(Problem(f"drive.{key}", what))
+        of_link = [joint.name for joint in may if name in joint.between] if name in links else None
+        if of_link is not None or name in [rod.name for rod in rods]:
+            what = no_joint_but(name, [joint.name for joint in may], of_link)
+            problems.append(Problem(f"drive.{key}", what))
     return problems
 
 

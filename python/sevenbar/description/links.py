@@ -21,8 +21,9 @@ from sevenbar.description.link_flaws import (
     naming_flaws,
     spelling_flaws,
 )
-from sevenbar.description.written import drive_of, entries, has_links
-from sevenbar.errors import DescriptionError, Problem, is_name, shown
+from sevenbar.description.not_covered import OF_JOINTS
+from sevenbar.description.written import LINK_HEADS, drive_of, entries, has_links, misnamed_heads
+from sevenbar.errors import DescriptionError, Problem, bare, is_name, shown
 from sevenbar.kinematics.loop.graph import Graph
 
 #: Keys of a whole file that only links by name need.
@@ -45,10 +46,20 @@ class NamedLinks:
     rods: list[Edge] = field(default_factory=list)
 
     def __post_init__(self) -> None:
+        for word, head in sorted(misnamed_heads(self.raw).items()):
+            self.problems.append(Problem(bare(word), f"is not known here; write [[{head}]]"))
+        if self.problems:
+            # joints and links are not known without them
+            return
         for head in ("joint", "pin"):
             if head in self.raw and not entries(self.raw, head) and self.raw[head] != []:
                 self.problems.append(Problem(head, f"{shown(self.raw[head])} is no list; write [[{head}]]"))
-        for i, table in enumerate(entries(self.raw, "joint"), 1):
+        joints = entries(self.raw, "joint")
+        if joints and not any(table.keys() & {"between", *OF_JOINTS} for table in joints):
+            what = 'do not name their links; each needs between, as in between = ["frame", "crank"]'
+            self.problems.append(Problem("joint", what))
+            return
+        for i, table in enumerate(joints, 1):
             self._take(edge_of(f"joint[{i}]", table, f"theta_{i}"), self.joints)
         for i, table in enumerate(entries(self.raw, "pin"), 1):
             self._take(hinges_of(f"pin[{i}]", table, f"pin_{i}"), self.joints)
@@ -94,13 +105,19 @@ class NamedLinks:
         if problems := spelling_flaws(self.edges) or ground_flaws(self.raw, self.edges):
             return problems
         of_graph = graph_flaws(self.joints, self.rods, self.ground)
-        again = [problem.place for problem in of_graph]
+        again = [problem.place.partition(".")[0] for problem in of_graph]
         return [
             *of_graph,
             *name_flaws([edge for edge in self.edges if edge.place not in again]),
             *naming_flaws(self.raw, self.links, self.rods, NAMING),
-            *drive_flaws(drive_of(self.raw), self.joints, self.rods),
+            *(drive_flaws(drive_of(self.raw), self.joints, self.rods) if self._are_named else ()),
         ]
+
+    @property
+    def _are_named(self) -> bool:
+        """Whether no joint or rod has a name that is none, so that others may mean it."""
+        tables = (table for head in LINK_HEADS for table in entries(self.raw, head))
+        return all(is_name(table["name"]) for table in tables if "name" in table)
 
     @property
     def is_loop(self) -> bool:
@@ -210,10 +227,13 @@ def _one_each(of_links: list[Problem], of_values: list[Problem]) -> list[Problem
     no_tables = [problem.place for problem in of_values if "." not in problem.place]
     first = [problem for problem in of_links if problem.place.partition(".")[0] not in no_tables]
     tables = {problem.place.partition(".")[0] for problem in first}
-    rest = [
-        problem
-        for problem in of_values
-        if not (problem.place.partition(".")[0] in tables and re.search(r"\.(links|between)", problem.place))
-        and problem.place not in [known.place for known in first]
-    ]
+    places = {problem.place for problem in first}
+    keys = re.compile(rf"\.({'|'.join(['between', *OF_JOINTS])})\b")
+    rest = []
+    for problem in of_values:
+        table = problem.place.partition(".")[0]
+        head = table.partition("[")[0]
+        on_links = keys.search(problem.place) and tables & {table, head}
+        if not on_links and places.isdisjoint((problem.place, table)):
+            rest.append(problem)
     return first + rest

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pydantic_core import ErrorDetails
@@ -38,8 +38,8 @@ class FileForms:
     once: tuple[str, ...]
     kinds: Mapping[str, Mapping[str, type[TableForm]]] = field(default_factory=dict)
 
-    def problem(self, detail: ErrorDetails) -> Problem:
-        """What an error says, and where."""
+    def problem(self, detail: ErrorDetails, besides: Sequence[str] = ()) -> Problem:
+        """What an error says, and where; `besides` are unknown keys of a table that lacks one."""
         location = [part for part in detail["loc"] if part not in _NO_PLACE]
         owner = self._form_at(location[:-1])
         if location and location[0] in self.kinds and len(location) > 2:
@@ -53,6 +53,7 @@ class FileForms:
                 message = str(detail["ctx"]["message"])
             case "missing":
                 message = _missing(location, owner)
+                message += f"; not known here: {', '.join(map(bare, besides))}" if besides else ""
             case "extra_forbidden":
                 near = suggestion(str(location[-1]), owner.model_fields if owner else ())
                 home = not_covered(location[-1], of_joint=location[0] == "joint" and len(location) > 1)
@@ -67,6 +68,8 @@ class FileForms:
             case "union_tag_invalid" | "union_tag_not_found":
                 message = self._kind(str(location[0]), detail["input"])
                 location.append("kind")
+            case "model_type" if isinstance(detail["input"], list) and location[-1] in self.once:
+                message = f"{value} is a list; write [{location[-1]}], once"
             case "model_type" | "dict_type" | "model_attributes_type":
                 message = f"{value} is not a table; give keys with values"
             case "tuple_type" | "too_short" | "too_long":
@@ -103,6 +106,27 @@ class FileForms:
         (table,) = homes
         head = f"[{table}]" if table in self.once else f"[[{table}]]"
         return f"is a key of {head}; write it below that head"
+
+
+def with_unknown(
+    details: Sequence[ErrorDetails], is_known: Callable[[ErrorDetails], object]
+) -> list[tuple[ErrorDetails, list[str]]]:
+    """Errors, each with the unknown keys of its table that are no errors of their own.
+
+    What is unknown in a table that lacks a key was most often written in its place: both are one mistake.
+    Unknown keys for which `is_known` has words remain. The first key that is missing names all needed ones.
+    """
+    lacking = {detail["loc"][:-1]: detail for detail in reversed(details) if detail["type"] == "missing"}
+    lacking.pop((), None)
+    unknown: dict[int, list[str]] = {id(detail): [] for detail in details}
+    remaining = []
+    for detail in details:
+        owner = lacking.get(detail["loc"][:-1])
+        if owner is not None and detail["type"] == "extra_forbidden" and not is_known(detail):
+            unknown[id(owner)].append(str(detail["loc"][-1]))
+        elif detail["type"] != "missing" or owner in (None, detail):
+            remaining.append(detail)
+    return [(detail, unknown[id(detail)]) for detail in remaining]
 
 
 def path_of(location: Sequence[int | str]) -> str:

@@ -20,6 +20,7 @@ from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, 
 def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
     """The net of links by name; raises `DescriptionError` with all that is wrong."""
     from sevenbar.description.formulas import context_of, with_numbers
+    from sevenbar.description.net_proportions import net_disproportions
     from sevenbar.description.net_schema import check_net
 
     thick = [
@@ -39,6 +40,8 @@ def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
     if problems:
         raise DescriptionError(problems, source)
     form = check_net({**with_numbers(whole, context), "pin": []}, context, source=source)
+    if problems := net_disproportions(form, [edge.place for edge in links.edges]):
+        raise DescriptionError(problems, source)
     number = {name: i for i, name in enumerate(links.links, 1)}
     points = tuple(Point(point.name, number[point.link], point.at) for point in form.point)
     joints, frames = [], []

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ValidationError, ValidationInfo
+from pydantic_core import ErrorDetails
 
 from sevenbar.description.contradictions import wrong_keys
 from sevenbar.description.formulas import context_of
 from sevenbar.description.loop_schema import DriveForm, JointForm
-from sevenbar.description.mistakes import FileForms
+from sevenbar.description.mistakes import FileForms, with_unknown
+from sevenbar.description.not_covered import OF_JOINTS
+from sevenbar.description.proportions import MEANT
 from sevenbar.description.slots import slots_aslant
 from sevenbar.description.values import (
     Component,
@@ -25,7 +29,7 @@ from sevenbar.description.values import (
     three,
 )
 from sevenbar.description.written import entries
-from sevenbar.errors import DescriptionError, Problem
+from sevenbar.errors import DescriptionError, Problem, shown
 from sevenbar.kinematics.loop.joints import JOINT_KINDS
 from sevenbar.text.units import ANGLES, LENGTHS
 
@@ -41,7 +45,7 @@ def _in_plane(value: object, info: ValidationInfo) -> tuple[float, float]:
 def _ends(value: object, info: ValidationInfo) -> tuple[tuple[float, float, float], ...]:
     ends = parts_of(value, 2, "are not two places; give that on each link, as in [[0, 0, 0], [100, 0, 0]]")
     first, second = (three(end, info, "length") for end in ends)
-    if first == second:
+    if math.dist(first, second) < MEANT:
         raise refuse("its two ends are one place; give joint S there")
     return first, second
 
@@ -121,6 +125,7 @@ _NOT_OF_NETS: dict[tuple[str, ...], str] = {
         ("pin", key): "is not of a pin, a hinge about z; write other joints as [[joint]] with between"
         for key in ("kind", "axis", "axes", "value", "pitch")
     },
+    **{("joint", key): "is not known here; a joint has its links in between" for key in OF_JOINTS},
     ("joint", "longer"): "is of a single loop; draw the link as long as it is",
     ("joint", "held"): "is not covered; to hold a joint give its two links one name",
     ("rod", "length"): "follows from its two places; leave it out",
@@ -142,13 +147,9 @@ def _checked(raw: Mapping[str, Any], context: Mapping[str, Any]) -> tuple[NetFor
     try:
         form = NetForm.model_validate(raw, context=context)
     except ValidationError as error:
-        for detail in error.errors(include_url=False):
-            words = tuple(part for part in detail["loc"] if isinstance(part, str))
-            extra = detail["type"] == "extra_forbidden"
-            known = _NOT_OF_NETS.get(words, "") if extra else ""
-            if words == ("joint", "kind") and str(detail["input"]).lower() == "rod":
-                known = "'rod' is not a joint kind; write [[rod]] with between and its two places at"
-            problem = _FORMS.problem(detail)
+        for detail, besides in with_unknown(error.errors(include_url=False), _words_of):
+            problem = _FORMS.problem(detail, besides)
+            known = _words_of(detail)
             problems.append(Problem(problem.place, known) if known else problem)
     for i, table in enumerate(entries(raw, "joint"), 1):
         if table.get("kind") in JOINT_KINDS:
@@ -160,8 +161,25 @@ def _checked(raw: Mapping[str, Any], context: Mapping[str, Any]) -> tuple[NetFor
     return form, problems
 
 
+def _words_of(detail: ErrorDetails) -> str:
+    """What a net says of a key or a value that people write for another one; empty for others."""
+    words = tuple(part for part in detail["loc"] if isinstance(part, str))
+    if words == ("joint", "kind") and str(detail["input"]).lower() == "rod":
+        return "'rod' is not a joint kind; write [[rod]] with between and its two places at"
+    if words == ("point", "link") and detail["type"] == "sevenbar":
+        return f'{shown(detail["input"])} is not the name of a link; give one, as in link = "crank"'
+    return _NOT_OF_NETS.get(words, "") if detail["type"] == "extra_forbidden" else ""
+
+
 def value_flaws(raw: Mapping[str, Any], source: str) -> list[Problem]:
     """What is wrong with numbers, words and units of joints, pins and rods between links by name."""
     _, problems = _checked(raw, context_of(raw, source))
+    rods = enumerate(entries(raw, "rod"), 1)
+    thick = tuple(f"rod[{i}]" for i, table in rods if "radius" in table and "between" not in table)
     units = ("format", "length_unit", "angle_unit")
-    return [p for p in problems if p.place in units or p.place.startswith(("joint[", "pin[", "rod["))]
+    return [
+        p
+        for p in problems
+        if p.place in units
+        or (p.place.startswith(("joint[", "pin[", "rod[")) and not p.place.startswith(thick))
+    ]

@@ -1,4 +1,4 @@
-"""Whether the lengths of one loop can be seen together in double precision."""
+"""Whether the lengths of a linkage can be seen together in double precision."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from sevenbar.errors import Problem, shown
 
 if TYPE_CHECKING:
+    from sevenbar.arrays import Floats
     from sevenbar.description.loop_schema import JointForm, LinkForm, LoopForm
 
 #: A length below this part of the greatest may be lost: poses count as closed when they miss by less.
@@ -41,16 +42,21 @@ def _of_drawing(drawn: Sequence[JointForm], unit: str) -> list[Problem]:
     nearest = [float(min(pair)) for pair in beside if pair]
     pitches = [abs(joint.pitch or 0.0) for joint in drawn]
     steepest = int(np.argmax(pitches))
-    lost = _lost([*nearest, *pitches], max(float(ahead.max()), pitches[steepest]))
+    lost = lost_lengths([*nearest, *pitches], max(float(ahead.max()), pitches[steepest]))
     if not lost:
         return []
     if pitches[steepest] > ahead.max():
         message = f"{pitches[steepest]:.3g} {unit} is too long"
-        return [Problem(f"joint[{steepest + 1}].pitch", f"{message}, {_loss_text(lost, unit)}")]
+        return [Problem(f"joint[{steepest + 1}].pitch", f"{message}, {loss_text(lost, unit)}")]
+    far, message = farthest(places, unit)
+    return [Problem(f"joint[{far + 1}].at", f"{message}, {loss_text(lost, unit)}")]
+
+
+def farthest(places: Floats, unit: str) -> tuple[int, str]:
+    """Which of some places is far from the others, and how far."""
     away = np.linalg.norm(places - np.median(places, axis=0), axis=1)
     far = int(away.argmax())
-    message = f"{shown(list(drawn[far].at))} is {away[far]:.3g} {unit} from most of the others"
-    return [Problem(f"joint[{far + 1}].at", f"{message}, {_loss_text(lost, unit)}")]
+    return far, f"{shown(places[far].tolist())} is {away[far]:.3g} {unit} from most of the others"
 
 
 def _of_rows(rows: Sequence[LinkForm], unit: str) -> list[Problem]:
@@ -63,21 +69,24 @@ def _of_rows(rows: Sequence[LinkForm], unit: str) -> list[Problem]:
     if not numbers:
         return []
     place = max(numbers, key=lambda place: abs(numbers[place]))
-    lost = _lost([abs(value) for value in numbers.values()], abs(numbers[place]))
+    lost = lost_lengths([abs(value) for value in numbers.values()], abs(numbers[place]))
     return (
-        [Problem(place, f"{numbers[place]:.3g} {unit} is too long, {_loss_text(lost, unit)}")] if lost else []
+        [Problem(place, f"{numbers[place]:.3g} {unit} is too long, {loss_text(lost, unit)}")] if lost else []
     )
 
 
-def _lost(lengths: Sequence[float], greatest: float) -> list[float]:
+def lost_lengths(lengths: Sequence[float], greatest: float, least_share: float = LEAST_SHARE) -> list[float]:
     """The lengths lost next to the greatest, where they are at least half of those that are meant."""
     meant = [length for length in lengths if length >= MEANT]
-    lost = [length for length in meant if length < LEAST_SHARE * greatest]
+    lost = [length for length in meant if length < least_share * greatest]
     return lost if 2 * len(lost) >= len(meant) else []
 
 
-def _loss_text(lost: Sequence[float], unit: str) -> str:
+def loss_text(
+    lost: Sequence[float], unit: str, why: str = "lost in rounding beside", least_share: float = LEAST_SHARE
+) -> str:
+    """What is wrong with the greatest length next to those that are lost, and what to give."""
     return (
-        f"and {max(lost):.3g} {unit} is lost in rounding beside that; give lengths of which the greatest is "
-        f"at most {1 / LEAST_SHARE:.0e} times the others"
+        f"and {max(lost):.3g} {unit} is {why} that; give lengths of which the greatest is "
+        f"at most {1 / least_share:.0e} times the others"
     )

@@ -143,15 +143,17 @@ class TableCells:
 
     def vector(self, row: int, head: str, kind: Kind, letters: str = "xyz") -> list[float]:
         """The numbers of three cells of a row, 0 where there is no column."""
-        result = []
-        for letter in letters:
-            value = self.amount(row, f"{head}{letter}", kind)
-            if value is None and f"{head}{letter}" in self.columns and not self.text(row, f"{head}{letter}"):
-                self.wrong(
-                    "is empty; give a number, 0 where it is none", row, self.columns[f"{head}{letter}"]
-                )
-            result.append(0.0 if value is None else value)
-        return result
+        keys = [f"{head}{letter}" for letter in letters]
+        values = [self.amount(row, key, kind) for key in keys]
+        missing = [self.columns[key] for key in keys if key in self.columns and not self.text(row, key)]
+        if len(missing) > 1:
+            names = ", ".join(shown(self.grid.names[column]) for column in missing)
+            self.wrong(f"columns {names} are empty; give numbers, 0 where one is none", row)
+        for column in missing if len(missing) == 1 else ():
+            written = self.grid.rows[row][column]
+            what = f"{shown(written)} is no number" if written else "is empty"
+            self.wrong(f"{what}; give a number, 0 where it is none", row, column)
+        return [value or 0.0 for value in values]
 
     def span(self, row: int, head: str) -> str:
         """The place of a vector's cells."""

@@ -57,6 +57,7 @@ class LinkCells(TableCells):
     def ground_of(self, tables: Sequence[Mapping[str, Any]]) -> str:
         """The link that stands still: as the caller or a column has it, or one that is called so."""
         if self.chosen_ground:
+            self.places["ground"] = "ground"
             return self.chosen_ground
         if "ground" in self.columns:
             rows = [row for row in self.filled if self.text(row, "ground")]

@@ -136,7 +136,12 @@ class _Reader(LinkCells):
 
     def description(self) -> TableDescription:
         """The description of the table."""
-        if not self.filled and not self.problems:
+        for row in self.filled:
+            if self.grid.rows[row] == self.grid.names:
+                self.wrong("is the header again; leave it out", row)
+        if not self.columns and not self.problems:
+            self.wrong(f"the columns describe no linkage; name them as in {EXAMPLES}")
+        elif not self.filled and not self.problems:
             self.wrong("has a header but no rows; give one for each joint")
         self.finish()
         described = {
@@ -156,6 +161,8 @@ class _Reader(LinkCells):
             # columns of rows say nothing of a joint as drawn, such as the radius r of a part's hole
             for key in ("length", "angle", "joint" if "name" in self.columns else ""):
                 self._leave_unread(key)
+            if not self.names_links:
+                self._check_kinds()
             result = self._of_named() if self.names_links else self._of_joints("joint")
         elif any(key in self.columns for key in ROWS):
             # rows have their own angle, or offset of P
@@ -167,8 +174,20 @@ class _Reader(LinkCells):
         if not result[0]:
             self.finish()
         raw, what = result
+        width = len(self.grid.names)
+        past = [self.grid.place(row) for row in self.filled if any(self.grid.rows[row][width:])]
+        self.unread += [f"cells past the header in {', '.join(past)}"] if past else []
         unread = f"; not read: {', '.join(self.unread)}" if self.unread else ""
         return TableDescription({**described, **raw}, what + unread, self.places, self.problems)
+
+    def _check_kinds(self) -> None:
+        """Raises `DescriptionError` where no row has a kind of joint."""
+        if any(self._kind_of(row)[0] for row in self.filled):
+            return
+        named = ", ".join(map(shown, self.unread))
+        text = f"no kind of joint; give one of {', '.join(KINDS)} in a column 'kind'"
+        self.wrong(f"{text}, or pins their links in a column 'links'" + f"; not read: {named}" * bool(named))
+        self.finish()
 
     def _leave_unread(self, key: str) -> None:
         """Notes that a column is not read, where there is one."""
@@ -254,6 +273,7 @@ class _Reader(LinkCells):
     def _pin(self, row: int, i: int, name: str) -> dict[str, Any]:
         """A pin of a planar linkage."""
         place = f"pin[{i + 1}]"
+        self._has_one_place(row)
         table = self._head(row, place, name, "kind", "", "kind")
         table["at"] = self.vector(row, "", "length", "xy")
         self.places[f"{place}.at"] = self.span(row, "")
@@ -267,11 +287,23 @@ class _Reader(LinkCells):
         """A link with a ball at each end."""
         place = f"rod[{i + 1}]"
         table = self._head(row, place, name, "kind", "", "kind")
-        if not any(f"end {letter}" in self.columns for letter in "xyz"):
+        first, second = self.vector(row, "", "length"), [0.0, 0.0, 0.0]
+        if self._second_place(row):
+            second = self.vector(row, "end ", "length")
+        else:
             self.wrong("is a rod without its other end; give it in columns x 2, y 2, z 2", row)
-        table["at"] = [self.vector(row, "", "length"), self.vector(row, "end ", "length")]
+        table["at"] = [first, second]
         self.places[f"{place}.at"] = self.span(row, "end ")
         return table | {"between": self.joined(row, f"{place}.between", 2)}
+
+    def _second_place(self, row: int) -> str:
+        """What a row has in the columns of the other end of a rod."""
+        return "".join(self.text(row, f"end {letter}") for letter in "xyz")
+
+    def _has_one_place(self, row: int) -> None:
+        """Notes a second place at a joint."""
+        if self._second_place(row):
+            self.wrong("is a joint with two places; leave x 2, y 2, z 2 empty, or give it the kind rod", row)
 
     def _is_left_out(self, row: int) -> bool:
         """A row without kind and order, where the others have an order: axes of a part that are no joints."""
@@ -350,11 +382,9 @@ class _Reader(LinkCells):
         kind, key = self._kind_of(row)
         place = f"joint[{i + 1}]"
         if not kind:
-            named = ", ".join(shown(name) for name in self.unread)
-            unread = f" in a column 'kind'; not read: {named}" if named else ""
-            text = f"no kind of joint; give one of {', '.join(KINDS)}{unread}"
-            self.wrong(text, row, self.columns.get("kind"))
+            self.wrong(f"no kind of joint; give one of {', '.join(KINDS)}", row, self.columns.get("kind"))
         table: dict[str, Any] = self._head(row, place, name, "kind", kind, key)
+        self._has_one_place(row)
         table["at"] = self.vector(row, "", "length")
         for key, wanted in (("axis", "axis "), ("axis 2", "axis 2 ")):
             if any(self.text(row, f"{wanted}{letter}") for letter in "xyz"):
@@ -403,6 +433,10 @@ class _Reader(LinkCells):
         name = self.text(row, "name") or self.text(row, "joint") or f"P{k + 1}"
         if self.by_name or self.names_links:
             carrier = self.text(row, "link") or " ".join(self.links_of(row))
+            if not carrier:
+                self.wrong(
+                    "names no link; give the one that carries the point", row, self.columns.get("link")
+                )
             if "link" not in self.columns:
                 self.note_place(
                     f"{place}.link", row, next(k for k in ("between", *BETWEEN) if k in self.columns)
@@ -418,13 +452,20 @@ class _Reader(LinkCells):
         at = self.vector(row, "", "length", letters)
         return {"name": name, "link": int(link or 1) if whole else 1, "at": at}
 
+    def _is_marked(self, row: int, key: str) -> bool:
+        return self.text(row, key).lower() not in NO_MARKS
+
     def _drive(self, names: Mapping[int, str]) -> dict[str, Any]:
         """Input, output and speed as marked."""
         drive: dict[str, Any] = {}
         for key, target in (("input", "joint"), ("output", "output")):
             if key not in self.columns:
                 continue
-            marked = [row for row in names if self.text(row, key).lower() not in NO_MARKS]
+            for row in self.filled:
+                if row not in names and self._is_marked(row, key):
+                    what = f"is marked and no joint; mark the {key} in a joint's row"
+                    self.wrong(what, row, self.columns[key])
+            marked = [row for row in names if self._is_marked(row, key)]
             for row in marked[1:]:
                 self.wrong(f"is a second {key}; mark one row", row, self.columns[key])
             if not marked:

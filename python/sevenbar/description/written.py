@@ -7,12 +7,16 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
-from sevenbar.errors import Problem, no_joint, shown
+from sevenbar.errors import Problem, nearest, no_joint, shown
 from sevenbar.kinematics.loop.graph import loop_graph
 from sevenbar.kinematics.loop.joints import KINDS, column_names
 
 #: Words that people use for the ground where a joint's kind should stand.
 GROUND_WORDS = ("g", "ground", "fixed", "frame", "base")
+
+#: Heads of tables that join links by name, and of others that may name links.
+LINK_HEADS = ("joint", "pin", "rod")
+OTHER_HEADS = ("link", "point", "body", "load", "spring", "stop", "drive", "forces", "rssr")
 
 #: Names and kinds of the joints of a linkage written as [rssr].
 RSSR_JOINTS = (("crank", "R"), ("ball_a", "S"), ("ball_b", "S"), ("rocker", "R"))
@@ -154,9 +158,41 @@ def unknown_link(place: str, link: int, joints: Sequence[Written]) -> list[Probl
 
 def has_links(raw: Mapping[str, Any]) -> bool:
     """Whether a file has links by name."""
-    if "pin" in raw:
+    if "pin" in raw or misnamed_heads(raw):
         return True
-    return any("between" in table for head in ("joint", "rod") for table in entries(raw, head))
+    if "ground" in raw and raw.keys().isdisjoint(("rssr", "joint", "link")):
+        return True
+    named = any("between" in table for head in ("joint", "rod") for table in _tables(raw, head))
+    return named or any("links" in table and "kind" not in table for table in entries(raw, "joint"))
+
+
+def _tables(raw: Mapping[str, Any], head: str) -> list[Mapping[str, Any]]:
+    """The tables of a head, also where they are no list but one table, or have names."""
+    value = raw.get(head)
+    if not isinstance(value, Mapping):
+        return entries(raw, head)
+    return [value, *(table for table in value.values() if isinstance(table, Mapping))]
+
+
+def misnamed_heads(raw: Mapping[str, Any]) -> dict[str, str]:
+    """The heads of a file's tables that name their links and are called otherwise, each with its own."""
+    result = {}
+    for word in raw.keys() - set(LINK_HEADS) - set(OTHER_HEADS):
+        tables = [table for table in entries(raw, word) if _names_links(table)]
+        if not tables:
+            continue
+        at = tables[0].get("at")
+        is_rod = isinstance(at, list | tuple) and len(at) == 2 and isinstance(at[0], list | tuple)
+        head = "pin" if "links" in tables[0] else "rod" if is_rod else "joint"
+        near = nearest(word, (*LINK_HEADS, *OTHER_HEADS))
+        if near not in OTHER_HEADS:
+            result[word] = near or head
+    return result
+
+
+def _names_links(table: Mapping[str, Any]) -> bool:
+    links = table.get("links", table.get("between"))
+    return isinstance(links, list | tuple) and any(isinstance(link, str) for link in links)
 
 
 def entries(raw: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:

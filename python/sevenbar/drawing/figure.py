@@ -208,17 +208,23 @@ def note(motion: Motion, cut: bool) -> str:
     return say("{driven}; rates grow without bound at dead centres: axes cut", driven=driven)
 
 
+def format_of(path: Path) -> str:
+    """The format of a figure by its path's ending; `OutputError` for another ending."""
+    ending = path.suffix.lower().removeprefix(".")
+    if ending not in FORMATS:
+        raise OutputError(
+            f"{path}: {shown(path.suffix)} is not a figure format; give .png, .svg, .pdf or .eps"
+        )
+    return ending
+
+
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     """Writes a figure as PNG (200 dpi), SVG, PDF or EPS, by the path's ending; returns the path.
 
     Raises `OutputError` for another ending and where the file cannot be written; then nothing is left behind.
     """
     target = Path(path)
-    ending = target.suffix.lower().removeprefix(".")
-    if ending not in FORMATS:
-        raise OutputError(
-            f"{target}: {shown(target.suffix)} is not a figure format; give .png, .svg, .pdf or .eps"
-        )
+    ending = format_of(target)
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
     with written_whole(target) as file, rc_context(STYLE):
         figure.savefig(file, format=ending, dpi=PNG_DPI, metadata=dates.get(ending))

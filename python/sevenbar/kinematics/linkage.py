@@ -67,6 +67,7 @@ class Linkage(Solvable):
         """
         from sevenbar.kinematics.dynamics.loaded import loaded
 
+        check_single(self)
         return loaded(self, bodies=bodies, gravity=gravity, loads=loads, springs=springs)
 
     @ends_here
@@ -87,6 +88,7 @@ class Linkage(Solvable):
         """
         from sevenbar.kinematics.ranges.stopped import stopped
 
+        check_single(self)
         return stopped(self, ranges=ranges, cones=cones, radii=radii)
 
     @property
@@ -144,6 +146,11 @@ class Linkage(Solvable):
         value = closure_tolerance("agree", agree)
         if value == AGREE and self.agree is None:
             return self
+        if self.net is not None:
+            raise RequestError(
+                f"agree: {value:g} is of a single loop; of a net redundant constraints agree to {AGREE:g}, "
+                "so leave it out"
+            )
         if value not in self._agreeing:
             self._agreeing[value] = replace(self, agree=value)
         return self._agreeing[value]
@@ -229,10 +236,10 @@ class Linkage(Solvable):
         """
         column = self.input_column(input)
         value = joint_number("theta", theta, self, column)
-        agreeing = self.agreeing(agree)
+        agreeing, closed_form = self.agreeing(agree), self._has_closed_form(method)
         if self.net:
             return self._net.modes(column, value)
-        if self._has_closed_form(method):
+        if closed_form:
             return self._closed_form.modes(column, value)
         self._refuse_unheld()
         return agreeing._general.modes(column, value)
@@ -248,7 +255,8 @@ class Linkage(Solvable):
         Gruebler -2, redundant constraints 3, moves with 1
         """
         column = self.input_column(input)
-        return self._net.mobility(column) if self.net else self.agreeing(agree)._general.mobility(column)
+        agreeing = self.agreeing(agree)
+        return self._net.mobility(column) if self.net else agreeing._general.mobility(column)
 
     @property
     def order(self) -> Order:
@@ -410,10 +418,10 @@ class Linkage(Solvable):
             [('crank-rocker', 1), ('double-rocker', 0), ('crank-rocker', 1)]
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
-        agreeing = self.agreeing(agree)
+        agreeing, closed_form = self.agreeing(agree), self._has_closed_form(method)
         if self.net:
             result = self._net.motion(column, output_column, samples, rate, law)
-        elif self._has_closed_form(method):
+        elif closed_form:
             result = self._closed_form.motion(column, samples, rate, law)
         else:
             self._refuse_unheld()
@@ -448,10 +456,11 @@ class Linkage(Solvable):
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed, law)
         values = self._pose(pose)
+        agreeing = self.agreeing(agree)
         if self.net:
             return self._net.circuit(values, column, output_column, samples, rate, law)
         self._refuse_unheld()
-        return self.agreeing(agree)._general.circuit(values, column, output_column, samples, rate, law)
+        return agreeing._general.circuit(values, column, output_column, samples, rate, law)
 
     def _net_ratio_at_rest(self, pose: Floats, column: int, output: int) -> float | None:
         """d(output)/d(input) of a net at a pose (columns,) where both rest; `None` where one moves."""

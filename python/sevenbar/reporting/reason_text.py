@@ -31,10 +31,11 @@ def reason_text(motion: Motion) -> str:
 
 
 def _one_axis(motion: Motion, reason: Reason) -> str:
-    names = [joint.name for joint in motion.linkage.joints]
+    linkage = motion.linkage
     first, second = reason.joints
-    link = names.index(first) + 1
-    if link == len(names):
+    ends = {number for number, joint in enumerate(linkage.joints) if joint.name in reason.joints}
+    link = next(link for link in linkage.graph.links if ends <= {*linkage.graph.joints_of(link)})
+    if link == linkage.graph.ground:
         return say(
             "{first} and {second} are on one axis: the ground has length 0 between them",
             first=first,
@@ -44,7 +45,7 @@ def _one_axis(motion: Motion, reason: Reason) -> str:
         "{first} and {second} are on one axis: link {link} has length 0 between them",
         first=first,
         second=second,
-        link=link,
+        link=linkage.link_label(link),
     )
 
 

@@ -367,7 +367,8 @@ class Circuit(ReadOnly, Printed, WithExtents):
         """
         if isinstance(link, str):
             if at is not None:
-                raise RequestError(f"at: point {shown(link)} has its place; leave `at` out, or give a link")
+                remedy = "leave `at` out, or give a link by its number"
+                raise RequestError(f"at: point {shown(link)} has its place; {remedy}")
             named = self._answers.point(link)
             return self.written_point(named.link, named.at)
         self._frame(link)

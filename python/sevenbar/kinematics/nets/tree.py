@@ -25,6 +25,10 @@ from sevenbar.kinematics.nets.order import Order, Parts
 
 T = TypeVar("T")
 
+#: What to do about a net that nothing moves, and about one that one input does not.
+IF_RIGID = "leave out a joint or a rod, or give a joint more freedoms"
+IF_LOOSE = "join links by more joints or rods"
+
 #: A row as the core takes it: its kind, the steps of its links, its vectors and its number.
 RawRow = tuple[str, tuple[int | None, int | None], tuple[Triple, Triple], float]
 
@@ -208,6 +212,8 @@ class Tree:
         try:
             return work(self.core)
         except _core.CoreError as error:
+            freedoms = len(self.core.freedoms()[2])
+            remedy = "" if freedoms == 1 else f"; {IF_LOOSE if freedoms else IF_RIGID}"
             raise NotCoveredError(
-                f"net: motion is found of nets that one input moves; here {error}"
+                f"net: motion is found of nets that one input moves; here {error}{remedy}"
             ) from None

@@ -20,6 +20,7 @@ from sevenbar.kinematics.circuits.modes import Modes
 from sevenbar.kinematics.circuits.motion import HeldFreedoms, Motion, Solvable
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
+from sevenbar.kinematics.loop.no_length import no_length
 from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rigid import axis_to_z, inverse, placed
 from sevenbar.kinematics.loop.single import check_single
@@ -311,6 +312,8 @@ def at_rest(linkage: Loop, column: int, moving: list[int]) -> RequestError:
     moving_names = {linkage.columns[c] for c in moving}
     others = [name for name in linkage.drivable(column) if name in moving_names]
     advice = f"; give another: {', '.join(others)}" if others else ""
+    if reason := no_length(linkage):
+        advice += f"; {' and '.join(reason.joints)} are on one axis, so the link between them has no length"
     return RequestError(
         f"input: joint '{linkage.columns[column]}' stands still while others move, so it cannot drive{advice}"
     )
