@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from test_nets import WATT, carried, circles, net, pin
 
 import sevenbar as sb
+from sevenbar.description import gallery
 
 TURN = 2 * math.pi
 
@@ -87,7 +89,7 @@ def test_the_count_is_the_same_however_a_net_is_written(name, how):
 
 @pytest.mark.parametrize(
     "name",
-    ["watt", "stephenson", "klann", "jansen", "tandem_wiper", "peaucellier", "rssr_ss", "double_wishbone"],
+    gallery.nets(),
 )
 def test_nets_of_the_gallery_are_counted(name):
     motion = sb.load(name).motion(36)
@@ -98,6 +100,25 @@ def test_dead_centres_that_are_counted_are_those_of_the_circuits():
     motion = net(WATT).motion(72)
     own = [d for circuit in motion for d in circuit.dead_centres if d.kind == "input"]
     assert motion.search.count.dead_centres == len(own)
+
+
+@pytest.mark.parametrize("name", ["five_rod", "platform"])
+def test_modes_between_dead_centres_of_a_slide_lie_on_its_circuits(name):
+    linkage = sb.load(name)
+    motion = linkage.motion(360)
+    ends = sorted(
+        {round(d.input, 6) for circuit in motion for d in circuit.dead_centres if d.kind == "input"}
+    )
+    # of each solution of the platform its leg with the slide goes together in two ways
+    assert motion.search.count.dead_centres == len(ends)
+    beyond = [ends[0] - 1.0, ends[-1] + 1.0]
+    for value in [*beyond, *((a + b) / 2 for a, b in itertools.pairwise(ends))]:
+        # a circuit passes it on the way there and back
+        passed = sum(
+            int(np.abs(np.diff(np.append(c.q[:, c.input_column], c.q[0, c.input_column]) > value)).sum())
+            for c in motion
+        )
+        assert passed == len(linkage.assembly_modes(value)), value
 
 
 @pytest.mark.parametrize("off", [1e-3, 1e-6, -1e-6, -1e-3])

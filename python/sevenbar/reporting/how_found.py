@@ -6,7 +6,7 @@ import math
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits.motion import Motion
-from sevenbar.kinematics.circuits.search import Search
+from sevenbar.kinematics.circuits.search import OpenRange
 from sevenbar.kinematics.solvers.general import AGREE
 from sevenbar.text.words import say
 
@@ -72,7 +72,7 @@ def how_found(motion: Motion) -> str:
         parts.append(say("no motion leads out of them"))
     if search.bound is not None:
         parts.append(say(_BOUNDS[search.bound]))
-    if counted := _counted(search):
+    if counted := _counted(motion):
         parts.append(counted)
     if search.open_by.size:
         parts.append(left_open(search.open_by, motion.agree))
@@ -83,8 +83,9 @@ def how_found(motion: Motion) -> str:
     return say("; ").join(parts)
 
 
-def _counted(search: Search) -> str:
+def _counted(motion: Motion) -> str:
     """What the count of branch points shows; empty where nothing was counted."""
+    search = motion.search
     count = search.count
     if count is None:
         return say(_UNCOUNTED[search.uncounted]) if search.uncounted in _UNCOUNTED else ""
@@ -95,27 +96,31 @@ def _counted(search: Search) -> str:
         if others := count.complex_branch_points:
             many = say("{dead_centres} and {count} complex", dead_centres=many, count=others)
         return say("branch points of {joint} are all accounted for: {points}", joint=count.joint, points=many)
+    unit = motion.linkage.unit_of(count.joint)
     ranges_open = []
     for each in count.open[:MOST_RANGES]:
         what = say("some") if each.missing is None else f"{each.missing}"
         if each.missing is not None and each.missing < 0:
             what = say("{count} too many", count=-each.missing)
-        start, wide = math.degrees(each.start), math.degrees(each.end - each.start)
-        if wide < NARROW_RANGE_DEG:
-            middle = (start + wide / 2) % 360
-            place = say(
-                "{what} within {half:.1g} deg of {middle:.6g} deg", what=what, half=wide / 2, middle=middle
-            )
-        else:
-            low = start % 360
-            place = say("{what} between {low:.6g} and {high:.6g} deg", what=what, low=low, high=low + wide)
-        ranges_open.append(place)
+        ranges_open.append(say("{what} {place}", what=what, place=_place(each, unit)))
     ranges = say(", ").join(ranges_open)
     if len(count.open) > MOST_RANGES:
         ranges = say("{ranges} and elsewhere", ranges=ranges)
     return say(
         "branch points of {joint} are not all accounted for: {ranges}", joint=count.joint, ranges=ranges
     )
+
+
+def _place(each: OpenRange, unit: str) -> str:
+    """Where a range of a joint lies, whose values have a unit."""
+    if unit != "rad":
+        return say("between {low:.6g} and {high:.6g} {unit}", low=each.start, high=each.end, unit=unit)
+    start, wide = math.degrees(each.start), math.degrees(each.end - each.start)
+    if wide < NARROW_RANGE_DEG:
+        middle = (start + wide / 2) % 360
+        return say("within {half:.1g} deg of {middle:.6g} deg", half=wide / 2, middle=middle)
+    low = start % 360
+    return say("between {low:.6g} and {high:.6g} deg", low=low, high=low + wide)
 
 
 def left_open(open_by: Floats, agree: float) -> str:

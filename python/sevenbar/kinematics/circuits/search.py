@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats
 
 @dataclass(frozen=True)
 class OpenRange:
-    """A range of a joint [rad] in which its branch points are not all accounted for."""
+    """A range of a joint [rad, or length] in which its branch points are not all accounted for."""
 
     start: float
     end: float
@@ -24,7 +24,8 @@ class OpenRange:
 class Count:
     """The account of a joint's branch points: all of them, and the modes at one value, mean all circuits.
 
-    The joint is the input, or the first that turns where the input slides.
+    The joint is the input, or of a single loop the first that turns where the input slides. Of a net a slide is
+    counted between the values beyond which none of its cycles closes.
     """
 
     joint: str

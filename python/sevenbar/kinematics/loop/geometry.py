@@ -512,21 +512,22 @@ class Loop(Drawable):
             if name == joint.name:
                 return self.columns.index(joint.first)
         if name not in self.columns:
-            raise RequestError(f"{key}: {self._no_column(name, names)}")
+            choices = self.output_choices() if key == "output" else self.drivable()
+            raise RequestError(f"{key}: {self._no_column(name, names, choices)}")
         one = self.column_of(name)
         if one.joint is None and not (key == "output" and one in self._places_apart):
             raise RequestError(f"{key}: {self._no_end(name)}")
         return self.columns.index(name)
 
-    def _no_column(self, name: str, names: Sequence[str]) -> str:
+    def _no_column(self, name: str, names: Sequence[str], choices: Sequence[str]) -> str:
         """What to give in place of a name that no column has: perhaps of a link or of a rod."""
         if name in self.link_names:
             numbers = self.graph.joints_of(self.link_names.index(name) + 1)
             joints = [self.joints[number] for number in numbers]
             of_link = [joint.name for joint in joints if not joint.row.is_ball]
-            return no_joint_but(name, self.drivable(), of_link)
+            return no_joint_but(name, choices, of_link)
         if any(name == rod.name for rod in self.rods):
-            return no_joint_but(name, self.drivable())
+            return no_joint_but(name, choices)
         return no_joint(name, names)
 
     def _no_end(self, column: str) -> str:

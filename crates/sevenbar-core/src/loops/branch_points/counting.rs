@@ -50,7 +50,7 @@ const GIMBAL: f64 = 1e-6;
 /// A range of the input whose branch points are not accounted for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Open {
-    /// Where it begins and ends [rad].
+    /// Where it begins [rad, or length].
     pub from: f64,
     /// Its end.
     pub to: f64,

@@ -239,6 +239,10 @@ pub(crate) fn over_input<S: Closed, D: Described, K: RowStore<S>, C>(
     search.columns.sort_unstable();
     search.count = search.count.and_then(|mut count| {
         count.column = outer(count.column).ok_or(Uncounted::Searched)?;
+        let inward = linkage.inward(count.column);
+        for open in &mut count.open {
+            (open.from, open.to) = (open.from / inward, open.to / inward);
+        }
         Ok(count)
     });
     Over { circuits, change_points, search, moving }
