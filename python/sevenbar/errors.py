@@ -245,7 +245,6 @@ def no_joint(name: object, names: Sequence[str]) -> str:
     """The message for a joint that does not exist."""
     known = ", ".join(map(bare, names))
     # the first of a pin that has several hinges
-    near = next(
-        (f"did you mean {shown(one)}? " for one in names if one == f"{name}.1"), suggestion(name, names)
-    )
+    first = f"{name}.1" if isinstance(name, str) else None
+    near = f"did you mean {shown(first)}? " if first in names else suggestion(name, names)
     return f"no joint {shown(name)}; {near}this linkage has {known}"

@@ -24,8 +24,8 @@ class OpenRange:
 class Count:
     """The account of a joint's branch points: all of them, and the modes at one value, mean all circuits.
 
-    The joint is the input, or of a single loop the first that turns where the input slides. Of a net a slide is
-    counted between the values beyond which none of its cycles closes.
+    The joint is the input, or of a single loop the first that turns where the input slides. A slide of a net
+    is counted between the values beyond which a cycle through it does not close.
     """
 
     joint: str
