@@ -8,10 +8,12 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib.patches import Polygon
 
 import sevenbar as sb
 from command_runs import mistake
 from sevenbar.description import gallery
+from sevenbar.drawing.skeleton_figure import skeleton
 from sevenbar.kinematics.circuits.poses import poses
 from sevenbar.reporting.drawn import drawn_of
 
@@ -208,3 +210,15 @@ def test_a_pin_of_three_links_has_one_name_and_one_path_in_a_figure():
     entries = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
     assert {"crank pin", "axle", "knee"} <= set(labels)
     assert [entry for entry in entries if "pin" in entry] == ["path of crank pin"]
+
+
+def test_links_with_more_than_two_joints_have_a_face_in_the_plane_alone():
+    def corners(name):
+        figure = skeleton(sb.load(name).motion(36))
+        faces = [patch.get_xy()[:-1] for patch in figure.axes[0].patches if isinstance(patch, Polygon)]
+        # hinges of one pin are one corner
+        return [count for face in faces if (count := len(np.unique(face.round(6), axis=0))) > 2]
+
+    # the upper triangle of Jansen's leg, Klann's coupler with its elbow
+    assert (corners("jansen"), corners("klann")) == ([3], [3])
+    assert (corners("double_wishbone"), corners("planar_4r")) == ([], [])

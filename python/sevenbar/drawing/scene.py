@@ -38,6 +38,8 @@ from sevenbar.text.words import say
 SAME = 1e-6
 #: How much of the colour of a faint pose is white.
 FAINT = 0.72
+#: The same of the face of a link with more than two joints, its least number of sides, and its order.
+PALE, SIDES, BELOW = 0.8, 3, 0.8
 #: Half the width of the ground under a hinge, its depth, and the lengths of its strokes, as shares of the
 #: linkage's extent.
 FOOT, DEPTH, HATCH = 0.035, 0.055, 0.022
@@ -263,6 +265,11 @@ def bars(
         made.append((space.line(nowhere, **look | style), places))
 
     if not ghost:
+        if space.view.flat:
+            # below all paths; the first in a film
+            for places, colour in zip(map(frame.along, frame.graph.moving), colours, strict=True):
+                if len(places) > SIDES and places[0] == places[-1]:
+                    made.append((space.panel(paler(colour, PALE), BELOW), places))
         for stay, colour in stays(frame, ends):
             add(stay, color=colour, lw=width / 3)
     for rod in frame.rods:

@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d import proj3d  # type: ignore[import-untyped]
@@ -61,9 +62,17 @@ class ViewAxes:
         self.axes.add_line(artist)
         return artist
 
+    def panel(self, colour: Any, order: float) -> Any:
+        """A new pale face of a flat view, without an edge."""
+        artist = Polygon(np.empty((0, 2)), facecolor=colour, edgecolor="none", zorder=order)
+        self.axes.add_artist(artist)
+        return artist
+
     def put(self, artist: Any, places: Floats) -> None:
-        """Moves a line to places."""
-        if self.view.flat:
+        """Moves a line or a panel to places."""
+        if isinstance(artist, Polygon):
+            artist.set_xy(self.view.seen(places))
+        elif self.view.flat:
             artist.set_data(*self.view.seen(places).T)
         else:
             artist.set_data_3d(*places.T)

@@ -40,7 +40,7 @@ pub(super) trait Functions {
 /// Ranges to begin with, how high up in the complex inputs they reach, as a part of their width, and where the first one begins, as a part of
 /// it: not where people draw.
 const RANGES: usize = 24;
-const HEIGHT: f64 = 0.19;
+const HEIGHT: f64 = 0.191;
 const BEGINS: [f64; 3] = [0.381_966, 0.723_607, 0.145_898];
 
 /// Where a range is parted.
