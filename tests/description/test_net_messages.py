@@ -6,6 +6,7 @@ import copy
 import tomllib
 
 import pytest
+from test_wrong_nets import HUB as HUB_TEXT
 
 import sevenbar as sb
 from sevenbar.description import gallery
@@ -16,38 +17,7 @@ from sevenbar.errors import DescriptionError, NotCoveredError, RequestError, Tab
 WATT = tomllib.loads(gallery.text("watt")) | {"drive": {"joint": "crank"}}
 
 #: A double wishbone with a track rod: two hinges, two balls, a rod.
-HUB = tomllib.loads("""
-format = 1
-ground = "frame"
-[drive]
-joint = "lower"
-[[joint]]
-name = "lower"
-kind = "R"
-at = [0, 0, 0]
-axis = [1, 0, 0]
-between = ["frame", "lower arm"]
-[[joint]]
-name = "upper"
-kind = "R"
-at = [0, 50, 200]
-axis = [1, 0.1, 0]
-between = ["frame", "upper arm"]
-[[joint]]
-name = "foot"
-kind = "S"
-at = [0, 350, -20]
-between = ["lower arm", "upright"]
-[[joint]]
-name = "head"
-kind = "S"
-at = [10, 300, 210]
-between = ["upper arm", "upright"]
-[[rod]]
-name = "track rod"
-between = ["frame", "upright"]
-at = [[120, 60, 80], [110, 340, 90]]
-""")
+HUB = tomllib.loads(HUB_TEXT)
 
 
 def changed(raw, head, place, keys):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import tomllib
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from test_nets import WATT, carried, circles, net, pin
 
 import sevenbar as sb
 from sevenbar.description import gallery
+from sevenbar.description.forms import from_description
 
 TURN = 2 * math.pi
 
@@ -119,6 +121,31 @@ def test_modes_between_dead_centres_of_a_slide_lie_on_its_circuits(name):
             for c in motion
         )
         assert passed == len(linkage.assembly_modes(value)), value
+
+
+@pytest.mark.parametrize("how", ["turned", "mirrored", "scaled"])
+def test_the_count_over_a_slide_is_the_same_however_a_net_is_written(how):
+    turn = np.array([[2.0, -2.0, 1.0], [1.0, 2.0, 2.0], [2.0, 1.0, -2.0]]) / 3
+    by = {
+        "turned": turn * np.sign(np.linalg.det(turn)),
+        "mirrored": np.diag([1, -1, 1]),
+        "scaled": np.eye(3),
+    }[how]
+    size = 1e-3 if how == "scaled" else 1.0
+    raw = tomllib.loads(gallery.text("five_rod"))
+    for table in (*raw["joint"], *raw["rod"], *raw["point"]):
+        for key in table.keys() & {"at", "axis", "axes"}:
+            moved = np.array(table[key]) @ by.T * (size if key == "at" else 1.0)
+            table[key] = moved.tolist()
+
+    def account(linkage, size=1.0):
+        motion = linkage.motion(36)
+        ends = {
+            round(d.input / size, 5) for circuit in motion for d in circuit.dead_centres if d.kind == "input"
+        }
+        return motion.completeness, motion.search.count.dead_centres, len(motion), ends
+
+    assert account(from_description(raw), size) == account(sb.load("five_rod"))
 
 
 @pytest.mark.parametrize("off", [1e-3, 1e-6, -1e-6, -1e-3])

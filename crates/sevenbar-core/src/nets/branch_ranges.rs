@@ -76,7 +76,7 @@ const WHOLE: f64 = 0.05;
 /// The account of the branch points of an input.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Counted {
-    /// Inputs [rad] between which there is at most one branch point; those about the smallest ranges lie a little away.
+    /// Inputs [rad, or relative to the size] between which there is at most one branch point; those about the smallest ranges lie a little away.
     pub ends: Vec<f64>,
     /// Real branch points.
     pub real: usize,
@@ -121,7 +121,7 @@ type Change = [f64; FUNCTIONS];
 /// Numbers of a range, of each function.
 type Numbers = [i64; FUNCTIONS];
 
-/// A range of the input, up to a height [rad].
+/// A range of the input, up to a height [rad, or relative to the size].
 #[derive(Clone, Copy)]
 struct Range {
     ends: [f64; 2],
