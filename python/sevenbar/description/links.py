@@ -146,7 +146,7 @@ class NamedLinks:
         for i, (joint, outwards) in enumerate(order):
             # the last joint of a drawing counts the link before it against the ground
             forward = outwards != (i + 1 == len(order))
-            tables.append(_turned(joint, forward=forward))
+            tables.append(_turned(joint, outwards=outwards, forward=forward))
         numbers = {}
         for i, (joint, outwards) in enumerate(order, 1):
             numbers[joint.between[1 if outwards else 0]] = i
@@ -166,17 +166,18 @@ class NamedLinks:
         return Problem(edge.place + problem.place[match.end() :], problem.message)
 
 
-def _turned(joint: Edge, *, forward: bool) -> dict[str, Any]:
-    """The table of a joint in a loop, its links turned round where not `forward`."""
+def _turned(joint: Edge, *, outwards: bool, forward: bool) -> dict[str, Any]:
+    """The table of a joint in a loop, its links in order, its values turned round where not `forward`."""
     table = {"name": joint.name, **{k: v for k, v in joint.table.items() if k != "between"}}
-    if forward:
-        return table
-    if "axis" in table:
-        table["axis"] = _reversed(table["axis"])
-    if isinstance(table.get("axes"), list | tuple):
+    if isinstance(table.get("axes"), list | tuple) and not outwards:
         # what the first link holds is held by the second
-        table["axes"] = [_reversed(axis) for axis in reversed(table["axes"])]
+        table["axes"] = list(reversed(table["axes"]))
         table["kind"] = OTHER_SLOT.get(table.get("kind", ""), table.get("kind"))
+    if not forward:
+        if "axis" in table:
+            table["axis"] = _reversed(table["axis"])
+        if isinstance(table.get("axes"), list | tuple):
+            table["axes"] = [_reversed(axis) for axis in table["axes"]]
     return table
 
 

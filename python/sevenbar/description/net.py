@@ -14,7 +14,7 @@ from sevenbar.errors import DescriptionError, Problem
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.loop.geometry import BallRod, Drive, Joint, Point
 from sevenbar.kinematics.loop.joints import ANYWHERE, KINDS, columns_apart
-from sevenbar.kinematics.loop.rigid import cross, inverse, perpendicular, pose, unit
+from sevenbar.kinematics.loop.rigid import cross, inverse, pose, unit
 
 
 def net_of(links: NamedLinks, raw: Mapping[str, Any], source: str) -> Linkage:
@@ -83,7 +83,10 @@ def drawn_frames(
     axis: tuple[float, float, float] | None,
     axes: tuple[tuple[float, float, float], tuple[float, float, float]] | None,
 ) -> tuple[Floats, Floats, float]:
-    """The frames (4, 4) of a joint on both links, in ground coordinates, and the angle [rad] of its axes."""
+    """The frames (4, 4) of a joint on both links, in ground coordinates, and the angle [rad] of its axes.
+
+    x is the ground axis most nearly across z, so those of a ball are the ground's.
+    """
     row = KINDS[kind]
     if axes is not None:
         first, second = unit(axes[0]), unit(axes[1])
@@ -97,7 +100,8 @@ def drawn_frames(
         frame = _frame(cross(slot, pin), pin, at)
         return frame, frame, 0.0
     z = unit(axis) if axis is not None else np.array([0.0, 0.0, 1.0])
-    frame = _frame(perpendicular(z), z, at)
+    aside = np.eye(3)[np.argmin(np.abs(z))]
+    frame = _frame(unit(aside - (aside @ z) * z), z, at)
     return frame, frame, 0.0
 
 
