@@ -191,6 +191,19 @@ _RawBody = tuple[
     Sequence[tuple[Sequence[int], tuple[float, float, float], tuple[int | None, int | None]]],
 ]
 
+#: One loop: the letters of its joints, the advance of each, its place and direction; each link by how many
+#: joints lead to it and the steps of its two sides; the steps of the known links; the point in which all axes
+#: meet; the steps of joints that have several.
+_RawLoop = tuple[
+    str,
+    Sequence[float],
+    Sequence[tuple[tuple[float, float, float], tuple[float, float, float]]],
+    Sequence[tuple[int, tuple[int, int]]],
+    tuple[int | None, int | None],
+    tuple[float, float, float] | None,
+    Sequence[Sequence[int]],
+]
+
 @final
 class NetRows:
     """The rows of a circuit of a net, which makes points of them; pickled as their numbers."""
@@ -229,7 +242,7 @@ class Net:
     ) -> tuple[int, list[list[float]], list[list[float]]]: ...
     def modes(
         self,
-        solved: Sequence[_RawDyad | _RawBlock | _RawBody],
+        solved: Sequence[_RawDyad | _RawBlock | _RawBody | _RawLoop],
         driven: int,
         value: float,
     ) -> tuple[
@@ -238,7 +251,7 @@ class Net:
     def searched_modes(self, column: int, value: float) -> tuple[_Floats, _Floats, npt.NDArray[np.bool_]]: ...
     def motion(
         self,
-        solved: Sequence[_RawDyad | _RawBlock | _RawBody] | None,
+        solved: Sequence[_RawDyad | _RawBlock | _RawBody | _RawLoop] | None,
         input: int,
         output: int,
         samples: int,
@@ -247,7 +260,7 @@ class Net:
     ) -> tuple[RawMotion, list[NetRows]]: ...
     def circuit_through(
         self,
-        solved: Sequence[_RawDyad | _RawBlock | _RawBody] | None,
+        solved: Sequence[_RawDyad | _RawBlock | _RawBody | _RawLoop] | None,
         pose: _Floats,
         input: int,
         output: int,

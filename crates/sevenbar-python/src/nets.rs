@@ -1,6 +1,6 @@
 //! Nets of several loops, for Python.
 
-use crate::loops::pose;
+use crate::loops::{kinds, pose};
 use crate::values::{RawCircuit, RawMotion, RawSearch, RowArrays};
 use crate::working::working;
 use crate::{CoreError, in_rows, law_rows};
@@ -12,8 +12,9 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use sevenbar_core::nets::{
-    self, BlockJoint, BodyBlock, DescribedNet, Dyad, Edge, Facing, Leg, Move, NetCircuit, NetJoint,
-    NetThrough, NotFollowed, Over, Pair, Part, PlanarBlock, Reading, Row, Stage, Step, Unbalanced,
+    self, BlockJoint, BodyBlock, DescribedNet, Dyad, Edge, Facing, Leg, LoopBlock, LoopLink, LoopStep, Move,
+    NetCircuit, NetJoint, NetThrough, NotFollowed, Over, Pair, Part, PlanarBlock, Reading, Row, Stage, Step,
+    Unbalanced,
 };
 use sevenbar_core::rigid::{Pose, Vec3};
 
@@ -137,12 +138,26 @@ type RawLeg = (Vec<usize>, Vec3, [Option<usize>; 2]);
 /// A link in space: its steps, the rows of each joint and rod between it and known links, its legs.
 type RawBody = (Vec<usize>, Vec<Vec<RawRow>>, Vec<RawLeg>);
 
+/// One loop: the letters R P H S of its joints from a known link to another, the advance of each for a radian (H), a place on its axis and the
+/// direction of that; each link by how many joints lead to it and the steps of the sides at which the loop comes and leaves; the steps of
+/// the known links; the point in which all axes meet, where they do; the steps of joints that have several.
+type RawLoop = (
+    String,
+    Vec<f64>,
+    Vec<[Vec3; 2]>,
+    Vec<(usize, [usize; 2])>,
+    [Option<usize>; 2],
+    Option<Vec3>,
+    Vec<Vec<usize>>,
+);
+
 /// Links that are solved together.
 #[derive(FromPyObject)]
 enum RawPart {
     Dyad(RawDyad),
     Block(RawBlock),
     Body(RawBody),
+    Loop(RawLoop),
 }
 
 impl RawPart {
@@ -178,6 +193,14 @@ impl RawPart {
                 let legs = legs.into_iter().map(leg).collect();
                 Part::Body(BodyBlock { steps, rows, legs })
             }
+            Self::Loop((letters, advances, axes, links, ends, centre, joints)) => {
+                let kinds = kinds(&letters, &advances)?;
+                let step = |(kind, [origin, axis]): (_, [Vec3; 2])| LoopStep { kind, origin, axis };
+                let steps = kinds.into_iter().zip(axes).map(step).collect();
+                let link = |(after, on)| LoopLink { after, on };
+                let links = links.into_iter().map(link).collect();
+                Part::Loop(LoopBlock { steps, links, ends, centre, joints })
+            }
         })
     }
 }
@@ -202,6 +225,12 @@ fn parts(raw: Vec<RawPart>, steps: usize) -> PyResult<Vec<Part>> {
                 .chain(of_legs)
                 .chain(own.copied())
                 .any(|step| step >= steps)
+        }
+        Part::Loop(block) => {
+            let on = block.links.iter().flat_map(|link| link.on);
+            let of_joints = block.joints.iter().flatten().copied();
+            let mut on = on.chain(block.ends.into_iter().flatten()).chain(of_joints);
+            block.steps.is_empty() || on.any(|step| step >= steps)
         }
     };
     if parts.iter().any(beyond) {

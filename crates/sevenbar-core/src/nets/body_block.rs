@@ -121,7 +121,7 @@ impl BodyBlock {
             for poses in ways {
                 for values in leg.reaching(net, before, own, link) {
                     let mut poses = poses.clone();
-                    follow(net, &mut poses, &leg.steps, &values);
+                    net.follow(&mut poses, &leg.steps, &values);
                     before.weld(&mut poses, &leg.steps);
                     longer.push(poses);
                 }
@@ -129,24 +129,13 @@ impl BodyBlock {
             ways = longer;
         }
         ways.retain_mut(|poses| {
-            let parent = net.steps[self.steps[0]].parent;
-            let moved = parent.map_or(Pose::STILL, |p| poses[p]).inverse().then(own);
-            let values = net.unfolded(&self.steps, &moved);
-            follow(net, poses, &self.steps, &values);
+            net.unfold(poses, &self.steps, own);
             before.weld(poses, &[link]);
             // rows of angles hold with a turned axis, too, to which no steps lead
             dot(poses[link].rotation[0], own.rotation[0]) > 0.0
                 && dot(poses[link].rotation[1], own.rotation[1]) > 0.0
         });
         ways
-    }
-}
-
-/// Places steps in a row that move by so much.
-fn follow(net: &Net, poses: &mut [Pose], steps: &[usize], values: &[f64]) {
-    for (&step, &by) in steps.iter().zip(values) {
-        let parent = net.steps[step].parent.map_or(Pose::STILL, |p| poses[p]);
-        poses[step] = parent.then(&net.moving_by(step, by));
     }
 }
 

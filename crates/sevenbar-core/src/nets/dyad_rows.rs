@@ -82,7 +82,7 @@ impl DyadRows {
             .iter()
             .map(|part| match part {
                 Part::Dyad(stage) => Some(stage),
-                Part::Planar(_) | Part::Body(_) => None,
+                Part::Planar(_) | Part::Body(_) | Part::Loop(_) => None,
             })
             .collect();
         let stages = stages?;

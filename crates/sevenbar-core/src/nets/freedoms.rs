@@ -5,6 +5,7 @@
 //! Source: docs/theory_nets.md, (5).
 
 use super::net::{NO_RANK, Net};
+use super::rows::Row;
 use crate::loops::singular_values;
 use crate::random::Random;
 use std::f64::consts::PI;
@@ -33,7 +34,7 @@ pub struct Freedoms {
     pub repeated: Vec<Vec<f64>>,
     /// How each column moves in each of the motions that are free there to first order, of unit length.
     pub free: Vec<Vec<f64>>,
-    /// Rows, each of which repeats none of those before it, as many as the rank.
+    /// Rows none of which repeats others, as many as the rank.
     pub independent: Vec<usize>,
 }
 
@@ -98,28 +99,32 @@ fn at_pose(net: &Net, pose: &[f64]) -> Freedoms {
         rank,
         repeated,
         free: vectors[rank..].to_vec(),
-        independent: independent(&columns, errors.len(), rank),
+        independent: independent(net, &columns, rank),
     }
 }
 
-/// Of so many rows those that repeat none before them, as many as a rank.
-fn independent(columns: &[Vec<f64>], rows: usize, rank: usize) -> Vec<usize> {
+/// The rows that repeat no others, as many as a rank.
+fn independent(net: &Net, columns: &[Vec<f64>], rank: usize) -> Vec<usize> {
+    // angles first: of joints about one point they hold it all, and places, which then repeat them, do not at every pose
+    let mut order: Vec<usize> = (0..net.rows.len()).collect();
+    order.sort_by_key(|&r| !matches!(net.rows[r], Row::Angle { .. }));
     let mut repeats = REPEATS;
     loop {
-        let selected = apart(columns, rows, rank, repeats);
+        let mut selected = apart(columns, &order, rank, repeats);
         // where rows nearly repeat others, what is left of them counts
         if selected.len() == rank || repeats < f64::EPSILON {
+            selected.sort_unstable();
             return selected;
         }
         repeats *= 0.1;
     }
 }
 
-/// Of so many rows, up to a rank, those of which more than this part is square to all before them (Gram and Schmidt).
-fn apart(columns: &[Vec<f64>], rows: usize, rank: usize, repeats: f64) -> Vec<usize> {
+/// Of rows in an order, up to a rank, those of which more than this part is square to all before them (Gram and Schmidt).
+fn apart(columns: &[Vec<f64>], order: &[usize], rank: usize, repeats: f64) -> Vec<usize> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let (mut selected, mut square): (Vec<usize>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
-    for r in 0..rows {
+    for &r in order {
         let row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
         let mut rest = row.clone();
         // twice, for what rounding leaves of the first time

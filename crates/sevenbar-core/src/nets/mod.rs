@@ -1,6 +1,6 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `block_branch_points`, `account`, `seeds`, `motion`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `loop_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `block_branch_points`, `account`, `seeds`, `motion`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
@@ -21,6 +21,7 @@ mod freedoms;
 mod hinged;
 mod in_plane;
 mod joints;
+mod loop_block;
 mod modes;
 mod monodromy;
 mod motion;
@@ -47,6 +48,7 @@ pub use described::DescribedNet;
 pub use dyads::{Dyad, Pair};
 pub use freedoms::{Freedoms, freedoms};
 pub use joints::{NetJoint, Reading};
+pub use loop_block::{LoopBlock, LoopLink, LoopStep};
 pub use modes::{Mode, NetModes, Part, Stage, modes};
 pub use motion::{
     FoundMode, NetChangePoint, NetCircuit, NetMotion, NetThrough, NotFollowed, Over, net_circuit_through,

@@ -5,6 +5,7 @@
 use super::before::Before;
 use super::body_block::BodyBlock;
 use super::dyads::Dyad;
+use super::loop_block::LoopBlock;
 use super::net::Net;
 use super::planar_block::PlanarBlock;
 use super::rows::On;
@@ -35,6 +36,8 @@ pub enum Part {
     Planar(PlanarBlock),
     /// One in space, with legs.
     Body(BodyBlock),
+    /// Those of one loop.
+    Loop(LoopBlock),
 }
 
 /// Modes of a net, and how it is known that none is missing.
@@ -107,6 +110,13 @@ pub fn modes(net: &Net, parts: &[Part], driven: usize, value: f64) -> Option<Net
                     completeness = own.map_or(completeness, |own| Some(own.or_less(completeness)));
                     let curved = *on_curve || together.on_curve;
                     longer.extend(together.poses.into_iter().map(|next| (next, curved)));
+                }
+                Part::Loop(block) => {
+                    let before = Before { poses, held: driven, from, moved, size: net.size };
+                    let together = block.together(net, &before)?;
+                    completeness = Some(together.completeness.or_less(completeness));
+                    let curved = |curved| *on_curve || curved;
+                    longer.extend(together.poses.into_iter().map(|(next, own)| (next, curved(own))));
                 }
             }
         }

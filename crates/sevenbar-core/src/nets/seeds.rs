@@ -51,6 +51,7 @@ pub(super) fn whole_curves<const C: usize, const R: usize, const B: usize>(
     let values: Vec<f64> = values.into_iter().chain(ends).collect();
     curves.search.values = values.len();
     let mut at_ends: Vec<AtEnd<SizedNet<C, R, B>>> = Vec::new();
+    let mut all: Vec<At<SizedNet<C, R, B>>> = Vec::new();
     for (k, &input_value) in values.iter().enumerate() {
         let found = parts.and_then(|parts| modes(&described.net, parts, input, input_value));
         let isolated = found
@@ -63,6 +64,7 @@ pub(super) fn whole_curves<const C: usize, const R: usize, const B: usize>(
         if searches {
             modes.extend(searched(net, input, input_value, STARTS_OF_MANY));
         }
+        all.extend(&modes);
         let unknown = curves.unknown(net, &modes);
         curves.take(net, &unknown, input);
         if k < seeds {
@@ -72,27 +74,31 @@ pub(super) fn whole_curves<const C: usize, const R: usize, const B: usize>(
         }
     }
     curves.finish(net);
-    forget_open(described, net, &mut curves);
+    if forget_open(described, net, &mut curves) && !curves.unknown(net, &all).is_empty() {
+        curves.search.completeness = Completeness::Searched;
+    }
     if let Some(account) = account {
         curves.search.count = Ok(account.against(net, &curves, &at_ends, input));
     }
     curves
 }
 
-/// Forgets curves along which rows that were left out, as they repeat others, do not agree: those of a net without these rows.
+/// Forgets curves along which rows that were left out, as they repeat others, do not agree: those of a net without these rows. Whether there
+/// were any.
 fn forget_open<const C: usize, const R: usize, const B: usize>(
     described: &DescribedNet,
     net: &SizedNet<C, R, B>,
     curves: &mut Curves<SizedNet<C, R, B>>,
-) {
+) -> bool {
     let closes = |at: &At<SizedNet<C, R, B>>| described.closes(net.values(at), net.balls(at));
     let before = curves.curves.len();
     curves.curves.retain(|c| c.nodes.iter().all(|n| closes(&n.at)));
-    if curves.curves.len() < before {
-        curves.search.completeness = Completeness::Searched;
+    let forgets = curves.curves.len() < before;
+    if forgets {
         let own = &curves.curves;
         curves
             .change_points
             .retain(|p| own.iter().any(|c| p.is_on(net, c)));
     }
+    forgets
 }

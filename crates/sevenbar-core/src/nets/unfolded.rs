@@ -64,6 +64,22 @@ impl Net {
         by
     }
 
+    /// Places steps in a row so that they lead to a pose, or as near as they can.
+    pub(super) fn unfold(&self, poses: &mut [Pose], steps: &[usize], to: &Pose) {
+        let parent = steps.first().and_then(|&first| self.steps[first].parent);
+        let moved = parent.map_or(Pose::STILL, |p| poses[p]).inverse().then(to);
+        let by = self.unfolded(steps, &moved);
+        self.follow(poses, steps, &by);
+    }
+
+    /// Places steps in a row that move by so much.
+    pub(super) fn follow(&self, poses: &mut [Pose], steps: &[usize], by: &[f64]) {
+        for (&step, &by) in steps.iter().zip(by) {
+            let parent = self.steps[step].parent.map_or(Pose::STILL, |p| poses[p]);
+            poses[step] = parent.then(&self.moving_by(step, by));
+        }
+    }
+
     /// The motion of a step by so much [rad, or length] from where it is drawn.
     pub(super) fn moving_by(&self, step: usize, by: f64) -> Pose {
         let step = &self.steps[step];

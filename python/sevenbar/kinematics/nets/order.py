@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -26,8 +27,9 @@ Group = Literal["planar", "spherical", "spatial"]
 #: The freedoms of a link in each.
 FREEDOMS: dict[Group, int] = {"planar": 3, "spherical": 3, "spatial": 6}
 
-#: The joints of cycles in a plane that are solved before the rest of a part in space.
+#: The joints of cycles in a plane, and about a point, that are solved before the rest of a part in space.
 IN_PLANES = ("R", "P", "K", "L")
+ABOUT_POINTS = ("R", "U")
 
 #: How far axes may be from parallel [rad], or from one point [share of the size].
 SAME = AGREE
@@ -118,7 +120,7 @@ class Parts:
             return "spatial"
         if self._is_planar(joints):
             return "planar"
-        return "spherical" if joints == list(edges) and self._is_spherical(joints) else "spatial"
+        return "spherical" if joints == list(edges) and self.centre(joints) is not None else "spatial"
 
     @cached_property
     def _frames(self) -> Floats:
@@ -131,35 +133,52 @@ class Parts:
         own = [self.linkage.joints[joint] for joint in joints]
         return across(own, self._frames[list(joints)]) is not None
 
-    def _is_spherical(self, joints: Sequence[int]) -> bool:
-        """Whether all are hinges whose axes meet in one point."""
-        if any(self.linkage.joints[joint].kind != "R" for joint in joints):
-            return False
-        frames = self._frames[list(joints)]
+    def centre(self, joints: Sequence[int]) -> Floats | None:
+        """The one point (3,) in which all axes of joints meet; `None` where some slide, or they do not."""
+        places, axes = [], []
+        for joint in joints:
+            turning, frame = self.linkage.joints[joint], self._frames[joint]
+            for step in turning.row.steps:
+                # the second axis of a joint U is known as drawn alone
+                if step.freedom == "slide" or (step.tilted and self.linkage.net is None):
+                    return None
+                turned = frame @ turning.before(step) if step.tilted else frame
+                places.append(frame[:3, 3])
+                axes.append(turned[:3, step.axis])
         # the point nearest to all axes
-        across = [np.eye(3) - np.outer(frame[:3, 2], frame[:3, 2]) for frame in frames]
-        sides = [project @ frame[:3, 3] for project, frame in zip(across, frames, strict=True)]
+        across = [np.eye(3) - np.outer(axis, axis) for axis in axes]
+        sides = [project @ place for project, place in zip(across, places, strict=True)]
         centre, _, rank, _ = np.linalg.lstsq(np.concatenate(across), np.concatenate(sides), rcond=SAME)
         off = [
-            np.linalg.norm(project @ (centre - frame[:3, 3]))
-            for project, frame in zip(across, frames, strict=True)
+            np.linalg.norm(project @ (centre - place)) for project, place in zip(across, places, strict=True)
         ]
-        return bool(rank == 3 and max(off) < SAME * self.linkage.size)
+        return centre if rank == 3 and max(off) < SAME * self.linkage.size else None
 
-    def planes(self, edges: Sequence[int], driven: int) -> list[set[int]]:
-        """The joints of cycles in a plane within a part in space: of a four-bar that drives an RSSR, say."""
-        joints = [edge for edge in {*edges, driven} if edge < self.first_rod]
-        joints = sorted(edge for edge in joints if self.linkage.joints[edge].kind in IN_PLANES)
-        result: list[set[int]] = []
-        for first in joints:
-            if self.linkage.joints[first].kind != "R" or any(first in cycle for cycle in result):
-                continue
-            alike = [edge for edge in joints if self._is_planar([first, edge])]
-            between = [self.between[edge] for edge in alike]
-            root = self.between[first][0]
-            cycles = _core.biconnected_parts(self.linkage.graph.ground, between, root)
-            result += [{alike[k] for k in cycle} for cycle in cycles if len(cycle) > 2]
+    def cycles_within(self, edges: Sequence[int], driven: int) -> list[tuple[set[int], Group]]:
+        """The joints of cycles in a plane or about a point within a part in space.
+
+        Of a four-bar that drives an RSSR, say.
+        """
+        joints = sorted(edge for edge in {*edges, driven} if edge < self.first_rod)
+        in_planes = [edge for edge in joints if self.linkage.joints[edge].kind in IN_PLANES]
+        about_points = [edge for edge in joints if self.linkage.joints[edge].kind in ABOUT_POINTS]
+        result: list[tuple[set[int], Group]] = []
+        for first in in_planes:
+            if self.linkage.joints[first].kind == "R" and not any(first in cycle for cycle, _ in result):
+                alike = [edge for edge in in_planes if self._is_planar([first, edge])]
+                result += [(cycle, "planar") for cycle in self._cycles(alike)]
+        for both in combinations(about_points, 2):
+            known = any(cycle.issuperset(both) for cycle, _ in result)
+            if not known and self.centre(both) is not None:
+                alike = [edge for edge in about_points if self.centre([*both, edge]) is not None]
+                result += [(cycle, "spherical") for cycle in self._cycles(alike)]
         return result
+
+    def _cycles(self, joints: Sequence[int]) -> list[set[int]]:
+        """The joints of each biconnected part that joints alone make."""
+        between = [self.between[edge] for edge in joints]
+        parts = _core.biconnected_parts(self.linkage.graph.ground, between, between[0][0])
+        return [{joints[k] for k in part} for part in parts if len(part) > 2]
 
     def rows(self, edge: int, group: Group) -> int:
         """How many freedoms of one link against the other an edge takes."""
@@ -223,12 +242,13 @@ def order_of(linkage: Loop, column: int) -> Order:
         numbers = [edges[k] for k in part]
         group = groups[numbers[0]]
         if group == "spatial":
-            # cycles in a plane first, those that hang on others after them
-            planes = [sorted(plane.intersection(numbers)) for plane in parts.planes(numbers, driven)]
-            for plane in planes * len(planes):
-                if set(plane) <= set(numbers) and (first := solved(plane, "planar").blocks):
+            # cycles in a plane or about a point first, those that hang on others after them
+            cycles = parts.cycles_within(numbers, driven)
+            for cycle, of in cycles * len(cycles):
+                remaining = sorted(cycle.intersection(numbers))
+                if remaining and (first := solved(remaining, of).blocks):
                     blocks += first
-                    numbers = [edge for edge in numbers if edge not in plane]
+                    numbers = [edge for edge in numbers if edge not in remaining]
         order = solved(numbers, group)
         if order.free or order.held:
             return order

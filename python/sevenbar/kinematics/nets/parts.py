@@ -1,4 +1,4 @@
-"""The blocks of a net as the core solves them: dyads, other planar blocks, links in space with their legs.
+"""The blocks of a net as the core solves them: dyads, other planar blocks, loops, links in space with legs.
 
 Source: docs/theory_nets.md, (7) and (10) to (22).
 """
@@ -12,6 +12,7 @@ from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Y, Z
 from sevenbar.kinematics.nets.chords import Triple, joint_rows, rod_row, three
+from sevenbar.kinematics.nets.one_loop import RawLoop, one_loop
 from sevenbar.kinematics.nets.order import LinkBlock, Parts, as_one
 from sevenbar.kinematics.nets.tree import RawRow, Tree
 
@@ -32,7 +33,11 @@ SLOTS = {"K": 0, "L": 1}
 FEET = ("R", "P", "U")
 
 
-def parts_of(linkage: Loop, tree: Tree) -> list[RawDyad | RawBlock | RawBody] | None:
+#: Any of them.
+RawPart = RawDyad | RawBlock | RawBody | RawLoop
+
+
+def parts_of(linkage: Loop, tree: Tree) -> list[RawPart] | None:
     """The blocks of a net in the order in which they are solved.
 
     `None` where one has no solver, or the driven joint has more than one freedom.
@@ -40,13 +45,13 @@ def parts_of(linkage: Loop, tree: Tree) -> list[RawDyad | RawBlock | RawBody] | 
     driven, blocks = tree.first[0], tree.order.blocks
     if not blocks or linkage.joints[driven].kind not in ("R", "P"):
         return None
-    parts = []
+    parts: list[RawPart] = []
     for block in blocks:
-        part = (
-            _planar(linkage, tree, block)
-            if block.group == "planar"
-            else LinkInSpace(linkage, tree, block).raw
-        )
+        part: RawPart | None
+        if block.group == "planar":
+            part = _planar(linkage, tree, block)
+        else:
+            part = one_loop(linkage, tree, block) or LinkInSpace(linkage, tree, block).raw
         if part is None:
             return None
         parts.append(part)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TypeVar, cast
+from typing import NamedTuple, TypeVar, cast
 
 import numpy as np
 
@@ -35,6 +35,34 @@ RawRow = tuple[str, tuple[int | None, int | None], tuple[Triple, Triple], float]
 #: The rows of a circuit as the core has them, and a circuit with its rows.
 NetRows = _core.NetRows
 CoreCircuit = tuple[_core.RawCircuit, NetRows]
+
+
+class Freedom(NamedTuple):
+    """A freedom of a joint as drawn: its letter (S of a ball's first), a place on its axis, its direction.
+
+    `advance` [length for a radian] is that of H.
+    """
+
+    letter: str
+    advance: float
+    origin: Floats
+    axis: Floats
+
+
+def freedoms_of(linkage: Loop, joint: int, *, outwards: bool) -> list[Freedom]:
+    """The freedoms of a joint from the link before it to that after it, or the other way round."""
+    row, advance = linkage.joints[joint].row, linkage.joints[joint].advance
+    first, second = (linkage.drawn_joint_on(joint, link) for link in linkage.graph.between[joint])
+    result: list[Freedom] = []
+    for step in row.steps if outwards else row.steps[::-1]:
+        if step.driven:
+            continue
+        frame = second if step.tilted else first
+        # the link before against the link after moves the other way round
+        axis = frame[:3, step.axis] if outwards else -frame[:3, step.axis]
+        letter = "H" if row.is_screw else "S" if row.is_ball and not result else step.letter
+        result.append(Freedom(letter, advance if row.is_screw else 0.0, frame[:3, 3], axis))
+    return result
 
 
 @dataclass
@@ -92,21 +120,12 @@ class Tree:
         """Puts a joint, and the link that it leads to, into the tree."""
         before, after = self.linkage.graph.between[joint]
         outwards = before in self.carrier
-        row, advance = self.linkage.joints[joint].row, self.linkage.joints[joint].advance
-        first, second = (self.linkage.drawn_joint_on(joint, link) for link in (before, after))
         at = self.carrier[before if outwards else after]
-        steps = row.steps if outwards else row.steps[::-1]
         # only a joint of one value reads another than 0 as drawn
         reads = self.linkage.joints[joint].value
         columns = self.columns[joint] = []
-        for step in steps:
-            if step.driven:
-                continue
-            frame = second if step.tilted else first
-            # the link before against the link after moves the other way round
-            axis = frame[:3, step.axis] if outwards else -frame[:3, step.axis]
-            letter = "H" if row.is_screw else "S" if row.is_ball and not columns else step.letter
-            at = self._step(letter, advance if row.is_screw else 0.0, at, frame[:3, 3], axis, reads)
+        for freedom in freedoms_of(self.linkage, joint, outwards=outwards):
+            at = self._step(freedom.letter, freedom.advance, at, freedom.origin, freedom.axis, reads)
             columns.insert(len(columns) if outwards else 0, at)
         self.carrier[after if outwards else before] = at
 
