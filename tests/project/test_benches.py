@@ -290,6 +290,32 @@ def test_a_quick_look_at_an_array_of_rssrs_agrees_with_numpy_and_tells_of_numba(
         assert table.rows[2][-1] == "not installed"
 
 
+def test_rows_of_nets_are_timed_without_pylinkage_too_and_the_reason_is_in_its_rows():
+    from evidence.benches.cases import nets_pylinkage
+    from evidence.benches.setting import Setting
+
+    gone = peers.Peers([peers.Peer("pylinkage", reason="not installed")])
+    table = nets_pylinkage.compared(Setting(gone, quick=True), "watt")
+    assert [row[0] for row in table.rows] == ["Sevenbar", "pylinkage, places", "pylinkage, with rates"]
+    assert table.rows[0][1] > 0
+    assert [row[-1] for row in table.rows[1:]] == ["not installed"] * 2
+
+
+def test_places_of_nets_are_those_that_dyads_of_their_drawn_lengths_have():
+    from evidence.benches.cases import nets_pylinkage
+
+    for name, plan in nets_pylinkage.PLANS.items():
+        drawn = nets_pylinkage.drawn(name)
+        (places, *_), _ = nets_pylinkage.true_rows(sb.load(name), name, 24)
+        own = dict(zip(nets_pylinkage.moving(name), places.transpose(1, 0, 2), strict=True))
+        for label, at in drawn.places.items():
+            own.setdefault(label, np.array([at]))
+        for label, _, *anchors in plan:
+            for anchor in anchors:
+                length = math.dist(drawn.places[label], drawn.places[anchor])
+                assert np.abs(np.linalg.norm(own[label] - own[anchor], axis=1) - length).max() < 1e-12
+
+
 def test_a_change_in_the_studio_is_timed_by_what_it_sends_itself(monkeypatch):
     """Also where its last message comes so late that the page seemed to be at rest before."""
     from evidence.benches.cases import studio

@@ -1,19 +1,30 @@
-"""Rows of planar nets of dyads and of a four-bar: what one more row of a circuit costs."""
+"""Nets of several loops: rows of circuits, modes, whole motions, and what the command `analyze` takes."""
 
 from __future__ import annotations
 
 import sevenbar as sb
-from evidence.benches.cases import yardsticks
+from evidence.benches.cases import nets_modes, nets_motion, nets_pylinkage, yardsticks
 from evidence.benches.harness import Work, compare
 from evidence.benches.outcome import Cell, Outcome, Table
 from evidence.benches.setting import Setting
 
-TITLE = "Rows of planar nets"
+TITLE = "Nets of several loops"
 ABOUT = """\
-A circuit from a known pose at few and at many inputs: the difference is what rows cost, each with values,
-velocities, accelerations and jerks of all joints, status, closure error and condition number; what is left
-is following the circuit. CPU time, one thread; the yardstick, the sine and cosine of as many numbers by
-NumPy, is measured in the same process."""
+**Rows.** A circuit from a known pose at few and at many inputs: the difference is what rows cost, each with
+values, velocities, accelerations and jerks of all joints, status, closure error and condition number; what
+is left is following the circuit. The yardstick, the sine and cosine of as many numbers by NumPy, is measured
+in the same process.
+
+**pylinkage** places the pins of planar linkages dyad by dyad from one step of the crank to the next,
+compiled by numba (`step_fast`), or with velocities and accelerations (`step_fast_with_kinematics`); its
+first call, which compiles, is not timed. Sevenbar's call follows the circuit first and checks each row. *A
+row* is the difference between many and few inputs. Differences are in sizes for places, relative to the
+greatest for rates, of all pins that move and the foot.
+
+**Modes** are all at one input, as a mean over 16 inputs near each other. *Start* is what the first call in a
+new process takes more than the second: the starts of a block's family are computed once. **All circuits** are
+`linkage.motion()`, which finds and counts them and follows each. **analyze** is the whole command, from the
+file to the printed report, without the process. CPU time, one thread."""
 
 #: Inputs in a turn, few and many.
 SAMPLES = (3_600, 14_400)
@@ -30,7 +41,13 @@ def linkages() -> dict[str, sb.Linkage]:
 
 
 def run(setting: Setting) -> Outcome:
-    """One table."""
+    """All tables."""
+    tables = [rows_of_circuits(setting), *nets_pylinkage.tables(setting), nets_modes.table(setting)]
+    return Outcome(TITLE, ABOUT, [*tables, nets_motion.motions(setting), nets_motion.analyses(setting)])
+
+
+def rows_of_circuits(setting: Setting) -> Table:
+    """What one more row of a circuit costs."""
     sine = yardsticks.sine_and_cosine(SAMPLES[1])
     rows: list[list[Cell]] = []
     for name, linkage in linkages().items():
@@ -45,4 +62,4 @@ def run(setting: Setting) -> Outcome:
         follow = short - counts[0] * row
         rows.append([name, float(len(linkage.columns)), 1e9 * row, row / sine, 1e3 * follow, ""])
     columns = ["", "joints", "ns a row", "times a sine and cosine", "following it [ms]", "note"]
-    return Outcome(TITLE, ABOUT, [Table("One more row of a circuit", columns, rows)])
+    return Table("One more row of a circuit", columns, rows)
