@@ -233,6 +233,15 @@ BLOCKS = {
         ),
         3,
     ),
+    # poles of its function hide two zeros from a count with one measure of how far solutions are
+    "double wishbone with poles": (
+        lambda: spatial(
+            ([0.01116, 0.22567, 0.13122], [1.14588, 0.15813, -0.06552], [-0.04273, 0.61984, 0.15112]),
+            ([-0.04321, 0.35232, 0.52599], [1.1216, 0.06311, 0.03617], [0.07375, 0.63041, 0.37622]),
+            [[0.16418, 0.31541, 0.22693], [0.06639, 0.70085, 0.30053]],
+        ),
+        4,
+    ),
 }  # fmt: skip
 
 

@@ -173,7 +173,7 @@ impl<F: Family<N, D>, const N: usize, const D: usize> Block<F, N, D> {
 }
 
 impl<F: Family<N, D>, const N: usize, const D: usize> Functions for Block<F, N, D> {
-    /// The products of both measures over all solutions.
+    /// The products of all measures over all solutions.
     fn values(&self, at: Complex64) -> Option<Values> {
         let (member, solutions) = self.solved(at)?;
         let here = self.family.between(&member, &member);
@@ -188,9 +188,11 @@ impl<F: Family<N, D>, const N: usize, const D: usize> Functions for Block<F, N, 
             let (.., determinant) = here.linearise::<Plain, false>(&lanes, Lanes::one()).solve();
             let [re, im] = [determinant.re, determinant.im].map(|v| v.store());
             for (k, x) in some.iter().enumerate() {
-                let [meets, far] = self.family.measures(x, Complex64::new(re[k], im[k]));
+                let (meets, far) = self.family.measures(x, Complex64::new(re[k], im[k]));
                 values[0] = turned(values[0], meets);
-                values[1] = turned(values[1], far);
+                for (n, far) in far.into_iter().enumerate() {
+                    values[2 * n + 1] = turned(values[2 * n + 1], far);
+                }
             }
         }
         Some(values)

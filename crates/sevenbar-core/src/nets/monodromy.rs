@@ -17,6 +17,9 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+/// How many measures there are of how far a solution is: where one grows another may vanish, and nothing is seen.
+pub(super) const FAR: usize = 3;
+
 /// Systems with the same N unknowns, whose numbers, vectors of D parts, may be any.
 pub(super) trait Family<const N: usize, const D: usize> {
     /// The systems on the straight line between two members.
@@ -33,9 +36,9 @@ pub(super) trait Family<const N: usize, const D: usize> {
     fn ways_of_constants(&self, random: &mut Random) -> Vec<Vec<[Complex64; D]>>;
     /// What the trace test sums over all solutions.
     fn traced(&self, x: &Solution<N>) -> Vec<Complex64>;
-    /// Of a solution where the rows' columns have this determinant: a number that vanishes where two solutions meet, and one that grows without
-    /// bound, or vanishes, where it runs to infinity. The products of either over all solutions are real for a real member.
-    fn measures(&self, x: &Solution<N>, determinant: Complex64) -> [Complex64; 2];
+    /// Of a solution where the rows' columns have this determinant: a number that vanishes where two solutions meet, and some that vanish, or grow
+    /// without bound, where that one grows. The products of each over all solutions are real for a real member.
+    fn measures(&self, x: &Solution<N>, determinant: Complex64) -> (Complex64, [Complex64; FAR]);
     /// The solution that a real member has besides, or the same one: it is real then.
     fn mirrored(&self, x: &Solution<N>) -> Solution<N>;
     /// How far a solution is, as a logarithm: it grows without bound along a path to infinity.

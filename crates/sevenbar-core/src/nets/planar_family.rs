@@ -5,7 +5,7 @@
 //!
 //! Source: docs/theory_nets.md, (11) and (12).
 
-use super::monodromy::{Family, Known, Starts};
+use super::monodromy::{FAR, Family, Known, Starts};
 use crate::loops::equation::closure::{Linear, Slides, Solution, UNKNOWNS};
 use crate::loops::equation::lanes::Lanes;
 use crate::loops::modes::continuation::{Homotopy, ROUNDING};
@@ -177,12 +177,15 @@ impl Family<UNKNOWNS, 2> for PlanarFamily {
     }
 
     /// Of all unknowns their distances from a number and from what is its mirror image for a real member.
-    fn measures(&self, x: &Solution, determinant: Complex64) -> [Complex64; 2] {
-        let from = |i: usize| {
-            let other = if i < self.turns { x[i].inv() } else { x[i] };
-            (x[i] - WATCHED) * (other - WATCHED.conj())
+    fn measures(&self, x: &Solution, determinant: Complex64) -> (Complex64, [Complex64; FAR]) {
+        let distances = |watched: Complex64| -> Complex64 {
+            let from = |i: usize| {
+                let other = if i < self.turns { x[i].inv() } else { x[i] };
+                (x[i] - watched) * (other - watched.conj())
+            };
+            (0..self.unknowns()).map(from).product()
         };
-        [determinant, (0..self.unknowns()).map(from).product()]
+        (determinant, WATCHED.map(distances))
     }
 
     fn mirrored(&self, x: &Solution) -> Solution {
@@ -209,8 +212,12 @@ impl Family<UNKNOWNS, 2> for PlanarFamily {
     }
 }
 
-/// A value that no turn or slide has.
-const WATCHED: Complex64 = Complex64::new(1.37, 2.18);
+/// Values that no turn or slide has.
+const WATCHED: [Complex64; FAR] = [
+    Complex64::new(1.37, 2.18),
+    Complex64::new(-2.91, 0.84),
+    Complex64::new(0.46, -3.77),
+];
 
 /// Signs of the exponents of `v+` and `v-`.
 const SIGNS: [f64; 2] = [1.0, -1.0];
