@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.reporting.how_found import how_found
 
 #: A planar four-bar, whose rocker drives another loop.
 FOUR_BAR = [
@@ -251,6 +252,7 @@ def test_two_universal_joints_in_a_row(forks, range_of_ratio, crosses):
     motion = net.motion(output="out")
     assert motion.completeness == "algebraic"
     assert len(motion) == 4
+    assert how_found(motion).endswith("one that lies between two of these values is not seen")
     for circuit in motion:
         assert circuit.velocity.lowest == pytest.approx(range_of_ratio[0], abs=1e-9)
         assert circuit.velocity.highest == pytest.approx(range_of_ratio[1], abs=1e-9)

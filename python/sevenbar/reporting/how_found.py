@@ -24,6 +24,9 @@ _UNCOUNTED = {
     "still": "circuits are not counted, since there may be motions with the joint at rest",
 }
 
+#: The same of a net whose modes are certain.
+_BETWEEN = "circuits are not counted: one that lies between two of these values is not seen"
+
 #: At which bound of work a search stopped short.
 _BOUNDS = {
     "long-curves": "the search stopped short at two curves that had no end after the most steps",
@@ -87,6 +90,8 @@ def _counted(motion: Motion) -> str:
     """What the count of branch points shows; empty where nothing was counted."""
     search = motion.search
     count = search.count
+    if count is None and search.uncounted == "searched" and motion.completeness != "searched":
+        return say(_BETWEEN)
     if count is None:
         return say(_UNCOUNTED[search.uncounted]) if search.uncounted in _UNCOUNTED else ""
     if not count.open:
