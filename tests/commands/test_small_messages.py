@@ -262,3 +262,22 @@ def test_who_writes_input_is_told_of_the_drive(tmp_path, before, place):
     file.write_text(f'format = 1\n{before}input = "crank"\n\n[[joint]]\nkind = "R"\n', encoding="utf-8")
     line = f"{place}: is not known here; the input is the joint of [drive]: write joint = .. below that head"
     assert line in mistake("analyze", file)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "plot rssr --kind skeleton --out x.png",
+        "analyze rssr --out x.csv",
+        "sweep rssr --over L1=30:60:3 --out x.csv",
+    ],
+)
+def test_the_name_of_a_file_is_no_folder(words, tmp_path):
+    name = words.split()[-1]
+    assert mistake(*words.split(), cwd=tmp_path) == (
+        f"{name}: is the name of a file, and --out is a folder here; give one, as in --out x"
+    )
+    assert not list(tmp_path.iterdir())
+    # a folder that is there may have any name
+    (tmp_path / name).mkdir()
+    assert sevenbar(*words.split(), cwd=tmp_path).returncode == 0

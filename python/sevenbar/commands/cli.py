@@ -38,7 +38,7 @@ from sevenbar.kinematics.circuits.motion import chosen_circuit
 from sevenbar.kinematics.linkage import sample_count
 from sevenbar.reporting.facts import idle_note
 from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
-from sevenbar.reporting.folder import Stopped, check_targets
+from sevenbar.reporting.folder import Stopped, check_folder_name, check_targets
 from sevenbar.text.ranges import Place
 
 #: Samples a turn of a motion that is drawn: two for each dot of a wide figure.
@@ -337,6 +337,7 @@ def plot_(
     force: options.Force = False,
 ) -> None:
     """Draw a linkage: curves of the output, all joints, all modes, the linkage in space, a point's path."""
+    check_folder_name(out)
     formats = options.figure_formats(figures, out)
     kinds = _kinds(kind)
     chosen = None if parts is None else tuple(options.words(parts))

@@ -14,7 +14,7 @@ import typer
 from sevenbar.commands.progress import progress_bar
 from sevenbar.commands.signals import stopped
 from sevenbar.reporting.files import Report
-from sevenbar.reporting.folder import Stopped, check_targets
+from sevenbar.reporting.folder import Stopped, check_folder_name, check_targets
 
 T = TypeVar("T")
 
@@ -22,6 +22,7 @@ T = TypeVar("T")
 def check_out(report: Report[T], out: Path | None, *, force: bool) -> None:
     """Raises `OutputError`, before long work, where the files of `--out` cannot be written."""
     if out is not None:
+        check_folder_name(out)
         check_targets(report.targets(out), force=force)
 
 

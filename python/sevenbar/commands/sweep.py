@@ -18,6 +18,7 @@ from sevenbar.commands.given import drafted
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report
+from sevenbar.reporting.folder import check_folder_name
 from sevenbar.text.words import say
 
 if TYPE_CHECKING:
@@ -74,6 +75,8 @@ def sweep(
     for name, _ in pairs:
         if [other for other, _ in pairs].count(name) > 1:
             raise RequestError(f"over: dimension '{name}' is given twice; leave one out")
+    if out is not None:
+        check_folder_name(out)
     for option, given in (("--resume", resume), ("--mixed", mixed)):
         if given and out is None:
             raise RequestError(f"{option}: of no folder; give --out too, as in '--out sweep'")

@@ -12,6 +12,9 @@ from sevenbar.errors import OutputError
 from sevenbar.text.aside import aside_prefix, clear_left
 from sevenbar.text.paths import is_folder, is_there
 
+#: Endings of files that commands write, which a folder hardly has.
+ENDINGS = (".png", ".svg", ".pdf", ".csv", ".json", ".md", ".html", ".gif", ".mp4", ".toml", ".xlsx")
+
 
 def check_targets(files: Iterable[Path], *, force: bool) -> None:
     """Raises `OutputError` where files cannot go, or would replace others without `force`; changes nothing.
@@ -25,6 +28,15 @@ def check_targets(files: Iterable[Path], *, force: bool) -> None:
             raise OutputError(f"{file}: is a folder where a file should go; give another path")
         if not force and is_there(file):
             raise OutputError(f"{file}: exists already; give another path, or --force to replace it")
+
+
+def check_folder_name(out: Path) -> None:
+    """Raises `OutputError` where the name of a folder that is not there is that of a file."""
+    if out.suffix.lower() in ENDINGS and not is_folder(out):
+        raise OutputError(
+            f"{out}: is the name of a file, and --out is a folder here; "
+            f"give one, as in --out {out.with_suffix('')}"
+        )
 
 
 def _check_name(file: Path) -> None:

@@ -64,8 +64,8 @@ class Search:
     open_by: Floats = field(default_factory=lambda: np.empty(0))
     #: How the circuits were counted; `None` where they were not.
     count: Count | None = None
-    #: Why they were not: modes were "searched", or of a net whose parts no count covers; a solution was "lost";
-    #: or with the input "still" others move.
+    #: Why not: modes were "searched", or no count covers the parts of a net; a solution was "lost"; or
+    #: with the input "still" others move.
     uncounted: Literal["searched", "lost", "still"] | None = None
 
 
