@@ -544,3 +544,19 @@ def test_a_coupler_curve_can_be_had_alone_without_a_title_in_a_small_size() -> N
         RequestError, match=r"size: 85.1 x 59.9 mm is too small for 3 panels; .*--kind coupler"
     ):
         plot.point_path(motion, at, figsize=(3.35, 2.36), style="ieee")
+
+
+def test_a_legend_names_circuits_where_it_cannot_name_every_branch(monkeypatch):
+    motion = sb.load("stephenson").motion(72)
+    assert len(sb.plot.curves(motion, against="input").legends[0].get_texts()) == 6
+    monkeypatch.setattr("sevenbar.drawing.output_curves.MOST_NAMED", 3)
+    figure = sb.plot.curves(motion, against="input")
+    entries = {line.get_label(): line for line in figure.legends[0].legend_handles}
+    circuits = [f"circuit {number}" for number in range(3)]
+    assert list(entries) == [*circuits, "input rising", "input falling", "extreme", "input limit"]
+    assert [entries[word].get_linestyle() for word in list(entries)[:5]] == ["-"] * 4 + ["--"]
+    lines = [line for line in figure.axes[0].lines if line.get_label() in circuits]
+    for line in lines:
+        inputs = line.get_xdata()
+        assert line.get_linestyle() == ("--" if inputs[-1] < inputs[0] else "-")
+    assert {line.get_linestyle() for line in lines} == {"-", "--"}

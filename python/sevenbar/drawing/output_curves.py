@@ -40,6 +40,10 @@ EXTREME, LIMIT, CHANGE_POINT = "extreme", "input limit", "change point"
 #: Times its own width at which a range that other circuits share makes a curve flat.
 FLATTEST = 5.0
 
+#: Most lines that a legend names one by one; of more, the style of those along which the input falls.
+MOST_NAMED = 16
+DASHED = "--"
+
 #: Curves nearer than this [deg, or share of their natural size] on all rows are one.
 SAME_CURVE = 1e-6
 
@@ -51,10 +55,18 @@ class DrawnPass:
     circuit: Circuit
     curves: Mapping[str, QuantityCurve]
     part: slice
-    label: str
+    #: The circuits that it is of.
+    circuits: str
     #: The branch and how the input goes on it, where the circuit has several.
     direction: str
     style: dict[str, Any]
+
+    @property
+    def label(self) -> str:
+        """What it is in a legend."""
+        if not self.direction:
+            return self.circuits
+        return say("{circuits}, {branch}", circuits=self.circuits, branch=self.direction)
 
     def across(self, over: Over) -> Floats:
         """What is along the axis below, (n,)."""
@@ -97,7 +109,7 @@ def passes(motion: Motion, words: Iterable[str] = QUANTITIES) -> list[DrawnPass]
     for circuit in motion.circuits:
         path, own = walk(circuit), curves_of(motion, circuit, dict.fromkeys(("angle", *words)))
         for branch, part in enumerate(path.passes):
-            label, direction = say("circuit {number}", number=circuit.index), ""
+            circuits, direction = say("circuit {number}", number=circuit.index), ""
             inputs = path.input[part]
             if len(path.passes) > 1:
                 direction = say("branch {number}", number=branch)
@@ -105,10 +117,9 @@ def passes(motion: Motion, words: Iterable[str] = QUANTITIES) -> list[DrawnPass]
                     direction = say("{branch}: input rising", branch=direction)
                 elif motion.law is None:
                     direction = say("{branch}: input falling", branch=direction)
-                label = say("{circuits}, {branch}", circuits=label, branch=direction)
             colour, dashes = circuit_colour(circuit.index), line_style(len(made))
             style = {"color": colour, "ls": dashes, "lw": 1.6 * stroke()}
-            made.append(DrawnPass(circuit, own, part, label, direction, style))
+            made.append(DrawnPass(circuit, own, part, circuits, direction, style))
     return made
 
 
@@ -128,14 +139,25 @@ def drawn_once(drawn: Sequence[DrawnPass]) -> list[DrawnPass]:
     groups = coinciding(drawn, alike)
     made = []
     for place, group in enumerate(groups):
-        label = circuits_text([line.circuit.index for line in group])
-        if group[0].direction:
-            label = say("{circuits}, {branch}", circuits=label, branch=group[0].direction)
+        circuits = circuits_text([line.circuit.index for line in group])
         style = group[0].style
         if len(groups) < len(drawn):
             style = style | {"ls": line_style(place)}
-        made.append(replace(group[0], label=label, style=style))
+        made.append(replace(group[0], circuits=circuits, style=style))
     return made
+
+
+def by_circuit(drawn: Sequence[DrawnPass]) -> list[DrawnPass]:
+    """The passes with one label to a circuit, dashed where the input falls: more than a legend can name."""
+
+    def falls(line: DrawnPass) -> bool:
+        inputs = line.across("input")
+        return bool(inputs[-1] < inputs[0])
+
+    return [
+        replace(line, direction="", style=line.style | {"ls": DASHED if falls(line) else "-"})
+        for line in drawn
+    ]
 
 
 def curves(
@@ -177,6 +199,8 @@ def curves(
         columns = ["input"] if turning or ax is not None else ["input", "time"]
     with styled(style):
         drawn = drawn_once(passes(motion, quantities))
+        if len(drawn) > MOST_NAMED and motion.law is None:
+            drawn = by_circuit(drawn)
         usual = 6.4 if len(columns) == 1 else 9.8, 0.6 + 2.4 * len(quantities)
         page = panels_of(
             len(quantities) * len(columns), ax, "one for each of the quantities", usual,
@@ -330,8 +354,17 @@ def _time_above(axes: Axes, motion: Motion, line: DrawnPass) -> None:
 def curve_keys(panels: Iterable[Axes], drawn: Sequence[DrawnPass]) -> list[Line2D]:
     """One legend entry for each pass and for each kind of mark."""
     lines = {str(line.get_label()): line for axes in panels for line in axes.lines}
+    named = [line.label for line in drawn]
+    if len(set(named)) < len(named):
+        # several lines to a circuit
+        wide = drawn[0].style["lw"]
+        for line in drawn:
+            lines[line.label] = Line2D([], [], label=line.label, color=line.style["color"], lw=wide)
+        for dashes, word in (("-", say("input rising")), (DASHED, say("input falling"))):
+            named.append(word)
+            lines[word] = Line2D([], [], label=word, color=QUIET, ls=dashes, lw=wide)
     marks = [say(mark) for mark in (EXTREME, LIMIT, CHANGE_POINT)]
     if marks[0] in lines:  # drawn in each circuit's colour
         ring: dict[str, Any] = {"ms": 4.5 * stroke(), "mfc": "white", "mec": "#404040"}
         lines[marks[0]] = Line2D([], [], ls="", marker="o", label=marks[0], **ring)
-    return [lines[label] for label in (*(line.label for line in drawn), *marks) if label in lines]
+    return [lines[label] for label in dict.fromkeys((*named, *marks)) if label in lines]
