@@ -96,7 +96,10 @@ def _counted(motion: Motion) -> str:
         return say(_UNCOUNTED[search.uncounted]) if search.uncounted in _UNCOUNTED else ""
     if not count.open:
         many = say("no dead centre")
-        if number := count.dead_centres:
+        if (number := count.dead_centres) and motion.linkage.net is not None:
+            # a dead centre with each way of the links after it is one
+            many = say("{count} real", count=number)
+        elif number:
             many = say("{count} dead centre{s}", count=number, s="s" * (number > 1))
         if others := count.complex_branch_points:
             many = say("{dead_centres} and {count} complex", dead_centres=many, count=others)

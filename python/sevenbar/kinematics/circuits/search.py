@@ -29,7 +29,8 @@ class Count:
     """
 
     joint: str
-    #: Real branch points, where this joint turns back on a circuit, or farther out than these are followed.
+    #: Real branch points, where this joint turns back on a circuit, or farther out than these are followed;
+    #: of a net one for all ways of the links that are solved after those that are stretched there.
     dead_centres: int
     #: Complex ones near the real values, located and counted off.
     complex_branch_points: int
