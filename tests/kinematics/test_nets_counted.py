@@ -233,7 +233,15 @@ BLOCKS = {
         ),
         3,
     ),
-    # poles of its function hide two zeros from a count with one measure of how far solutions are
+    # poles of their functions take as many zeros off, within a range of 15 degrees
+    "RSSR-SS with poles": (
+        lambda: spatial(
+            ([-0.50519, -0.86056, 0.26817], [0.41793, -0.18964, -0.88846], [-0.43116, 0.77829, -0.25388]),
+            ([-0.89647, 0.24556, -0.44823], [0.72594, -0.68324, -0.07872], [0.17372, -0.08189, 0.12521]),
+            [[0.4609, -0.30286, 0.26096], [0.78685, -0.87605, 0.62565]],
+        ),
+        2,
+    ),
     "double wishbone with poles": (
         lambda: spatial(
             ([0.01116, 0.22567, 0.13122], [1.14588, 0.15813, -0.06552], [-0.04273, 0.61984, 0.15112]),

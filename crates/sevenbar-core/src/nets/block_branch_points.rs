@@ -6,7 +6,7 @@
 //! Source: docs/theory_nets.md, (27).
 
 use super::body_family::BodyFamily;
-use super::branch_ranges::{Counted, FUNCTIONS, Functions, Inputs, Values, turned};
+use super::branch_ranges::{Counted, Functions, Inputs, Values, turned};
 use super::modes::{Part, at_first};
 use super::monodromy::{Family, Starts, carried};
 use super::net::Net;
@@ -173,11 +173,11 @@ impl<F: Family<N, D>, const N: usize, const D: usize> Block<F, N, D> {
 }
 
 impl<F: Family<N, D>, const N: usize, const D: usize> Functions for Block<F, N, D> {
-    /// The products of all measures over all solutions.
+    /// The product of one measure over all solutions, and the sums of the others.
     fn values(&self, at: Complex64) -> Option<Values> {
         let (member, solutions) = self.solved(at)?;
         let here = self.family.between(&member, &member);
-        let mut values = [Complex64::ONE; FUNCTIONS];
+        let mut values = Values::NONE;
         for some in solutions.chunks(LANES) {
             let lanes: [Lanes<Plain>; N] = from_fn(|i| {
                 let part = |part: fn(&Complex64) -> f64| -> Reals {
@@ -189,9 +189,9 @@ impl<F: Family<N, D>, const N: usize, const D: usize> Functions for Block<F, N, 
             let [re, im] = [determinant.re, determinant.im].map(|v| v.store());
             for (k, x) in some.iter().enumerate() {
                 let (meets, far) = self.family.measures(x, Complex64::new(re[k], im[k]));
-                values[0] = turned(values[0], meets);
-                for (n, far) in far.into_iter().enumerate() {
-                    values[2 * n + 1] = turned(values[2 * n + 1], far);
+                values.phases[0] = turned(values.phases[0], meets);
+                for (sum, far) in values.sums.iter_mut().zip(far) {
+                    *sum += far;
                 }
             }
         }

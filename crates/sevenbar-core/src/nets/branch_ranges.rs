@@ -12,8 +12,21 @@ use std::f64::consts::{PI, TAU};
 /// Most functions: in turn one that vanishes at branch points, and one that vanishes, or is infinite, where solutions run to infinity.
 pub(super) const FUNCTIONS: usize = 16;
 
-/// The values of the functions, as far as their phases go; 1 of those that are not in use.
-pub(super) type Values = [Complex64; FUNCTIONS];
+/// How many sums over all solutions there are.
+pub(super) const SUMS: usize = 3;
+
+/// The values of the functions, as far as their phases go; 1 of those that are not in use. And sums over all solutions of numbers that are
+/// infinite where one of these functions has a pole.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Values {
+    pub phases: [Complex64; FUNCTIONS],
+    pub sums: [Complex64; SUMS],
+}
+
+impl Values {
+    /// Of no function.
+    pub const NONE: Self = Self { phases: [Complex64::ONE; FUNCTIONS], sums: [Complex64::ZERO; SUMS] };
+}
 
 /// The phase of a product with one more factor: products of many are too great or too small for a number.
 pub(super) fn turned(product: Complex64, by: Complex64) -> Complex64 {
@@ -73,6 +86,9 @@ const MOST_PARTS: usize = 30;
 /// How far from a whole number a count may be.
 const WHOLE: f64 = 0.05;
 
+/// The integral of a sum round a range is zero, where it has no pole there, to this part.
+const NO_POLE: f64 = 2e-5;
+
 /// The account of the branch points of an input.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Counted {
@@ -115,11 +131,20 @@ impl Counted {
     }
 }
 
-/// The change of each function's phase [rad].
-type Change = [f64; FUNCTIONS];
+/// The change of each function's phase [rad] on a way, and the integral of each sum and of its size.
+#[derive(Clone, Copy)]
+struct Change {
+    phases: [f64; FUNCTIONS],
+    sums: [Complex64; SUMS],
+    sizes: [f64; SUMS],
+}
 
-/// Numbers of a range, of each function.
-type Numbers = [i64; FUNCTIONS];
+/// How many zeros less poles each function has in a range, and whether a sum has a pole there.
+#[derive(Clone, Copy)]
+struct Numbers {
+    of: [i64; FUNCTIONS],
+    poles: bool,
+}
 
 /// A range of the input, up to a height [rad, or relative to the size].
 #[derive(Clone, Copy)]
@@ -134,7 +159,11 @@ struct Ranges<'a>(&'a dyn Functions);
 impl Ranges<'_> {
     /// The change of all phases [rad] on the straight line between two inputs; `None` where they do not settle.
     fn change(&self, from: Complex64, to: Complex64, pieces: usize) -> Option<Change> {
-        let mut sum = [0.0; FUNCTIONS];
+        let mut sum = Change {
+            phases: [0.0; FUNCTIONS],
+            sums: [Complex64::ZERO; SUMS],
+            sizes: [0.0; SUMS],
+        };
         let at = |k: usize| from + (to - from) * (k as f64 / pieces as f64);
         let mut first = self.0.values(from)?;
         for k in 0..pieces {
@@ -154,11 +183,18 @@ impl Ranges<'_> {
     ) -> Option<()> {
         let middle = 0.5 * (from + to);
         let between = self.0.values(middle)?;
+        let phase = |a: &Values, b: &Values, k: usize| (b.phases[k] / a.phases[k]).arg();
         let halves: [[f64; 2]; FUNCTIONS] =
-            std::array::from_fn(|k| [(between[k] / first[k]).arg(), (last[k] / between[k]).arg()]);
+            std::array::from_fn(|k| [phase(first, &between, k), phase(&between, last, k)]);
         if halves.as_flattened().iter().all(|x| x.abs() < STEADY) {
-            for (sum, [a, b]) in sum.iter_mut().zip(halves) {
+            for (sum, [a, b]) in sum.phases.iter_mut().zip(halves) {
                 *sum += a + b;
+            }
+            // Simpson's rule
+            for k in 0..SUMS {
+                let mean = (first.sums[k] + 4.0 * between.sums[k] + last.sums[k]) / 6.0;
+                sum.sums[k] += (to - from) * mean;
+                sum.sizes[k] += (to - from).norm() * between.sums[k].norm();
             }
             return Some(());
         }
@@ -181,15 +217,20 @@ impl Ranges<'_> {
         let (first, last) = (ups[0].as_ref()?, ups[1].as_ref()?);
         let [a, b] = range.ends.map(Complex64::from);
         let arc = self.change(a + up, b + up, ARC)?;
-        let mut out = [0; FUNCTIONS];
-        for (k, out) in out.iter_mut().enumerate() {
-            let turns = (last[k] - first[k] - arc[k]) / PI;
+        let mut of = [0; FUNCTIONS];
+        for (k, of) in of.iter_mut().enumerate() {
+            let turns = (last.phases[k] - first.phases[k] - arc.phases[k]) / PI;
             if (turns - turns.round()).abs() > WHOLE {
                 return None;
             }
-            *out = turns.round() as i64;
+            *of = turns.round() as i64;
         }
-        Some(out)
+        // below the real inputs all is mirrored
+        let has_pole = |k: usize| {
+            let round = (first.sums[k] + arc.sums[k] - last.sums[k]).im;
+            round.abs() > NO_POLE * (first.sizes[k] + arc.sizes[k] + last.sizes[k])
+        };
+        Some(Numbers { of, poles: (0..SUMS).any(has_pole) })
     }
 
     /// The ranges to begin with from a part of one on, each with its numbers.
@@ -231,11 +272,10 @@ impl Ranges<'_> {
         searched: &mut usize,
         account: &mut Counted,
     ) {
-        let pairs = numbers.map(|n| n.as_chunks::<2>().0.to_vec());
+        let pairs = numbers.map(|n| n.of.as_chunks::<2>().0.to_vec());
         // where a turn becomes infinite the functions after it have poles
-        let infinite = pairs
-            .as_ref()
-            .is_none_or(|pairs| pairs.iter().any(|p| p[1] != 0 || p[0] < 0));
+        let infinite =
+            numbers.is_none_or(|n| n.poles) || pairs.iter().flatten().any(|p| p[1] != 0 || p[0] < 0);
         let zeros: i64 = pairs.iter().flatten().map(|p| p[0]).sum();
         if !infinite && zeros <= 1 {
             account.real += zeros as usize;
@@ -271,14 +311,14 @@ impl Ranges<'_> {
             *searched += 1;
             let half = Range { ends, height };
             let own = self.numbers(&half, [&ups[k], &ups[k + 1]]);
-            for (sum, x) in within.iter_mut().zip(own.unwrap_or_default()) {
+            for (sum, x) in within.iter_mut().zip(own.map_or([0; FUNCTIONS], |own| own.of)) {
                 *sum += x;
             }
             self.settle(&half, own, halved + 1, searched, account);
         }
         if let Some(numbers) = numbers {
             let left_out = |odd: usize| -> i64 {
-                let off = numbers.iter().zip(within).map(|(all, within)| all - within);
+                let off = numbers.of.iter().zip(within).map(|(all, within)| all - within);
                 off.skip(odd).step_by(2).sum()
             };
             account.complex += left_out(0).max(0) as usize;

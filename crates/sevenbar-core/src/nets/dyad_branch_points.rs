@@ -118,12 +118,12 @@ impl<'a> BranchPoints<'a> {
 impl Functions for BranchPoints<'_> {
     /// The products of both functions over the ways, of each dyad.
     fn values(&self, at: Complex64) -> Option<Values> {
-        let mut out = [Complex64::ONE; FUNCTIONS];
+        let mut out = Values::NONE;
         for (k, ways) in self.ways.iter().enumerate() {
             for sides in ways {
                 let [root, line] = self.pair(k, sides, at);
-                out[2 * k] = turned(out[2 * k], root);
-                out[2 * k + 1] = turned(out[2 * k + 1], line);
+                out.phases[2 * k] = turned(out.phases[2 * k], root);
+                out.phases[2 * k + 1] = turned(out.phases[2 * k + 1], line);
             }
         }
         Some(out)

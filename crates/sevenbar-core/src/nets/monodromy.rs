@@ -17,7 +17,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// How many measures there are of how far a solution is: where one grows another may vanish, and nothing is seen.
+/// How many measures there are of how far a solution is.
 pub(super) const FAR: usize = 3;
 
 /// Systems with the same N unknowns, whose numbers, vectors of D parts, may be any.
@@ -36,8 +36,8 @@ pub(super) trait Family<const N: usize, const D: usize> {
     fn ways_of_constants(&self, random: &mut Random) -> Vec<Vec<[Complex64; D]>>;
     /// What the trace test sums over all solutions.
     fn traced(&self, x: &Solution<N>) -> Vec<Complex64>;
-    /// Of a solution where the rows' columns have this determinant: a number that vanishes where two solutions meet, and some that vanish, or grow
-    /// without bound, where that one grows. The products of each over all solutions are real for a real member.
+    /// Of a solution where the rows' columns have this determinant: a number that vanishes where two solutions meet, and some that grow without
+    /// bound wherever that one does. The product of it over all solutions, and the sums of the others, are real for a real member.
     fn measures(&self, x: &Solution<N>, determinant: Complex64) -> (Complex64, [Complex64; FAR]);
     /// The solution that a real member has besides, or the same one: it is real then.
     fn mirrored(&self, x: &Solution<N>) -> Solution<N>;

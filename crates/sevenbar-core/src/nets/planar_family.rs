@@ -176,16 +176,13 @@ impl Family<UNKNOWNS, 2> for PlanarFamily {
         x[..self.unknowns()].to_vec()
     }
 
-    /// Of all unknowns their distances from a number and from what is its mirror image for a real member.
+    /// The others are sums of all unknowns, of turns twice their cosines, with weights.
     fn measures(&self, x: &Solution, determinant: Complex64) -> (Complex64, [Complex64; FAR]) {
-        let distances = |watched: Complex64| -> Complex64 {
-            let from = |i: usize| {
-                let other = if i < self.turns { x[i].inv() } else { x[i] };
-                (x[i] - watched) * (other - watched.conj())
-            };
-            (0..self.unknowns()).map(from).product()
+        let sum = |by: [f64; UNKNOWNS]| -> Complex64 {
+            let own = |i: usize| if i < self.turns { x[i] + x[i].inv() } else { x[i] };
+            (0..self.unknowns()).map(|i| own(i) * by[i]).sum()
         };
-        (determinant, WATCHED.map(distances))
+        (determinant, WEIGHTS.map(sum))
     }
 
     fn mirrored(&self, x: &Solution) -> Solution {
@@ -212,11 +209,11 @@ impl Family<UNKNOWNS, 2> for PlanarFamily {
     }
 }
 
-/// Values that no turn or slide has.
-const WATCHED: [Complex64; FAR] = [
-    Complex64::new(1.37, 2.18),
-    Complex64::new(-2.91, 0.84),
-    Complex64::new(0.46, -3.77),
+/// What unknowns weigh in sums, each time otherwise.
+const WEIGHTS: [[f64; UNKNOWNS]; FAR] = [
+    [1.0, 0.6, 1.7, 0.4, 1.3, 0.8],
+    [0.2, 3.1, 0.9, 5.0, 0.1, 1.1],
+    [4.1, 0.3, 0.15, 1.2, 2.7, 0.08],
 ];
 
 /// Signs of the exponents of `v+` and `v-`.
