@@ -256,3 +256,24 @@ def test_two_universal_joints_in_a_row(forks, range_of_ratio, crosses):
     for circuit in motion:
         assert circuit.velocity.lowest == pytest.approx(range_of_ratio[0], abs=1e-9)
         assert circuit.velocity.highest == pytest.approx(range_of_ratio[1], abs=1e-9)
+
+
+#: A spherical loop about (4, 0, 2) that the rocker of a four-bar drives.
+SPHERICAL = [
+    ("crank", "R", (0, 0, 0), (0, 0, 1), "frame", "crank"),
+    ("a", "R", (1, 0, 0), (0, 0, 1), "crank", "coupler"),
+    ("b", "R", (4, 3, 0), (0, 0, 1), "coupler", "rocker"),
+    ("rocker", "R", (4, 0, 0), (0, 0, 1), "frame", "rocker"),
+    ("s1", "R", (4, 5.2, 2.2), (0, 2.6, 0.1), "rocker", "arc"),
+    ("s2", "R", (3, -1, 2), (1, 1, 0), "arc", "wiper"),
+    ("last", "R", (5, 0, 3), (1, 0, 1), "frame", "wiper"),
+]
+
+
+@pytest.mark.parametrize("places", [range(7), (4, 2, 1, 0, 5, 3, 6)])
+def test_circuits_do_not_depend_on_the_order_of_joints(places):
+    # where the four-bar's rows came after those of the loop that hangs on it, one circuit was lost
+    motion = linkage([SPHERICAL[place] for place in places]).motion(24, output="last")
+    assert motion.completeness == "algebraic"
+    ranges = np.degrees([circuit.input_range for circuit in motion])
+    assert sorted(np.round(ranges % 360.0, 3).tolist()) == [[212.567, 58.278], [301.722, 147.433]]

@@ -105,7 +105,8 @@ class Tree:
             self._grow(joint)
         for link in self.linkage.links_apart:
             self._free(link)
-        self.chords = sorted(remaining)
+        # those of a cycle in a plane before those that hang on it: all rows of the first keep their rank
+        self.chords = sorted(remaining, key=lambda joint: (block_of.get(joint, 0), joint))
         for joint in self.chords:
             if self.linkage.joints[joint].row.is_screw:
                 name = self.linkage.joints[joint].name
