@@ -277,3 +277,18 @@ def test_circuits_do_not_depend_on_the_order_of_joints(places):
     assert motion.completeness == "algebraic"
     ranges = np.degrees([circuit.input_range for circuit in motion])
     assert sorted(np.round(ranges % 360.0, 3).tolist()) == [[212.567, 58.278], [301.722, 147.433]]
+
+
+@pytest.mark.parametrize("output", ["last", "rocker"])
+@pytest.mark.parametrize("off", [0.0, 1e-4, 3e-4, 1e-3, 0.1])
+def test_a_circuit_has_its_whole_range_where_a_dead_centre_is_nearly_of_fourth_order(off, output):
+    rows = [
+        ("crank", "R", (0, 0, 0), (0, 0, 1), "frame", "crank"),
+        ("a", "R", (1, 0, 0), (0, 0, 1), "crank", "coupler"),
+        ("b", "R", (4, 3, 0), (0, 0, 1), "coupler", "rocker"),
+        ("rocker", "R", (4, 0, 0), (0, 0, 1), "frame", "rocker"),
+        ("cross", "U", (4, 0, 2), ((3, 4, 0), (0, 1, off)), "rocker", "wiper"),
+        ("last", "R", (5, 1, 2), (1, 1, 0), "frame", "wiper"),
+    ]
+    (circuit,) = linkage(rows, "b").motion(output=output)
+    assert np.degrees(circuit.input_range) == pytest.approx([0.0, 40.494], abs=1e-3)

@@ -22,6 +22,9 @@ const SAME_PLACE: f64 = 1e-6;
 const NEAR: f64 = 1e3;
 pub(super) const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
+/// A rate at which a column may turn back, where it must turn back once more.
+const FLAT: f64 = 1e-7;
+
 /// How far [rad, or relative to the size] from a change point a column's direction is checked to see whether it turns back there.
 const BESIDE: f64 = 1e-3;
 
@@ -57,10 +60,27 @@ pub(crate) fn turnings<S: Closed>(curve: &Curve<S>, chain: &S, column: usize) ->
         let more = turnings_by(curve, chain, column, STILL);
         if more.len().is_multiple_of(2) {
             found = more;
+        } else {
+            add_flattest(curve, chain, column, &mut found);
         }
     }
     forget_unmoved(curve, &mut found, column);
     found
+}
+
+/// Adds the node, away from all that are known, at which a column is nearest to rest, where that is near: to so high an order that its rate has
+/// no sign about it.
+fn add_flattest<S: Closed>(curve: &Curve<S>, chain: &S, column: usize, found: &mut Vec<Turning<S>>) {
+    let rate = |k: usize| curve.nodes[k].rates[0][column].abs();
+    let is_known = |k: usize| {
+        let off = |t: &Turning<S>| length(&chain.difference(&curve.nodes[k].at, &t.node.at));
+        found.iter().any(|t| off(t) < BESIDE)
+    };
+    let nodes = (0..curve.nodes.len() - 1).filter(|&k| rate(k) < FLAT && !is_known(k));
+    if let Some(segment) = nodes.min_by(|&j, &k| rate(j).total_cmp(&rate(k))) {
+        found.push(Turning { segment, node: curve.nodes[segment] });
+        found.sort_by_key(|t| t.segment);
+    }
 }
 
 /// Of places in a row between which a column does not move leaves one where it turns back: rates that are rounding have no sign, and it
