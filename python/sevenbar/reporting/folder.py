@@ -31,8 +31,8 @@ def check_targets(files: Iterable[Path], *, force: bool) -> None:
 
 
 def check_folder_name(out: Path) -> None:
-    """Raises `OutputError` where the name of a folder that is not there is that of a file."""
-    if out.suffix.lower() in ENDINGS and not is_folder(out):
+    """Raises `OutputError` where nothing is there yet and the name is that of a file."""
+    if out.suffix.lower() in ENDINGS and not is_there(out):
         raise OutputError(
             f"{out}: is the name of a file, and --out is a folder here; "
             f"give one, as in --out {out.with_suffix('')}"
