@@ -3,8 +3,9 @@
 //! Such a function is one of the input alone, and real at real inputs. Its phase round a range counts its zeros there. In a range with at most one
 //! branch point every mode leads to one at an end of the range; so ranges are halved until they have no more.
 //!
-//! Source: docs/theory_nets.md, (24) to (26).
+//! Source: docs/theory_nets.md, (24) to (26) and (28).
 
+use super::monodromy::FAR;
 use crate::loops::Open;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -12,20 +13,17 @@ use std::f64::consts::{PI, TAU};
 /// Most functions: in turn one that vanishes at branch points, and one that vanishes, or is infinite, where solutions run to infinity.
 pub(super) const FUNCTIONS: usize = 16;
 
-/// How many sums over all solutions there are.
-pub(super) const SUMS: usize = 3;
-
 /// The values of the functions, as far as their phases go; 1 of those that are not in use. And sums over all solutions of numbers that are
 /// infinite where one of these functions has a pole.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Values {
     pub phases: [Complex64; FUNCTIONS],
-    pub sums: [Complex64; SUMS],
+    pub sums: [Complex64; FAR],
 }
 
 impl Values {
     /// Of no function.
-    pub const NONE: Self = Self { phases: [Complex64::ONE; FUNCTIONS], sums: [Complex64::ZERO; SUMS] };
+    pub const NONE: Self = Self { phases: [Complex64::ONE; FUNCTIONS], sums: [Complex64::ZERO; FAR] };
 }
 
 /// The phase of a product with one more factor: products of many are too great or too small for a number.
@@ -135,8 +133,8 @@ impl Counted {
 #[derive(Clone, Copy)]
 struct Change {
     phases: [f64; FUNCTIONS],
-    sums: [Complex64; SUMS],
-    sizes: [f64; SUMS],
+    sums: [Complex64; FAR],
+    sizes: [f64; FAR],
 }
 
 /// How many zeros less poles each function has in a range, and whether a sum has a pole there.
@@ -161,8 +159,8 @@ impl Ranges<'_> {
     fn change(&self, from: Complex64, to: Complex64, pieces: usize) -> Option<Change> {
         let mut sum = Change {
             phases: [0.0; FUNCTIONS],
-            sums: [Complex64::ZERO; SUMS],
-            sizes: [0.0; SUMS],
+            sums: [Complex64::ZERO; FAR],
+            sizes: [0.0; FAR],
         };
         let at = |k: usize| from + (to - from) * (k as f64 / pieces as f64);
         let mut first = self.0.values(from)?;
@@ -191,7 +189,7 @@ impl Ranges<'_> {
                 *sum += a + b;
             }
             // Simpson's rule
-            for k in 0..SUMS {
+            for k in 0..FAR {
                 let mean = (first.sums[k] + 4.0 * between.sums[k] + last.sums[k]) / 6.0;
                 sum.sums[k] += (to - from) * mean;
                 sum.sizes[k] += (to - from).norm() * between.sums[k].norm();
@@ -230,7 +228,7 @@ impl Ranges<'_> {
             let round = (first.sums[k] + arc.sums[k] - last.sums[k]).im;
             round.abs() > NO_POLE * (first.sizes[k] + arc.sizes[k] + last.sizes[k])
         };
-        Some(Numbers { of, poles: (0..SUMS).any(has_pole) })
+        Some(Numbers { of, poles: (0..FAR).any(has_pole) })
     }
 
     /// The ranges to begin with from a part of one on, each with its numbers.

@@ -5,6 +5,7 @@
 use super::before::Before;
 use super::net::Net;
 use super::rows::On;
+use super::steps::{Move, Step};
 use crate::loops::equation::rotations::ball_rotation;
 use crate::loops::modes::completeness::Completeness;
 use crate::loops::{Kind, Loop, modes};
@@ -82,14 +83,15 @@ impl LoopBlock {
         };
         let mut kinds = vec![Kind::Turn];
         kinds.extend(self.steps.iter().map(|step| step.kind));
+        // from the held joint on
+        let mut fixed = vec![*frames.first()?];
+        fixed.extend((1..frames.len()).map(|k| between(k - 1).then(&frames[k])));
         let held_about = |axis: Vec3| {
             let (axis, origin) = (unit(axis), self.steps.first()?.origin);
             let away = add(origin, scale([axis[1], axis[2], axis[0]], AWAY * before.size));
             let held = frame(axis, self.centre.unwrap_or(away));
-            let mut fixed = vec![held.inverse().then(frames.first()?)];
-            for k in 0..frames.len() - 1 {
-                fixed.push(between(k).then(&frames[k + 1]));
-            }
+            let mut fixed = fixed.clone();
+            fixed[0] = held.inverse().then(&fixed[0]);
             let linkage = Loop::new(&kinds, first.then(&held), last.then(frames.last()?), &fixed);
             modes(&linkage, 0, 0.0)
         };
@@ -100,7 +102,7 @@ impl LoopBlock {
             }
         }
         let of_values = |values: &Vec<f64>, on_curve: bool| {
-            let placed = self.placed(&first, &frames, &welds, &values[1..]);
+            let placed = self.placed(&first, &welds, &values[1..]);
             let mut poses = before.poses.to_vec();
             for (link, pose) in self.links.iter().zip(placed) {
                 poses[link.on[0]] = pose;
@@ -135,16 +137,13 @@ impl LoopBlock {
     }
 
     /// The poses of its links at values of its columns.
-    fn placed(&self, first: &Pose, frames: &[Pose], welds: &[Pose], values: &[f64]) -> Vec<Pose> {
+    fn placed(&self, first: &Pose, welds: &[Pose], values: &[f64]) -> Vec<Pose> {
         let (mut at, mut column) = (*first, 0);
         let mut out = Vec::with_capacity(self.links.len());
         for (k, step) in self.steps.iter().enumerate() {
             let own = &values[column..column + step.kind.columns()];
             column += own.len();
-            at = at
-                .then(&frames[k])
-                .then(&motion(step.kind, own))
-                .then(&frames[k].inverse());
+            at = at.then(&step.moved(own));
             for (link, weld) in self.links.iter().zip(welds) {
                 if link.after == k + 1 {
                     out.push(at);
@@ -164,6 +163,21 @@ impl LoopStep {
             frame(self.axis, self.origin)
         }
     }
+
+    /// Where it leads from where it is drawn at values of its columns.
+    fn moved(&self, values: &[f64]) -> Pose {
+        let moves = match self.kind {
+            Kind::Turn => Move::Turn,
+            Kind::Slide => Move::Slide,
+            Kind::Screw(advance) => Move::Screw(advance),
+            Kind::Ball => {
+                let (frame, turned) = (self.frame(), ball_rotation(&[values[0], values[1], values[2]]));
+                return frame.then(&Pose::turning(turned)).then(&frame.inverse());
+            }
+        };
+        let step = Step { parent: None, moves, origin: self.origin, axis: self.axis, reads: 0.0 };
+        step.moved(values[0]).into()
+    }
 }
 
 impl LoopLink {
@@ -179,15 +193,4 @@ fn frame(axis: Vec3, origin: Vec3) -> Pose {
     let y = cross(axis, x);
     let rotation = std::array::from_fn(|i| [x[i], y[i], axis[i]]);
     Pose { translation: origin, ..Pose::turning(rotation) }
-}
-
-/// What a joint does in its frame at values of its columns.
-fn motion(kind: Kind, values: &[f64]) -> Pose {
-    let turning = |angle: f64| Pose::turning(ball_rotation(&[angle, 0.0, 0.0]));
-    match kind {
-        Kind::Turn => turning(values[0]),
-        Kind::Slide => Pose { translation: [0.0, 0.0, values[0]], ..Pose::STILL },
-        Kind::Screw(advance) => Pose { translation: [0.0, 0.0, advance * values[0]], ..turning(values[0]) },
-        Kind::Ball => Pose::turning(ball_rotation(&[values[0], values[1], values[2]])),
-    }
 }
