@@ -2,11 +2,11 @@
 //!
 //! Source: docs/theory_nets.md, (24) to (27).
 
-use super::block_branch_points;
 use super::branch_ranges::{Counted, Inputs};
 use super::dyad_branch_points::{BranchPoints, Zero};
 use super::modes::Part;
 use super::net::Net;
+use super::piece_branch_points;
 use super::sized::SizedNet;
 use crate::loops::circuits::known_curves::Curves;
 use crate::loops::circuits::turnings::turnings;
@@ -29,7 +29,7 @@ pub(super) struct AtEnd<S: Closed> {
     pub searched: bool,
 }
 
-/// The branch points of a net of dyads, or of one block.
+/// The branch points of a net.
 pub(super) struct Account<'a> {
     counted: Counted,
     dyads: Option<BranchPoints<'a>>,
@@ -52,7 +52,7 @@ impl<'a> Account<'a> {
         let dyads = sized.dyads().map(BranchPoints::of);
         let counted = match &dyads {
             Some(dyads) => Counted::of(dyads, inputs),
-            None => block_branch_points::counted(net, parts, input, inputs)?,
+            None => piece_branch_points::counted(net, parts, input, inputs)?,
         };
         Some(Self { counted, dyads })
     }

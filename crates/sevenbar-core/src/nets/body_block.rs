@@ -7,11 +7,12 @@
 
 use super::before::Before;
 use super::body_family::{BodyFamily, Held, Holds, Triple, UNKNOWNS, halves, pose};
-use super::hinged::{Ways, hinged};
+use super::complex_members::ComplexPose;
+use super::hinged::{OnStep, Ways, hinged};
 use super::monodromy::{Ends, REAL};
 use super::net::Net;
 use super::rows::{On, Row};
-use super::steps::Move;
+use super::steps::{Move, Placement};
 use super::unfolded::turn_towards;
 use crate::loops::equation::closure::Solution;
 use crate::loops::equation::rotations::squared_up;
@@ -54,28 +55,21 @@ const ROUNDING: f64 = 1e-14;
 
 impl BodyBlock {
     /// The last of its steps.
-    fn own(&self) -> Option<usize> {
+    pub(super) fn own(&self) -> Option<usize> {
         self.steps.last().copied()
     }
 
     /// All ways to put it together; `None` where it has not as many rows as freedoms.
     pub(super) fn together(&self, net: &Net, before: &Before) -> Option<Placed> {
-        let Layout { family, member, middle, .. } = self.layout(net, before)?;
-        if let ([step], [row]) = (&self.steps[..], &family.rows[..]) {
-            let base = net.steps[*step].parent.map_or(Pose::STILL, |p| before.poses[p]);
-            let pose = |by: f64| base.then(&net.moving_by(*step, by));
-            let seen = |by: f64| {
-                let pose = pose(by);
-                let place = scale(sub(pose.carry(middle), middle), 1.0 / before.size);
-                Pose { translation: place, ..pose }
-            };
-            let Ways { by, at_rest } = hinged(net.steps[*step].moves, before.size, seen, row, &member);
-            let poses = by
-                .into_iter()
-                .flat_map(|by| self.placed(net, before, &pose(by)))
-                .collect();
+        let layout = self.layout(net, before)?;
+        if let ([step], [row]) = (&self.steps[..], &layout.family.rows[..]) {
+            let seen = |by: f64| layout.seen_on(net, *step, by);
+            let Ways { by, at_rest } = hinged(net.steps[*step].moves, before.size, seen, row, &layout.member);
+            let placed = |by| self.placed(net, before, &before.moved_by(net, *step, by));
+            let poses = by.into_iter().flat_map(placed).collect();
             return Some(Placed { poses, completeness: None, on_curve: at_rest });
         }
+        let Layout { family, member, middle, .. } = layout;
         if !family.is_square() {
             return None;
         }
@@ -107,6 +101,35 @@ impl BodyBlock {
     pub(super) fn member(&self, net: &Net, before: &Before) -> Option<(BodyFamily, Vec<Triple>)> {
         let Layout { family, member, .. } = self.layout(net, before)?;
         family.is_square().then_some((family, member))
+    }
+
+    /// Its one row on its one step; `None` of any other.
+    pub(super) fn on_step(&self, net: &Net, before: &Before) -> Option<OnStep<f64>> {
+        let layout = self.layout(net, before)?;
+        let ([step], [row]) = (&self.steps[..], &layout.family.rows[..]) else {
+            return None;
+        };
+        let seen = |by: f64| layout.seen_on(net, *step, by);
+        Some(OnStep::of(
+            net.steps[*step].moves,
+            before.size,
+            seen,
+            row,
+            &layout.member,
+        ))
+    }
+
+    /// The pose of the link at a solution, complex ones too.
+    pub(super) fn complex_pose(&self, net: &Net, z: &Solution<UNKNOWNS>) -> Option<ComplexPose> {
+        let [a, b, c, place] = pose(z);
+        let turned = Placement {
+            rotation: std::array::from_fn(|i| [a[i], b[i], c[i]]),
+            translation: [Complex64::ZERO; 3],
+        };
+        let middle = net.steps[self.own()?].origin;
+        let from = turned.carry(&middle);
+        let translation = std::array::from_fn(|i| middle[i] + place[i] * net.size - from[i]);
+        Some(Placement { translation, ..turned })
     }
 
     /// The poses of all steps where the link has a pose, for each pose of its legs.
@@ -234,6 +257,13 @@ impl<'a> Layout<'a> {
         Self { link, before, middle, family, member: Vec::new(), shared: Vec::new() }
     }
 
+    /// The pose of its link where its one step moves it, with lengths as the rows have them.
+    fn seen_on(&self, net: &Net, step: usize, by: f64) -> Pose {
+        let pose = self.before.moved_by(net, step, by);
+        let translation = self.seen(pose.carry(self.middle));
+        Pose { translation, ..pose }
+    }
+
     /// A place from the middle, relative to the size.
     fn seen(&self, place: Vec3) -> Vec3 {
         scale(sub(place, self.middle), 1.0 / self.before.size)
@@ -269,8 +299,8 @@ impl<'a> Layout<'a> {
         let origin = self.seen(base.carry(first.origin));
         match moves[..] {
             [Move::Slide] => {
-                let across = unit(cross(along, most_perpendicular_axis(along)));
-                for normal in [across, cross(along, across)] {
+                let across = unit(cross(first.axis, most_perpendicular_axis(first.axis)));
+                for normal in [across, cross(first.axis, across)].map(|own| base.turn(own)) {
                     let height = dot(normal, self.seen(base.carry(ball)));
                     self.hold(Holds::Plane, normal, own, -height);
                 }

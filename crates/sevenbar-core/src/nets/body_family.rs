@@ -76,6 +76,12 @@ impl BodyFamily {
         KNOWN.starts(self)
     }
 
+    /// What vanishes for a solution at infinity, and is infinite where its measures have poles.
+    pub fn at_infinity(&self, z: &Solution<UNKNOWNS>) -> Complex64 {
+        let (x, _) = halves(z);
+        dot(&x, &x) / weighted(z, &WEIGHTS[0])
+    }
+
     /// Whether it has as many rows as a link has freedoms.
     pub fn is_square(&self) -> bool {
         self.rows.len() == ROWS
@@ -89,6 +95,11 @@ const WEIGHTS: [[f64; UNKNOWNS]; 1 + FAR] = [
     [4.1, 0.3, 0.15, 1.2, 2.7, 0.08, 1.9, 0.6],
     [0.5, 0.12, 6.0, 0.25, 0.07, 3.3, 1.4, 0.9],
 ];
+
+/// The sum of the squares of a solution's numbers, each with its weight.
+fn weighted(z: &Solution<UNKNOWNS>, by: &[f64; UNKNOWNS]) -> Complex64 {
+    (0..UNKNOWNS).map(|i| z[i] * z[i] * by[i]).sum()
+}
 
 /// What sets the scale: `c . (x, y) = 1`.
 static SCALE: LazyLock<Solution<UNKNOWNS>> = LazyLock::new(|| {
@@ -201,8 +212,7 @@ impl Family<UNKNOWNS, 3> for BodyFamily {
 
     /// By squares that vanish for no real solution: so neither depends on the scale.
     fn measures(&self, z: &Solution<UNKNOWNS>, determinant: Complex64) -> (Complex64, [Complex64; FAR]) {
-        let square = |by: [f64; UNKNOWNS]| -> Complex64 { (0..UNKNOWNS).map(|i| z[i] * z[i] * by[i]).sum() };
-        let [first, others @ ..] = WEIGHTS.map(square);
+        let [first, others @ ..] = WEIGHTS.each_ref().map(|by| weighted(z, by));
         // the determinant goes with the sixth power of the scale
         (determinant / first.powu(3), others.map(|other| other / first))
     }

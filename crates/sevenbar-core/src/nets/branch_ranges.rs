@@ -13,17 +13,20 @@ use std::f64::consts::{PI, TAU};
 /// Most functions: in turn one that vanishes at branch points, and one that vanishes, or is infinite, where solutions run to infinity.
 pub(super) const FUNCTIONS: usize = 16;
 
+/// Most sums: those of four blocks.
+pub(super) const SUMS: usize = 4 * FAR;
+
 /// The values of the functions, as far as their phases go; 1 of those that are not in use. And sums over all solutions of numbers that are
 /// infinite where one of these functions has a pole.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Values {
     pub phases: [Complex64; FUNCTIONS],
-    pub sums: [Complex64; FAR],
+    pub sums: [Complex64; SUMS],
 }
 
 impl Values {
     /// Of no function.
-    pub const NONE: Self = Self { phases: [Complex64::ONE; FUNCTIONS], sums: [Complex64::ZERO; FAR] };
+    pub const NONE: Self = Self { phases: [Complex64::ONE; FUNCTIONS], sums: [Complex64::ZERO; SUMS] };
 }
 
 /// The phase of a product with one more factor: products of many are too great or too small for a number.
@@ -46,6 +49,14 @@ pub(super) trait Functions {
     fn values(&self, at: Complex64) -> Option<Values>;
     /// Whether it is known that no mode is near to a branch point in the smallest range about an input.
     fn is_clear(&self, input: f64) -> bool;
+    /// Which of them vanish where nothing else depends on what meets there.
+    fn last(&self) -> &[usize] {
+        &[]
+    }
+    /// The factors of these, and whether each is of a real way.
+    fn factors(&self, _at: Complex64) -> Option<Vec<(Complex64, bool)>> {
+        None
+    }
 }
 
 /// Ranges to begin with, how high up in the complex inputs they reach, as a part of their width, and where the first one begins, as a part of
@@ -133,8 +144,8 @@ impl Counted {
 #[derive(Clone, Copy)]
 struct Change {
     phases: [f64; FUNCTIONS],
-    sums: [Complex64; FAR],
-    sizes: [f64; FAR],
+    sums: [Complex64; SUMS],
+    sizes: [f64; SUMS],
 }
 
 /// How many zeros less poles each function has in a range, and whether a sum has a pole there.
@@ -159,8 +170,8 @@ impl Ranges<'_> {
     fn change(&self, from: Complex64, to: Complex64, pieces: usize) -> Option<Change> {
         let mut sum = Change {
             phases: [0.0; FUNCTIONS],
-            sums: [Complex64::ZERO; FAR],
-            sizes: [0.0; FAR],
+            sums: [Complex64::ZERO; SUMS],
+            sizes: [0.0; SUMS],
         };
         let at = |k: usize| from + (to - from) * (k as f64 / pieces as f64);
         let mut first = self.0.values(from)?;
@@ -189,7 +200,7 @@ impl Ranges<'_> {
                 *sum += a + b;
             }
             // Simpson's rule
-            for k in 0..FAR {
+            for k in 0..SUMS {
                 let mean = (first.sums[k] + 4.0 * between.sums[k] + last.sums[k]) / 6.0;
                 sum.sums[k] += (to - from) * mean;
                 sum.sizes[k] += (to - from).norm() * between.sums[k].norm();
@@ -228,7 +239,65 @@ impl Ranges<'_> {
             let round = (first.sums[k] + arc.sums[k] - last.sums[k]).im;
             round.abs() > NO_POLE * (first.sizes[k] + arc.sizes[k] + last.sizes[k])
         };
-        Some(Numbers { of, poles: (0..FAR).any(has_pole) })
+        Some(Numbers { of, poles: (0..SUMS).any(has_pole) })
+    }
+
+    /// How many zeros a range has on real ways of the functions on which nothing depends, where the others have so many: with at most one the ways
+    /// that are real at either end are exchanged with each other alone, so that other factors need not be counted. `None` where it is not known.
+    fn on_real_ways(&self, range: &Range, others: i64) -> Option<i64> {
+        if others > 1 || self.0.last().is_empty() {
+            return None;
+        }
+        let up = Complex64::new(0.0, range.height);
+        let [a, b] = range.ends.map(Complex64::from);
+        let mut turned: Vec<f64> = Vec::new();
+        let mut real = Vec::new();
+        let mut last = self.0.factors(a)?;
+        for (from, to, pieces) in [(a, a + up, UP), (a + up, b + up, ARC), (b + up, b, UP)] {
+            let at = |k: usize| from + (to - from) * (k as f64 / pieces as f64);
+            for k in 0..pieces {
+                turned.resize(last.len(), 0.0);
+                real.resize(last.len(), false);
+                for (real, (_, is_real)) in real.iter_mut().zip(&last) {
+                    *real |= from == a && k == 0 && *is_real;
+                }
+                last = self.along([at(k), at(k + 1)], &last, MOST_PARTS, &mut turned)?;
+            }
+        }
+        let own = turned.iter().zip(real).zip(&last);
+        let own = own.filter(|((_, at_first), (_, at_last))| *at_first || *at_last);
+        let turns = -own.map(|((turned, _), _)| turned).sum::<f64>() / PI;
+        ((turns - turns.round()).abs() < WHOLE).then_some(turns.round() as i64)
+    }
+
+    /// Adds the change of each factor's phase [rad] on a piece; gives the factors at its end.
+    fn along(
+        &self,
+        [from, to]: [Complex64; 2],
+        first: &[(Complex64, bool)],
+        parts: usize,
+        turned: &mut [f64],
+    ) -> Option<Vec<(Complex64, bool)>> {
+        let middle = 0.5 * (from + to);
+        let between = self.0.factors(middle)?;
+        let last = self.0.factors(to)?;
+        let turn = |a: &[(Complex64, bool)], b: &[(Complex64, bool)]| -> Vec<f64> {
+            a.iter().zip(b).map(|(a, b)| (b.0 / a.0).arg()).collect()
+        };
+        let halves = [turn(first, &between), turn(&between, &last)];
+        if halves.iter().flatten().all(|x| x.abs() < STEADY) {
+            for half in halves {
+                for (sum, by) in turned.iter_mut().zip(half) {
+                    *sum += by;
+                }
+            }
+            return Some(last);
+        }
+        if parts == 0 || !halves.iter().flatten().all(|x| x.is_finite()) {
+            return None;
+        }
+        let between = self.along([from, middle], first, parts - 1, turned)?;
+        self.along([middle, to], &between, parts - 1, turned)
     }
 
     /// The ranges to begin with from a part of one on, each with its numbers.
@@ -274,7 +343,15 @@ impl Ranges<'_> {
         // where a turn becomes infinite the functions after it have poles
         let infinite =
             numbers.is_none_or(|n| n.poles) || pairs.iter().flatten().any(|p| p[1] != 0 || p[0] < 0);
-        let zeros: i64 = pairs.iter().flatten().map(|p| p[0]).sum();
+        let mut zeros: i64 = pairs.iter().flatten().map(|p| p[0]).sum();
+        if !infinite && zeros > 1 {
+            let of = numbers.map_or([0; FUNCTIONS], |n| n.of);
+            let others = zeros - self.0.last().iter().map(|&k| of[k]).sum::<i64>();
+            if let Some(real) = self.on_real_ways(range, others) {
+                account.complex += (zeros - others - real).max(0) as usize;
+                zeros = others + real;
+            }
+        }
         if !infinite && zeros <= 1 {
             account.real += zeros as usize;
             if zeros == 1 {

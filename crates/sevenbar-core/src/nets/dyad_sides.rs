@@ -145,6 +145,11 @@ impl Joined {
         }
     }
 
+    /// Whether there is but one way to put it together.
+    pub fn is_single(&self) -> bool {
+        matches!(self.shape, Shape::TwoSlides { .. } | Shape::SlidesInARow { .. })
+    }
+
     /// The radicand of its root, as the square of the sine of the angle between its links where it has two, and the denominator of its links'
     /// turns and shifts, where the known links are.
     pub fn radicand<N: Number>(&self, poses: &Poses<N>) -> [N; 2] {

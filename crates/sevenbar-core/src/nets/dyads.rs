@@ -72,6 +72,11 @@ impl Plane {
         Self { x, y: cross(normal, x), normal }
     }
 
+    /// Its two directions, and that across it.
+    pub fn axes(&self) -> [Vec3; 3] {
+        [self.x, self.y, self.normal]
+    }
+
     /// A place, or a direction, as a number.
     pub fn place(&self, v: Vec3) -> Complex64 {
         Complex64::new(dot(v, self.x), dot(v, self.y))

@@ -6,6 +6,7 @@
 
 use super::body_family::{Held, Holds, Triple};
 use super::steps::Move;
+use crate::number::Number;
 use crate::rigid::{Pose, Vec3, add, dot, sub};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -18,6 +19,44 @@ pub(super) struct Ways {
     pub at_rest: bool,
 }
 
+/// A row of a link on one step where that moves it by nothing, and by a quarter and half a turn, or once the size back and on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OnStep<N>(pub [N; 3]);
+
+impl OnStep<f64> {
+    /// Of a row whose numbers are those of a real member; `pose` is that of the link, lengths relative to the `size`, as the row has them.
+    pub fn of(moves: Move, size: f64, pose: impl Fn(f64) -> Pose, row: &Held, member: &[Triple]) -> Self {
+        let value = |by: f64| row.value(member, &pose(by));
+        Self(
+            if moves == Move::Slide {
+                [0.0, -size, size]
+            } else {
+                [0.0, FRAC_PI_2, PI]
+            }
+            .map(value),
+        )
+    }
+}
+
+impl<N: Number> OnStep<N> {
+    /// The row as `a x^2 + b x + c` while the step slides.
+    pub fn quadratic(&self) -> [N; 3] {
+        let Self([here, before, beyond]) = *self;
+        [
+            (beyond + before).scaled(0.5) - here,
+            (beyond - before).scaled(0.5),
+            here,
+        ]
+    }
+
+    /// The row as `a cos q + b sin q + c` while the step turns.
+    pub fn wave(&self) -> [N; 3] {
+        let Self([here, quarter, half]) = *self;
+        let constant = (here + half).scaled(0.5);
+        [here - constant, quarter - constant, constant]
+    }
+}
+
 /// By how much a step moves where a row of its link holds; `pose` is that of the link, lengths relative to the `size`, as the row has them.
 pub(super) fn hinged(
     moves: Move,
@@ -26,11 +65,10 @@ pub(super) fn hinged(
     row: &Held,
     member: &[Triple],
 ) -> Ways {
-    let value = |by: f64| row.value(member, &pose(by));
+    let on_step = OnStep::of(moves, size, pose, row, member);
     let error = ROUNDING * row.squares(member);
     if moves == Move::Slide {
-        let [before, here, beyond] = [-size, 0.0, size].map(value);
-        let (square, line) = (0.5 * (beyond + before) - here, 0.5 * (beyond - before));
+        let [square, line, here] = on_step.quadratic();
         let at_rest = [square, line, here].iter().all(|x| x.abs() < 8.0 * error);
         let by = if at_rest {
             vec![0.0]
@@ -39,9 +77,7 @@ pub(super) fn hinged(
         };
         return Ways { by: by.into_iter().map(|root| root * size).collect(), at_rest };
     }
-    let [here, quarter, half] = [0.0, FRAC_PI_2, PI].map(value);
-    let constant = 0.5 * (here + half);
-    let (cosine, sine) = (here - constant, quarter - constant);
+    let [cosine, sine, constant] = on_step.wave();
     let reach = cosine.hypot(sine);
     let middle = sine.atan2(cosine);
     let at_rest = reach < 8.0 * error && constant.abs() < 8.0 * error;

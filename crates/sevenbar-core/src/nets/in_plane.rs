@@ -2,9 +2,13 @@
 //!
 //! Source: docs/theory_nets.md, (7).
 
+use super::dyads::Plane;
 use super::joints::TERMS;
+use super::steps::Placement;
+use crate::loops::equation::rotations::dot3;
 use crate::number::Number;
 use num_complex::Complex64;
+use std::array::from_fn;
 
 /// A place or a direction.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +101,30 @@ impl<N: Number> InPlane<N> {
     #[inline(always)]
     pub fn through(z: Complex<N>, from: Complex64, to: Complex<N>) -> Self {
         Self { z, t: to.minus(z.by(from)) }
+    }
+
+    /// That of a link that moves in a plane, lengths relative to a size.
+    pub fn of(placement: &Placement<N>, plane: &Plane, size: f64) -> Self {
+        let axes = plane.axes().map(|axis| axis.map(N::splat));
+        let seen = |v: &[N; 3]| Complex { re: dot3(&axes[0], v), im: dot3(&axes[1], v) };
+        let t = seen(&placement.translation).by((1.0 / size).into());
+        Self { z: seen(&placement.turn(&plane.axes()[0])), t }
+    }
+
+    /// The same in space.
+    pub fn in_space(&self, plane: &Plane, size: f64) -> Placement<N> {
+        let axes = plane.axes().map(|axis| axis.map(N::splat));
+        let [x, y, n] = &axes;
+        let turned = |a: N, b: N| -> [N; 3] { from_fn(|k| a * x[k] + b * y[k]) };
+        let images = [turned(self.z.re, self.z.im), turned(-self.z.im, self.z.re), *n];
+        let entry = |i: usize, j: usize| {
+            let [a, b, c]: [N; 3] = from_fn(|k| images[k][i] * axes[k][j]);
+            a + b + c
+        };
+        Placement {
+            rotation: from_fn(|i| from_fn(|j| entry(i, j))),
+            translation: turned(self.t.re, self.t.im).map(|x| x.scaled(size)),
+        }
     }
 
     /// The pose of what is shifted against it.

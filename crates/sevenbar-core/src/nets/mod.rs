@@ -1,16 +1,18 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `loop_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `block_branch_points`, `account`, `seeds`, `motion`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `loop_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `complex_members`, `complex_pieces`, `complex_legs`, `piece_branch_points`, `account`, `seeds`, `motion`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
 
 mod account;
 mod before;
-mod block_branch_points;
 mod body_block;
 mod body_family;
 mod branch_ranges;
+mod complex_legs;
+mod complex_members;
+mod complex_pieces;
 mod described;
 mod dyad_branch_points;
 mod dyad_quads;
@@ -28,6 +30,7 @@ mod motion;
 mod net;
 mod net_rows;
 mod order;
+mod piece_branch_points;
 mod pin_rows;
 mod planar_block;
 mod planar_family;

@@ -4,9 +4,11 @@
 
 use super::before::Before;
 use super::dyads::{Flat, Plane};
+use super::in_plane::{Complex, InPlane};
 use super::monodromy::{Ends, REAL};
 use super::planar_family::{Chord, Closes, Pair, PlanarFamily, Term};
 use super::rows::On;
+use super::steps::Placement;
 use crate::loops::equation::closure::Solution;
 use crate::loops::modes::completeness::Completeness;
 use crate::rigid::{Pose, Vec3, scale};
@@ -54,9 +56,9 @@ impl PlanarBlock {
         Some(Together { poses, completeness: starts.completeness(left_over) })
     }
 
-    /// Its family, and which member it is; `None` where it has more unknowns than are followed.
-    pub(super) fn member(&self, before: &Before) -> Option<(PlanarFamily, Vec<Pair>)> {
-        Layout::of(self, before).map(|layout| (layout.family, layout.member))
+    /// How it is a member of its family; `None` where it has more unknowns than are followed.
+    pub(super) fn layout(&self, before: &Before) -> Option<Layout> {
+        Layout::of(self, before)
     }
 }
 
@@ -71,10 +73,10 @@ enum End {
 type Turning = (Option<usize>, Complex64);
 
 /// A block as a member of its family.
-struct Layout {
+pub(super) struct Layout {
     plane: Plane,
     size: f64,
-    family: PlanarFamily,
+    pub family: PlanarFamily,
     member: Vec<Pair>,
     turning: Vec<Turning>,
     /// For each link a place on it, in its own numbers, and the terms that lead there.
@@ -167,6 +169,32 @@ impl Layout {
             self.plane.pose(&flat)
         };
         Some(self.turning.iter().zip(&self.origins).map(pose).collect())
+    }
+
+    /// The numbers of the member, and after them for each link the turn by which it is ahead, and the place on it.
+    pub(super) fn numbers(&self) -> Vec<Pair> {
+        let pair = |z: Complex64| [z, z.conj()];
+        let own = self.turning.iter().zip(&self.origins);
+        let placing = own.flat_map(|((_, ahead), (origin, _))| [pair(*ahead), pair(*origin)]);
+        self.member.iter().copied().chain(placing).collect()
+    }
+
+    /// The poses of the links at a solution, complex ones too, by a member's numbers.
+    pub(super) fn complex_poses(&self, numbers: &[Pair], x: &Solution) -> Vec<Placement<Complex64>> {
+        let (member, placing) = numbers.split_at(self.member.len());
+        let vector = |[plus, minus]: Pair| Complex {
+            re: 0.5 * (plus + minus),
+            im: Complex64::new(0.0, -0.5) * (plus - minus),
+        };
+        let pose = |(k, both): (usize, &[Pair])| {
+            let turn = self.turning[k].0.map_or(Complex64::ONE, |g| x[g]);
+            let (ahead, origin) = (both[0], both[1]);
+            let z = [ahead[0] * turn, ahead[1] / turn];
+            let place = self.family.sum(&self.origins[k].1, member, x);
+            let t = [place[0] - z[0] * origin[0], place[1] - z[1] * origin[1]];
+            InPlane { z: vector(z), t: vector(t) }.in_space(&self.plane, self.size)
+        };
+        placing.chunks_exact(2).enumerate().map(pose).collect()
     }
 }
 

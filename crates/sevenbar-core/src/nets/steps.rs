@@ -7,6 +7,8 @@
 use crate::loops::equation::rotations::{cross, dot3};
 use crate::number::Number;
 use crate::rigid::{Pose, Vec3, scale};
+use num_complex::Complex64;
+use std::array::from_fn;
 
 /// How a step moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +89,20 @@ impl<N: Number> Placement<N> {
             out.translation[i] = self.translation[i] + dot3(&self.rotation[i], &other.translation);
         }
         out
+    }
+}
+
+impl Placement<Complex64> {
+    /// The image of a place that is any.
+    pub fn image(&self, x: &[Complex64; 3]) -> [Complex64; 3] {
+        from_fn(|i| self.translation[i] + dot3(&self.rotation[i], x))
+    }
+
+    /// The inverse motion; the rotation is an orthogonal matrix with complex entries, too.
+    pub fn inverse(&self) -> Self {
+        let rotation = from_fn(|i| from_fn(|j| self.rotation[j][i]));
+        let back = Self { rotation, translation: [Complex64::ZERO; 3] };
+        Self { rotation, translation: back.image(&self.translation).map(|x| -x) }
     }
 }
 

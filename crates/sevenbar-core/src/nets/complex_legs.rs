@@ -1,0 +1,118 @@
+//! A leg of a link at complex poses: what two ways of a leg on a universal joint have in common vanishes where they meet.
+//!
+//! Source: docs/theory_nets.md, (22) and (29).
+
+use super::before::{Ahead, ahead};
+use super::body_block::Leg;
+use super::complex_members::ComplexPose;
+use super::complex_pieces::{Held, Known, Own, Solved};
+use super::rows::On;
+use super::steps::{Move, Placement};
+use crate::loops::equation::rotations::{cross, dot3};
+use crate::rigid::{Vec3, cross as crossed, dot};
+use num_complex::Complex64;
+use std::array::from_fn;
+
+/// A leg, and the link that it holds.
+#[derive(Clone, Copy)]
+pub(super) struct ComplexLeg<'a> {
+    pub leg: &'a Leg,
+    pub link: usize,
+}
+
+type ComplexVector = [Complex64; 3];
+
+impl ComplexLeg<'_> {
+    /// Whether it has one way.
+    pub fn is_single(&self) -> bool {
+        self.leg.steps.len() == 1
+    }
+
+    /// Its ways where the link is; two of a universal joint.
+    pub fn solved(&self, held: &Held, known: &Known) -> Option<Solved> {
+        let leg = self.leg;
+        let (first, last) = (*leg.steps.first()?, *leg.steps.last()?);
+        let on = |on: On| on.map_or(Placement::still(), |step| known.poses[step]);
+        let offset = |on: On, link: usize| -> Option<ComplexPose> {
+            Some(match ahead(on, link, held.driven, held.from())? {
+                Ahead::Not => Placement::still(),
+                Ahead::ByHeld => known.moved,
+                Ahead::BehindHeld => known.moved.inverse(),
+            })
+        };
+        let base = on(held.net.steps[first].parent);
+        let ball = offset(leg.on[0], last)?.carry(&leg.ball);
+        let goal = on(Some(self.link))
+            .then(&offset(leg.on[1], self.link)?)
+            .carry(&leg.ball);
+        let goal = base.inverse().image(&goal);
+        let steps = &held.net.steps;
+        let (origin, axis) = (steps[first].origin, steps[first].axis);
+        let [from, to] = [ball, goal].map(|place| from_fn(|i| place[i] - origin[i]));
+        let placed = |moved: &[Complex64]| -> Own {
+            let mut pose = base;
+            let mut own = Own::new();
+            for (&step, by) in leg.steps.iter().zip(moved) {
+                pose = pose.then(&steps[step].moved(by + steps[step].reads));
+                own.push((step, pose));
+            }
+            held.weld(known, &mut own);
+            own
+        };
+        let one = Complex64::ONE;
+        match leg.steps[..] {
+            [_] if steps[first].moves == Move::Slide => {
+                let by = along(axis, &from_fn(|i| to[i] - from[i]));
+                Some(Solved::in_closed_form(vec![placed(&[by])], one, one))
+            }
+            [_] => Some(Solved::in_closed_form(
+                vec![placed(&[turn(axis, &from, &to)])],
+                one,
+                one,
+            )),
+            [_, second] => {
+                let axes = [axis, steps[second].axis];
+                let (ways, root) = two_turns(axes, &from, &to);
+                let solutions = ways.iter().map(|way| placed(way)).collect();
+                // a part of its own length would be infinite where that is zero
+                let size = held.net.size * held.net.size;
+                Some(Solved::in_closed_form(solutions, root / size, one))
+            }
+            _ => None,
+        }
+    }
+}
+
+fn along(axis: Vec3, v: &ComplexVector) -> Complex64 {
+    (0..3).map(|i| axis[i] * v[i]).sum()
+}
+
+/// The turn about an axis that takes a vector to another, as far as both are across it.
+fn turn(axis: Vec3, from: &ComplexVector, to: &ComplexVector) -> Complex64 {
+    let (up_from, up_to) = (along(axis, from), along(axis, to));
+    let cosine = dot3(from, to) - up_from * up_to;
+    let sine = along(axis, &cross(from, to));
+    let square = dot3(from, from) - up_from * up_from;
+    -Complex64::I * ((cosine + Complex64::I * sine) / square).ln()
+}
+
+/// The turns of (22), and the square of its height.
+fn two_turns(
+    [first, second]: [Vec3; 2],
+    from: &ComplexVector,
+    to: &ComplexVector,
+) -> ([[Complex64; 2]; 2], Complex64) {
+    let across = crossed(first, second);
+    let (cosine, square) = (dot(first, second), dot(across, across));
+    let (along_first, along_second) = (along(first, to), along(second, from));
+    let a = (along_first - cosine * along_second) / square;
+    let b = (along_second - cosine * along_first) / square;
+    let length = dot3(from, from);
+    let left = (length - a * along_first - b * along_second) / square;
+    let height = left.sqrt();
+    let way = |height: Complex64| {
+        let between: ComplexVector = from_fn(|i| a * first[i] + b * second[i] + height * across[i]);
+        [turn(first, &between, to), turn(second, from, &between)]
+    };
+    ([way(height), way(-height)], left)
+}

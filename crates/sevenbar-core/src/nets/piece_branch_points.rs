@@ -1,0 +1,258 @@
+//! The functions by which branch points of any net are counted: inputs at which two solutions of one of its pieces meet.
+//!
+//! With complex inputs every piece has all of its solutions, so what vanishes where two meet, multiplied over the ways of those before it, is one
+//! function of the input.
+//!
+//! Source: docs/theory_nets.md, (29).
+
+use super::branch_ranges::{Counted, FUNCTIONS, Functions, Inputs, SUMS, Values, turned};
+use super::complex_pieces::{Held, Known, Piece, Solved, Solver};
+use super::modes::Part;
+use super::monodromy::{FAR, REAL};
+use super::net::Net;
+use num_complex::Complex64;
+
+/// A complex input at which solutions are found first.
+const FIRST: Complex64 = Complex64::new(0.713, 0.31);
+
+/// Most solutions of all ways of all pieces.
+const MOST_SOLUTIONS: usize = 400;
+
+/// A link whose pose has smaller imaginary parts may be where a real one is [relative to the size].
+const NEARLY_REAL: f64 = 1e-3;
+
+/// The solution that was selected of a piece, in one of its ways.
+#[derive(Clone, Copy)]
+struct Selected {
+    piece: usize,
+    way: usize,
+    solution: usize,
+}
+
+/// One way of all pieces before one on which that depends.
+type Way = Vec<Selected>;
+
+/// A piece with the ways of those before it.
+struct Placed<'a> {
+    solver: Solver<'a>,
+    links: Vec<usize>,
+    /// The pieces on which it depends, in order.
+    before: Vec<usize>,
+    ways: Vec<Way>,
+    /// Which functions it has, if it has any, and which sums.
+    functions: Option<usize>,
+    sums: Option<usize>,
+    /// Whether others hang at it.
+    carries: bool,
+}
+
+/// The pieces of a net.
+struct Pieces<'a> {
+    held: Held<'a>,
+    placed: Vec<Placed<'a>>,
+    /// The functions of those at which nothing hangs, if they are not all.
+    last: Vec<usize>,
+}
+
+/// The account of the branch points of an input of a net; `None` where not all of its solutions are known over the complex numbers.
+pub(super) fn counted(net: &Net, parts: &[Part], driven: usize, inputs: Inputs) -> Option<Counted> {
+    let held = Held { net, driven, inputs };
+    Some(Counted::of(&Pieces::of(held, parts)?, inputs))
+}
+
+impl<'a> Pieces<'a> {
+    fn of(held: Held<'a>, parts: &'a [Part]) -> Option<Self> {
+        let pieces = Piece::all(&held, parts)?;
+        let carries = |k: usize| {
+            let mut after = pieces[k + 1..].iter();
+            after.any(|later| later.at.iter().any(|on| pieces[k].links.contains(on)))
+        };
+        let carries: Vec<bool> = (0..pieces.len()).map(carries).collect();
+        let known = held.known(FIRST);
+        let mut own = Self { held, placed: Vec::new(), last: Vec::new() };
+        let (mut solved, mut functions, mut sums, mut count) = (Vec::new(), 0, 0, 0);
+        for (piece, carries) in pieces.iter().zip(carries) {
+            // a leg that carries nothing is where it is
+            if piece.is_single() && !carries {
+                continue;
+            }
+            let before = own.before(piece)?;
+            let ways = own.ways(&before, &solved);
+            let first = own.known(&known, &ways[0], &solved);
+            let solver = piece.solver(&held, &first, before.is_empty())?;
+            let (has_functions, is_member) = (solver.has_functions(), solver.is_member());
+            let k = own.placed.len();
+            own.placed.push(Placed {
+                solver,
+                links: piece.links.clone(),
+                before,
+                ways,
+                functions: has_functions.then_some(functions),
+                sums: is_member.then_some(sums),
+                carries,
+            });
+            functions += if has_functions { 2 } else { 0 };
+            sums += if is_member { FAR } else { 0 };
+            if functions > FUNCTIONS || sums > SUMS {
+                return None;
+            }
+            let results = own.solved(k, &known, &solved)?;
+            count += results.iter().map(|all| all.solutions.len()).sum::<usize>();
+            if count > MOST_SOLUTIONS || results.iter().any(|all| !all.is_regular()) {
+                return None;
+            }
+            solved.push(results);
+        }
+        let last = own
+            .placed
+            .iter()
+            .filter(|placed| !placed.carries && !placed.before.is_empty());
+        own.last = last.filter_map(|placed| placed.functions).collect();
+        Some(own)
+    }
+
+    /// The pieces on which one depends; `None` where a link at which it hangs is not placed.
+    fn before(&self, piece: &Piece) -> Option<Vec<usize>> {
+        let mut before = Vec::new();
+        for on in &piece.at {
+            match self.placed.iter().position(|placed| placed.links.contains(on)) {
+                Some(k) => before.extend(self.placed[k].before.iter().copied().chain([k])),
+                None if self.held.is_driven(*on) => (),
+                None => return None,
+            }
+        }
+        before.sort_unstable();
+        before.dedup();
+        Some(before)
+    }
+
+    /// All ways of some pieces, each with all on which it depends.
+    fn ways(&self, before: &[usize], solved: &[Vec<Solved>]) -> Vec<Way> {
+        let mut ways = vec![Way::new()];
+        for &piece in before {
+            let longer = ways.iter().flat_map(|way| {
+                let own: Vec<[usize; 2]> = way
+                    .iter()
+                    .filter(|selected| self.placed[piece].before.contains(&selected.piece))
+                    .map(|selected| [selected.piece, selected.solution])
+                    .collect();
+                let is_own = |other: &Way| {
+                    other
+                        .iter()
+                        .map(|s| [s.piece, s.solution])
+                        .eq(own.iter().copied())
+                };
+                let at = self.placed[piece]
+                    .ways
+                    .iter()
+                    .position(is_own)
+                    .unwrap_or_default();
+                (0..solved[piece][at].solutions.len()).map(move |solution| {
+                    let mut next = way.clone();
+                    next.push(Selected { piece, way: at, solution });
+                    next
+                })
+            });
+            ways = longer.collect();
+        }
+        ways
+    }
+
+    /// What is known in one way.
+    fn known(&self, first: &Known, way: &Way, solved: &[Vec<Solved>]) -> Known {
+        let mut known = first.clone();
+        for selected in way {
+            let own = &solved[selected.piece][selected.way].solutions[selected.solution];
+            for (step, pose) in own {
+                known.poses[*step] = *pose;
+            }
+        }
+        known
+    }
+
+    /// The solutions of a piece in all of its ways.
+    fn solved(&self, k: usize, first: &Known, solved: &[Vec<Solved>]) -> Option<Vec<Solved>> {
+        let placed = &self.placed[k];
+        let ways = placed.ways.iter().enumerate();
+        let all = ways.map(|(n, way)| {
+            let known = self.known(first, way, solved);
+            placed.solver.solved(&self.held, &known, n)
+        });
+        all.collect()
+    }
+
+    /// Whether the poses of a way are real to this [relative to the size].
+    fn is_real(&self, way: &Way, solved: &[Vec<Solved>], part: f64) -> bool {
+        way.iter().all(|selected| {
+            let own = &solved[selected.piece][selected.way].solutions[selected.solution];
+            own.iter().all(|(_, pose)| self.held.is_nearly_real(pose, part))
+        })
+    }
+
+    /// The solutions of all pieces.
+    fn all(&self, at: Complex64) -> Option<Vec<Vec<Solved>>> {
+        let first = self.held.known(at);
+        let mut solved: Vec<Vec<Solved>> = Vec::new();
+        for k in 0..self.placed.len() {
+            let own = self.solved(k, &first, &solved)?;
+            solved.push(own);
+        }
+        Some(solved)
+    }
+}
+
+impl Functions for Pieces<'_> {
+    /// The products of both functions over the ways, of each piece, and its sums.
+    fn values(&self, at: Complex64) -> Option<Values> {
+        let solved = self.all(at)?;
+        let mut values = Values::NONE;
+        for (placed, all) in self.placed.iter().zip(&solved) {
+            for own in all {
+                if let Some(k) = placed.functions {
+                    values.phases[k] = turned(values.phases[k], own.meets);
+                    if placed.carries {
+                        values.phases[k + 1] = turned(values.phases[k + 1], own.finite);
+                    }
+                }
+                if let Some(k) = placed.sums {
+                    for (sum, far) in values.sums[k..k + FAR].iter_mut().zip(own.sums) {
+                        *sum += far;
+                    }
+                }
+            }
+        }
+        Some(values)
+    }
+
+    fn last(&self) -> &[usize] {
+        &self.last
+    }
+
+    fn factors(&self, at: Complex64) -> Option<Vec<(Complex64, bool)>> {
+        let solved = self.all(at)?;
+        let is_last = |placed: &Placed| placed.functions.is_some_and(|k| self.last.contains(&k));
+        let pieces = self
+            .placed
+            .iter()
+            .zip(&solved)
+            .filter(|(placed, _)| is_last(placed));
+        let factors = pieces.flat_map(|(placed, all)| {
+            let ways = placed.ways.iter().zip(all);
+            ways.map(|(way, own)| (own.meets, self.is_real(way, &solved, REAL)))
+        });
+        Some(factors.collect())
+    }
+
+    /// Whether no two solutions are near to each other that might be real.
+    fn is_clear(&self, input: f64) -> bool {
+        let Some(solved) = self.all(input.into()) else {
+            return false;
+        };
+        let mut pieces = self.placed.iter().zip(&solved);
+        pieces.all(|(placed, all)| {
+            let mut ways = placed.ways.iter().zip(all).enumerate();
+            let nearly_meet = |n: usize, own: &Solved| placed.solver.nearly_meet(own, n);
+            ways.all(|(n, (way, own))| !(nearly_meet(n, own) && self.is_real(way, &solved, NEARLY_REAL)))
+        })
+    }
+}
