@@ -35,6 +35,7 @@ class NetSolver:
     def __init__(self, linkage: Solvable) -> None:
         self._linkage = linkage
         self._trees: dict[tuple[int, int], Tree] = {}
+        self._found: dict[int, Mobility] = {}
         self._last = FollowedLast[NetFollowed]()
 
     def __reduce__(self) -> tuple[type[NetSolver], tuple[Solvable]]:
@@ -46,6 +47,11 @@ class NetSolver:
         Redundant constraints are those by which a part moves in a plane or about a point, cycle by cycle, and
         how many there are besides.
         """
+        if column not in self._found:
+            self._found[column] = self._mobility(column)
+        return self._found[column]
+
+    def _mobility(self, column: int) -> Mobility:
         linkage = self._linkage
         tree = Tree(linkage, (linkage.joint_of(column),))
         _, repeated, free = tree.core.freedoms()
