@@ -18,6 +18,8 @@ __all__ = [
     "LoopBatch",
     "LoopWord",
     "Net",
+    "NetFollowed",
+    "NetParts",
     "NetRows",
     "Numbers",
     "Product",
@@ -212,6 +214,14 @@ class NetRows:
     def __reduce__(self) -> tuple[type[NetRows], tuple[_Floats, list[int], _Floats, float]]: ...
 
 @final
+class NetParts:
+    """Links that are solved together, each after those at which they hang."""
+
+@final
+class NetFollowed:
+    """A circuit as its net followed it, which makes rows of it at any inputs."""
+
+@final
 class Net:
     """A tree of one-freedom steps closed by rows."""
 
@@ -240,18 +250,16 @@ class Net:
     def freedoms(
         self,
     ) -> tuple[int, list[list[float]], list[list[float]]]: ...
+    def parts(self, solved: Sequence[_RawDyad | _RawBlock | _RawBody | _RawLoop]) -> NetParts: ...
     def modes(
-        self,
-        solved: Sequence[_RawDyad | _RawBlock | _RawBody | _RawLoop],
-        driven: int,
-        value: float,
+        self, parts: NetParts, driven: int, value: float
     ) -> tuple[
         _Floats, _Floats, npt.NDArray[np.bool_], Literal["closed-form", "algebraic", "monodromy", "searched"]
     ]: ...
     def searched_modes(self, column: int, value: float) -> tuple[_Floats, _Floats, npt.NDArray[np.bool_]]: ...
     def motion(
         self,
-        solved: Sequence[_RawDyad | _RawBlock | _RawBody | _RawLoop] | None,
+        parts: NetParts | None,
         input: int,
         output: int,
         samples: int,
@@ -260,14 +268,23 @@ class Net:
     ) -> tuple[RawMotion, list[NetRows]]: ...
     def circuit_through(
         self,
-        solved: Sequence[_RawDyad | _RawBlock | _RawBody | _RawLoop] | None,
+        parts: NetParts | None,
         pose: _Floats,
         input: int,
         output: int,
         samples: int,
         speed: float,
         law: _Floats | None = None,
-    ) -> tuple[RawCircuit, NetRows] | float | list[int] | None: ...
+    ) -> tuple[tuple[RawCircuit, NetRows], NetFollowed] | float | list[int] | None: ...
+    def circuit_again(
+        self,
+        followed: NetFollowed,
+        input: int,
+        output: int,
+        samples: int,
+        speed: float,
+        law: _Floats | None = None,
+    ) -> tuple[RawCircuit, NetRows] | None: ...
     def ratio_at_rest(self, pose: _Floats, input: int, output: int) -> float | None: ...
     def point(self, rows: NetRows, link: int | None, at: _Floats) -> _Floats: ...
 

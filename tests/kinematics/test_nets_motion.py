@@ -14,6 +14,7 @@ import sevenbar as sb
 from sevenbar.drawing.animate import animate
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.circuits.poses import joint_frames, poses, poses_along, walk
+from sevenbar.kinematics.loop.law import Law
 
 #: Two cranks of a parallelogram, and a dyad on its coupler.
 PARALLELOGRAM = [
@@ -74,6 +75,21 @@ def test_every_row_closes_every_joint_and_every_rod(name):
             )
             length = np.linalg.norm(first - second, axis=1)
             assert np.abs(length - math.dist(*rod.at)).max() < 1e-9 * linkage.size
+
+
+@pytest.mark.parametrize("name", NETS)
+def test_rows_at_other_inputs_are_those_of_a_circuit_that_is_followed_anew(name):
+    linkage = NETS[name]()
+    pose = linkage.motion(24).circuits[0].q[5]
+    first = linkage.circuit(pose, 24)
+    law = Law.of([0.0, 1.0, 2.0], np.quantile(first.input, [0.3, 0.5, 0.6]), 1.0, 0.5)
+    for samples, given in ((90, None), (24, law), (36, None)):
+        again, anew = (one.circuit(pose, samples, law=given) for one in (linkage, NETS[name]()))
+        for array in ("q", "dq", "ddq", "dddq", "status", "branch", "residual", "condition"):
+            np.testing.assert_array_equal(getattr(again, array), getattr(anew, array))
+        assert again.dead_centres == anew.dead_centres
+        jerks = (one.point(1, (3.0, -2.0, 5.0)).jerk for one in (again, anew))
+        np.testing.assert_array_equal(*jerks)
 
 
 @pytest.mark.parametrize("name", [name for name in NETS if name != "a rail drives"])

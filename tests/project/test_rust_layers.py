@@ -27,7 +27,7 @@ loops::description: spun spin_axis reduce described_loop holding joint_values
 loops::modes: completeness phases continuation straight circle poles geometry starts chain_closure polish many_starts curves_at_input finder assembly
 loops::branch_points: locating other_input afar survey sectors counting
 loops::circuits: curve follow walked_again on_curve turnings join meetings sphere change_points found arcs known_curves search
-loops::motions: row row_store row_lanes passes extremes rows circuit met_twice motion measures
+loops::motions: row row_store row_lanes passes extremes rows circuit met_twice motion through measures
 loops
 
 nets: order series square steps rows net freedoms joints before unfolded dyads monodromy planar_family planar_block body_family hinged body_block loop_block modes in_plane dyad_sides pin_rows dyad_rows branch_ranges dyad_branch_points dyad_quads sized net_rows plane_points described search block_branch_points account seeds motion

@@ -81,7 +81,7 @@ mod _core {
     #[pymodule_export]
     use super::loops::Loop;
     #[pymodule_export]
-    use super::nets::{Net, NetRows, biconnected_parts, net_blocks};
+    use super::nets::{Net, NetFollowed, NetParts, NetRows, biconnected_parts, net_blocks};
     #[pymodule_export]
     use super::numbers::{Carried, LoopWord, Numbers, Product};
     #[pymodule_export]

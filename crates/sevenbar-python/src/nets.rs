@@ -20,10 +20,15 @@ use sevenbar_core::rigid::{Pose, Vec3};
 
 /// A tree of one-freedom steps closed by rows, and the joints that read it.
 #[pyclass(frozen, module = "sevenbar._core")]
-pub(crate) struct Net {
-    net: nets::Net,
-    described: DescribedNet,
-}
+pub(crate) struct Net(DescribedNet);
+
+/// Links that are solved together, each after those at which they hang: what a net is made of over an input.
+#[pyclass(frozen, module = "sevenbar._core")]
+pub(crate) struct NetParts(Vec<Part>);
+
+/// A circuit as its net followed it, which makes rows of it at any inputs.
+#[pyclass(frozen, module = "sevenbar._core")]
+pub(crate) struct NetFollowed(nets::NetFollowed);
 
 /// The rows of a circuit of a net, which makes points of them; pickled as their numbers.
 #[pyclass(frozen, module = "sevenbar._core")]
@@ -331,31 +336,36 @@ impl Net {
         }
         let net = nets::Net { steps, rows, facing, balls, size };
         let columns = joints.into_iter().map(|j| j.3);
-        let described = DescribedNet::new(net.clone(), read.into_iter().zip(columns).collect());
-        Ok(Self { net, described })
+        Ok(Self(DescribedNet::new(
+            net,
+            read.into_iter().zip(columns).collect(),
+        )))
     }
 
     /// The freedoms about the pose that is drawn.
     fn freedoms(&self, py: Python<'_>) -> RawFreedoms {
-        let found = py.detach(|| nets::freedoms(&self.net));
+        let found = py.detach(|| self.0.freedoms().clone());
         (found.rank, found.repeated, found.free)
     }
 
-    /// Joint values (m, columns) and closure errors (m,) of all modes of links solved together, each after those at which they hang, with a step
+    /// What it is made of, from links solved together.
+    fn parts(&self, solved: Vec<RawPart>) -> PyResult<NetParts> {
+        parts(solved, self.0.net().steps.len()).map(NetParts)
+    }
+
+    /// Joint values (m, columns) and closure errors (m,) of all modes of its parts, with a step
     /// held at a value [rad, or relative to the size], which are of a curve of poses, and their completeness.
     fn modes<'py>(
         &self,
         py: Python<'py>,
-        solved: Vec<RawPart>,
+        parts: &NetParts,
         driven: usize,
         value: f64,
     ) -> PyResult<RawModes<'py>> {
-        let steps = self.net.steps.len();
-        let solved = parts(solved, steps)?;
-        if driven >= steps {
+        if driven >= self.0.net().steps.len() {
             return Err(CoreError::new_err("a step is held that is not there"));
         }
-        let found = working(py, || nets::modes(&self.net, &solved, driven, value))?;
+        let found = working(py, || nets::modes(self.0.net(), &parts.0, driven, value))?;
         // what has too many unknowns is searched
         let (found, word) = match found {
             Some(found) => (
@@ -366,11 +376,11 @@ impl Net {
         };
         let values: Vec<f64> = found
             .iter()
-            .flat_map(|mode| self.described.columns_at(&mode.values))
+            .flat_map(|mode| self.0.columns_at(&mode.values))
             .collect();
         let residuals: Vec<f64> = found.iter().map(|mode| mode.residual).collect();
         let on_curve: Vec<bool> = found.iter().map(|mode| mode.on_curve).collect();
-        let shape = [found.len(), self.described.column_count()];
+        let shape = [found.len(), self.0.column_count()];
         Ok((
             PyArray1::from_vec(py, values).reshape(shape)?,
             residuals.into_pyarray(py),
@@ -386,12 +396,11 @@ impl Net {
         column: usize,
         value: f64,
     ) -> PyResult<SearchedModes<'py>> {
-        let found =
-            working(py, || nets::searched_modes(&self.described, column, value))?.map_err(not_followed)?;
+        let found = working(py, || nets::searched_modes(&self.0, column, value))?.map_err(not_followed)?;
         let values: Vec<f64> = found.iter().flat_map(|mode| mode.0.iter().copied()).collect();
         let residuals: Vec<f64> = found.iter().map(|mode| mode.1).collect();
         let isolated: Vec<bool> = found.iter().map(|mode| mode.2).collect();
-        let shape = [found.len(), self.described.column_count()];
+        let shape = [found.len(), self.0.column_count()];
         Ok((
             PyArray1::from_vec(py, values).reshape(shape)?,
             residuals.into_pyarray(py),
@@ -399,31 +408,30 @@ impl Net {
         ))
     }
 
-    /// The whole motion over the inputs of a column; modes are those of links solved together, each after those at which
-    /// they hang, or are searched for.
-    #[pyo3(signature = (solved, input, output, samples, speed, law=None))]
+    /// The whole motion over the inputs of a column; modes are those of its parts, or are searched for.
+    #[pyo3(signature = (parts, input, output, samples, speed, law=None))]
     #[expect(clippy::too_many_arguments)]
     fn motion<'py>(
         &self,
         py: Python<'py>,
-        solved: Option<Vec<RawPart>>,
+        parts: Option<&NetParts>,
         input: usize,
         output: usize,
         samples: usize,
         speed: f64,
         law: Option<PyReadonlyArray2<'py, f64>>,
     ) -> PyResult<(RawMotion, Vec<Py<NetRows>>)> {
-        let steps = self.net.steps.len();
-        let solved = solved.map(|raw| parts(raw, steps)).transpose()?;
         let law = law_rows(law);
         let over = Over { input, output, samples, speed, law: law.as_deref() };
-        let motion = working(py, || nets::net_motion(&self.described, solved.as_deref(), &over))?
-            .map_err(not_followed)?;
+        let motion = working(py, || {
+            nets::net_motion(&self.0, parts.map(|parts| &*parts.0), &over)
+        })?
+        .map_err(not_followed)?;
         let (mut circuits, mut rows) = (Vec::new(), Vec::new());
         for circuit in motion.circuits {
             let (circuit, own) = self.circuit(py, circuit)?;
-            circuits.push(Py::new(py, circuit)?);
-            rows.push(Py::new(py, own)?);
+            circuits.push(circuit);
+            rows.push(own);
         }
         let raw = RawMotion {
             motion_type: motion.motion_type,
@@ -438,12 +446,12 @@ impl Net {
 
     /// The one circuit through a pose (columns,), and its rows; else how far the net is from closing, the columns that move with the input at
     /// rest, or nothing where no motion could be followed.
-    #[pyo3(signature = (solved, pose, input, output, samples, speed, law=None))]
+    #[pyo3(signature = (parts, pose, input, output, samples, speed, law=None))]
     #[expect(clippy::too_many_arguments)]
     fn circuit_through<'py>(
         &self,
         py: Python<'py>,
-        solved: Option<Vec<RawPart>>,
+        parts: Option<&NetParts>,
         pose: PyReadonlyArray1<'py, f64>,
         input: usize,
         output: usize,
@@ -452,24 +460,43 @@ impl Net {
         law: Option<PyReadonlyArray2<'py, f64>>,
     ) -> PyResult<RawThrough> {
         let (law, pose) = (law_rows(law), in_rows(&pose));
-        if pose.len() != self.described.column_count() {
+        if pose.len() != self.0.column_count() {
             return Err(CoreError::new_err("pose needs one value for each column"));
         }
         let over = Over { input, output, samples, speed, law: law.as_deref() };
-        let solved = solved.map(|raw| parts(raw, self.net.steps.len())).transpose()?;
         let through = working(py, || {
-            nets::net_circuit_through(&self.described, solved.as_deref(), &pose, &over)
+            nets::net_circuit_through(&self.0, parts.map(|parts| &*parts.0), &pose, &over)
         })?
         .map_err(not_followed)?;
         Ok(match through {
-            NetThrough::Circuit(circuit) => {
-                let (circuit, rows) = self.circuit(py, *circuit)?;
-                RawThrough::Circuit((Py::new(py, circuit)?, Py::new(py, rows)?))
+            NetThrough::Circuit(circuit, followed) => {
+                RawThrough::Circuit((self.circuit(py, *circuit)?, Py::new(py, NetFollowed(*followed))?))
             }
             NetThrough::Apart(gap) => RawThrough::Apart(gap),
             NetThrough::InputRests(moving) => RawThrough::InputRests(moving),
             NetThrough::Still => RawThrough::Still(()),
         })
+    }
+
+    /// A circuit that was followed over this input and output, and its rows, once more at other inputs; nothing where none of them is in it.
+    #[pyo3(signature = (followed, input, output, samples, speed, law=None))]
+    #[expect(clippy::too_many_arguments)]
+    fn circuit_again(
+        &self,
+        py: Python<'_>,
+        followed: &NetFollowed,
+        input: usize,
+        output: usize,
+        samples: usize,
+        speed: f64,
+        law: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<Option<CircuitAndRows>> {
+        let law = law_rows(law);
+        let over = Over { input, output, samples, speed, law: law.as_deref() };
+        working(py, || nets::net_circuit_again(&self.0, &followed.0, &over))?
+            .map_err(not_followed)?
+            .map(|circuit| self.circuit(py, circuit))
+            .transpose()
     }
 
     /// d(output)/d(input) at a pose (columns,) where both rest; none where one of them moves.
@@ -480,10 +507,10 @@ impl Net {
         output: usize,
     ) -> PyResult<Option<f64>> {
         let pose = in_rows(&pose);
-        if pose.len() != self.described.column_count() {
+        if pose.len() != self.0.column_count() {
             return Err(CoreError::new_err("pose needs one value for each column"));
         }
-        nets::ratio_at_rest(&self.described, &pose, input, output).map_err(not_followed)
+        nets::ratio_at_rest(&self.0, &pose, input, output).map_err(not_followed)
     }
 
     /// A point along rows of a circuit with three derivatives by time, (4, n, 3), in the report frame: of the link that a step carries (none
@@ -495,10 +522,10 @@ impl Net {
         link: Option<usize>,
         at: [f64; 3],
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        if link.is_some_and(|step| step >= self.net.steps.len()) {
+        if link.is_some_and(|step| step >= self.0.net().steps.len()) {
             return Err(CoreError::new_err("a point is on a step that is not there"));
         }
-        let out = working(py, || self.described.point(&rows.0, link, at))?;
+        let out = working(py, || self.0.point(&rows.0, link, at))?;
         PyArray1::from_vec(py, out).reshape([4, rows.0.len(), 3])
     }
 }
@@ -510,19 +537,22 @@ type SearchedModes<'py> = (
     Bound<'py, PyArray1<bool>>,
 );
 
+/// A circuit and its rows.
+type CircuitAndRows = (Py<RawCircuit>, Py<NetRows>);
+
 /// What goes through a pose.
 #[derive(IntoPyObject)]
 enum RawThrough {
-    Circuit((Py<RawCircuit>, Py<NetRows>)),
+    Circuit((CircuitAndRows, Py<NetFollowed>)),
     Apart(f64),
     InputRests(Vec<usize>),
     Still(()),
 }
 
 impl Net {
-    fn circuit(&self, py: Python<'_>, circuit: NetCircuit) -> PyResult<(RawCircuit, NetRows)> {
+    fn circuit(&self, py: Python<'_>, circuit: NetCircuit) -> PyResult<CircuitAndRows> {
         let NetCircuit { rows, measures } = circuit;
-        let table = working(py, || self.described.joint_table(&rows))?;
+        let table = working(py, || self.0.joint_table(&rows))?;
         let (mut status, mut branch) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
         let (mut residual, mut condition) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
         for row in rows.rows() {
@@ -533,7 +563,7 @@ impl Net {
         }
         let arrays = RowArrays {
             joints: PyArray1::from_vec(py, table)
-                .reshape([4, rows.len(), self.described.column_count()])?
+                .reshape([4, rows.len(), self.0.column_count()])?
                 .unbind(),
             status: status.into_pyarray(py).unbind(),
             branch: branch.into_pyarray(py).unbind(),
@@ -541,7 +571,8 @@ impl Net {
             residual: residual.into_pyarray(py).unbind(),
             condition: condition.into_pyarray(py).unbind(),
         };
-        Ok((RawCircuit::new(arrays, &measures, None, None), NetRows(rows)))
+        let circuit = RawCircuit::new(arrays, &measures, None, None);
+        Ok((Py::new(py, circuit)?, Py::new(py, NetRows(rows))?))
     }
 }
 

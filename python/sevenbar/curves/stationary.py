@@ -8,6 +8,7 @@ highest or lowest.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +22,10 @@ NODES = 16
 #: A root with a smaller imaginary part counts as real, since rounding can split a double root into a complex
 #: pair. A root too many does no harm: the function is evaluated at each.
 NEARLY_REAL = 1e-4
+
+#: Where the first coefficient is so many times as great as all others together there is no root: no wave is
+#: greater than 1, or than 1.09 where a root still counts, up to the degree 40; more are not asked for.
+OUTWEIGHS = 1.1
 
 #: A root beyond an end by no more than this is at the end; otherwise rounding could lose a root between two
 #: neighbouring intervals.
@@ -46,10 +51,14 @@ def coefficients(values: Floats) -> Floats:
 
     `c_k = (2 - [k = 0]) / count sum_j f_j cos(k pi (j + 1/2) / count)`
     """
-    count = len(values)
+    return np.asarray(np.tensordot(_waves(len(values)), values, axes=1))
+
+
+@cache
+def _waves(count: int) -> Floats:
     waves = np.cos(np.pi * np.outer(np.arange(count), np.arange(count) + 0.5) / count)
     waves[0] /= 2
-    return np.asarray(np.tensordot(2 / count * waves, values, axes=1))
+    return np.asarray(2 / count * waves)
 
 
 def series_through(values: Floats) -> Floats:
@@ -66,7 +75,8 @@ def real_roots(curve: Chebyshev) -> Floats:
     """The real roots of a polynomial in [-1, 1]; double ones may be a pair with small imaginary parts."""
     # leading zeros would raise the degree; a constant has no roots
     trimmed = chebyshev.chebtrim(curve.coef)
-    if len(trimmed) < 2:
+    sizes = np.abs(trimmed)
+    if len(trimmed) < 2 or sizes[0] > OUTWEIGHS * sizes[1:].sum():
         return np.empty(0)
     roots = Chebyshev(trimmed, domain=[-1, 1]).roots()
     selected = roots.real[(np.abs(roots.imag) < NEARLY_REAL) & (np.abs(roots.real) <= 1 + AT_END)]

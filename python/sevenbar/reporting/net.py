@@ -17,6 +17,9 @@ from sevenbar.text.words import retold, say
 
 def driven_by(linkage: Linkage, joint: str | None, speed: str | None) -> Linkage:
     """A net with another input, or another speed of it, than its own where they are not `None`."""
+    if joint is None and speed is None:
+        # which keeps what was worked out of it
+        return linkage
     column = linkage.input_column(joint, "--input")
     drive = Drive(linkage.columns[column], linkage.columns[linkage.other_column(column)])
     rate = linkage.speed_of(column) if speed is None else joint_speed(speed, linkage, column)

@@ -2,6 +2,7 @@
 //!
 //! Source: docs/theory_nets.md, (9).
 
+use super::freedoms::{Freedoms, freedoms};
 use super::joints::{NetJoint, Reading, TERMS};
 use super::net::{Net, on};
 use super::net_rows::{NetRow, NetRows};
@@ -17,6 +18,7 @@ use crate::rigid::{Vec3, cross, dot, norm, sub};
 use crate::stopping;
 use crate::taylor::Taylor;
 use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
 
 /// Directions whose sine is less are parallel: rounding.
 const PARALLEL: f64 = 1e-12;
@@ -46,6 +48,8 @@ pub struct DescribedNet {
     columns: Vec<Outer>,
     /// What all columns of the description are the sums of, where all are: hinges that turn about one direction with all between their links.
     sums: Option<Vec<Sum>>,
+    /// Its freedoms, which it takes longer to find than to follow a circuit, once they were asked for.
+    freedoms: OnceLock<Freedoms>,
 }
 
 /// The sum of columns times numbers, and what it reads where these are zero.
@@ -91,7 +95,24 @@ impl DescribedNet {
             (None, joint) => turned_by(&net, joint),
         };
         let sums = columns.iter().map(sum).collect();
-        Self { relative: net.relative(), net, joints, columns, sums }
+        Self {
+            relative: net.relative(),
+            net,
+            joints,
+            columns,
+            sums,
+            freedoms: OnceLock::new(),
+        }
+    }
+
+    /// The net.
+    pub fn net(&self) -> &Net {
+        &self.net
+    }
+
+    /// Its freedoms about the pose that is drawn.
+    pub fn freedoms(&self) -> &Freedoms {
+        self.freedoms.get_or_init(|| freedoms(&self.net))
     }
 
     /// A column as it is followed; `None` of a joint that is not in the tree.

@@ -41,7 +41,7 @@ pub struct Freedoms {
 /// The freedoms of a net about the pose that is drawn.
 pub fn freedoms(net: &Net) -> Freedoms {
     let drawn = net.drawn();
-    let mut best = at_pose(net, &drawn);
+    let mut best = Moving::at(net, drawn.clone());
     let mut random = Random(SEED);
     let (mut here, mut free) = (drawn.clone(), best.free.clone());
     for _ in 0..MOVES {
@@ -51,9 +51,9 @@ pub fn freedoms(net: &Net) -> Freedoms {
         let Some(next) = moved(net, &here, &free, &mut random) else {
             continue;
         };
-        let there = at_pose(net, &next);
+        let there = Moving::at(net, next);
         free.clone_from(&there.free);
-        here = next;
+        here.clone_from(&there.pose);
         if there.rank > best.rank {
             best = there;
         }
@@ -68,38 +68,48 @@ pub fn freedoms(net: &Net) -> Freedoms {
             .map(|x| x + PI * (2.0 * random.uniform() - 1.0))
             .collect();
         if let Some(pose) = net.closed(&rough) {
-            let there = at_pose(net, &pose);
+            let there = Moving::at(net, pose);
             if there.rank > best.rank {
                 best = there;
             }
         }
     }
-    best
+    best.freedoms(net)
 }
 
-/// The rank at a pose, and what goes with it.
-fn at_pose(net: &Net, pose: &[f64]) -> Freedoms {
-    let (errors, columns) = net.closure(pose);
-    let (values, vectors) = singular_values(&columns);
-    let greatest = values.first().copied().unwrap_or(0.0);
-    let rank = values
-        .iter()
-        .filter(|&&v| v > NO_RANK * greatest && v > 0.0)
-        .count();
-    // of as many columns as there are rows, so that a row that nothing moves has a direction of its own
-    let rows: Vec<Vec<f64>> = (0..errors.len())
-        .map(|r| {
-            let mut row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
-            row.resize(row.len().max(errors.len()), 0.0);
-            row
-        })
-        .collect();
-    let repeated = singular_values(&rows).1.split_off(rank.min(rows.len()));
-    Freedoms {
-        rank,
-        repeated,
-        free: vectors[rank..].to_vec(),
-        independent: independent(net, &columns, rank),
+/// How freely the net moves at a pose.
+struct Moving {
+    pose: Vec<f64>,
+    rank: usize,
+    free: Vec<Vec<f64>>,
+}
+
+impl Moving {
+    fn at(net: &Net, pose: Vec<f64>) -> Self {
+        let (values, vectors) = singular_values(&net.closure(&pose).1);
+        let greatest = values.first().copied().unwrap_or(0.0);
+        let rank = values
+            .iter()
+            .filter(|&&v| v > NO_RANK * greatest && v > 0.0)
+            .count();
+        Self { pose, rank, free: vectors[rank..].to_vec() }
+    }
+
+    /// The same with the rows that repeat others.
+    fn freedoms(self, net: &Net) -> Freedoms {
+        let Self { pose, rank, free } = self;
+        let (errors, columns) = net.closure(&pose);
+        // of as many columns as there are rows, so that a row that nothing moves has a direction of its own
+        let rows: Vec<Vec<f64>> = (0..errors.len())
+            .map(|r| {
+                let mut row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
+                row.resize(row.len().max(errors.len()), 0.0);
+                row
+            })
+            .collect();
+        let repeated = singular_values(&rows).1.split_off(rank.min(rows.len()));
+        let independent = independent(net, &columns, rank);
+        Freedoms { rank, repeated, free, independent }
     }
 }
 

@@ -49,13 +49,13 @@ mod unfolded;
 pub use body_block::{BodyBlock, Leg};
 pub use described::DescribedNet;
 pub use dyads::{Dyad, Pair};
-pub use freedoms::{Freedoms, freedoms};
+pub use freedoms::Freedoms;
 pub use joints::{NetJoint, Reading};
 pub use loop_block::{LoopBlock, LoopLink, LoopStep};
 pub use modes::{Mode, NetModes, Part, Stage, modes};
 pub use motion::{
-    FoundMode, NetChangePoint, NetCircuit, NetMotion, NetThrough, NotFollowed, Over, net_circuit_through,
-    net_motion, ratio_at_rest, searched_modes,
+    FoundMode, NetChangePoint, NetCircuit, NetFollowed, NetMotion, NetThrough, NotFollowed, Over,
+    net_circuit_again, net_circuit_through, net_motion, ratio_at_rest, searched_modes,
 };
 pub use net::{Facing, Net};
 pub use net_rows::{NetRow, NetRows};

@@ -5,22 +5,22 @@
 //! Source: docs/theory_nets.md, (8).
 
 use super::described::DescribedNet;
-use super::freedoms::{Freedoms, freedoms};
+use super::freedoms::Freedoms;
 use super::modes::Part;
 use super::net::MOST_COLUMNS;
 use super::net_rows::NetRows;
 use super::search::{STARTS, is_isolated, searched, settled};
 use super::seeds::whole_curves;
-use super::sized::SizedNet;
+use super::sized::WholeNet;
 use crate::loops::circuits::change_points as curve_points;
 use crate::loops::circuits::curve;
 use crate::loops::circuits::found::Search;
-use crate::loops::circuits::known_curves::Curves;
 use crate::loops::description::described_loop::{Column, Described};
 use crate::loops::equation::closed::{At, Closed};
-use crate::loops::motions::circuit::{OverInput, Reach};
-use crate::loops::motions::motion::{PUT_RIGHT, common_type, limits_meet, over_input, through};
+use crate::loops::motions::circuit::{Kept, OverInput, Reach};
+use crate::loops::motions::motion::{How, common_type, limits_meet, over_input};
 use crate::loops::motions::passes::Passes;
+use crate::loops::motions::through::{Along, PUT_RIGHT, again, through};
 use crate::outcome::CircuitMeasures;
 
 /// A rate by the length of the curve below which a column rests: a dead centre is known to the root of rounding.
@@ -52,6 +52,12 @@ pub struct Over<'a> {
     pub law: Option<&'a [[f64; 4]]>,
 }
 
+impl<'a> Over<'a> {
+    fn how(&self) -> How<'a> {
+        (self.samples, self.speed, self.law)
+    }
+}
+
 /// A circuit of a net.
 #[derive(Clone, Debug)]
 pub struct NetCircuit {
@@ -79,11 +85,16 @@ pub struct NetMotion {
     pub moving: Option<Vec<usize>>,
 }
 
+/// A circuit as its net followed it.
+pub struct NetFollowed {
+    net: WholeNet,
+    kept: Kept<WholeNet>,
+}
+
 /// What goes through a pose of a net.
-#[derive(Clone, Debug)]
 pub enum NetThrough {
-    /// A circuit.
-    Circuit(Box<NetCircuit>),
+    /// A circuit, and what makes rows of it at other inputs.
+    Circuit(Box<NetCircuit>, Box<NetFollowed>),
     /// It does not close near it; how far it is from closing [rad, or relative to the size].
     Apart(f64),
     /// It closes, and no motion could be followed.
@@ -92,34 +103,28 @@ pub enum NetThrough {
     InputRests(Vec<usize>),
 }
 
-/// Work on a net whose size the compiler knows.
-trait Sized {
-    type Out;
-    /// What the net is made of over an input, where that is known.
-    fn parts(&self) -> Option<(&[Part], usize)> {
-        None
-    }
-    fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> Self::Out;
-}
-
-/// Does work on a net of one freedom, of the rows that repeat no others.
-fn sized<W: Sized>(described: &DescribedNet, work: W) -> Result<W::Out, NotFollowed> {
-    let Freedoms { rank, independent, .. } = freedoms(&described.net);
-    let count = described.net.steps.len();
-    if rank + 1 != count || independent.len() != rank {
+/// A net of one freedom as it is followed over an input, of the rows that repeat no others; it has rows in closed form where its `parts`, if
+/// these are given, do.
+fn whole(described: &DescribedNet, parts: Option<&[Part]>, input: Column) -> Result<WholeNet, NotFollowed> {
+    let Freedoms { rank, independent, .. } = described.freedoms();
+    let net = &described.net;
+    let count = net.steps.len();
+    if rank + 1 != count || independent.len() != *rank {
         return Err(NotFollowed::Freedoms(count - rank));
     }
-    let net = &described.net;
-    // one size for all: each costs as much code as the chain's, and one of twice as many columns twice the time
-    if count <= MOST_COLUMNS {
-        let mut sized = SizedNet::<MOST_COLUMNS, 16, 5>::new(net, &independent);
-        if let Some((parts, input)) = work.parts() {
-            sized = sized.made_of(parts, input, net.size);
-        }
-        Ok(work.run(&sized))
-    } else {
-        Err(NotFollowed::Columns(count))
+    if count > MOST_COLUMNS {
+        return Err(NotFollowed::Columns(count));
     }
+    let whole = WholeNet::new(net, independent);
+    Ok(match parts {
+        Some(parts) => whole.made_of(parts, input.inner, net.size),
+        None => whole,
+    })
+}
+
+/// A column of the description as it is followed.
+fn followed(described: &DescribedNet, column: usize) -> Result<Column, NotFollowed> {
+    described.followed(column).ok_or(NotFollowed::NoColumn)
 }
 
 /// A mode that is found: the columns of the description, its closure error, whether it is isolated.
@@ -131,24 +136,19 @@ pub fn searched_modes(
     column: usize,
     value: f64,
 ) -> Result<Vec<FoundMode>, NotFollowed> {
-    struct Modes<'a>(&'a DescribedNet, usize, f64);
-    impl Sized for Modes<'_> {
-        type Out = Vec<FoundMode>;
-        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> Self::Out {
-            let mut found = searched(net, self.1, self.2, STARTS);
-            found.retain(|at| self.0.closes(net.values(at), net.balls(at)));
-            let values_of = |at: &At<SizedNet<C, R, B>>| {
-                let values = self.0.outer_values(net.values(at), net.balls(at));
-                (values, net.residual(&net.place(at)), is_isolated(net, self.1, at))
-            };
-            found.iter().map(values_of).collect()
-        }
-    }
-    let held = described.followed(column).ok_or(NotFollowed::NoColumn)?;
-    sized(
-        described,
-        Modes(described, held.inner, value * described.inward(column)),
-    )
+    let held = followed(described, column)?;
+    let net = whole(described, None, held)?;
+    let mut found = searched(&net, held.inner, value * described.inward(column), STARTS);
+    found.retain(|at| described.closes(net.values(at), net.balls(at)));
+    let values_of = |at: &At<WholeNet>| {
+        let values = described.outer_values(net.values(at), net.balls(at));
+        (
+            values,
+            net.residual(&net.place(at)),
+            is_isolated(&net, held.inner, at),
+        )
+    };
+    Ok(found.iter().map(values_of).collect())
 }
 
 /// The whole motion of a net; its modes are those of its `parts` where these are given.
@@ -157,17 +157,28 @@ pub fn net_motion(
     parts: Option<&[Part]>,
     over: &Over,
 ) -> Result<NetMotion, NotFollowed> {
-    struct Motion<'a>(Asked<'a>, Option<&'a [Part]>);
-    impl Sized for Motion<'_> {
-        type Out = NetMotion;
-        fn parts(&self) -> Option<(&[Part], usize)> {
-            Some((self.1?, self.0.ends.0.inner))
-        }
-        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> NetMotion {
-            self.0.motion(net, self.1)
-        }
-    }
-    sized(described, Motion(Asked::new(described, over)?, parts))
+    let ends = ends(described, over)?;
+    let net = whole(described, parts, ends.0)?;
+    let curves = whole_curves(described, &net, parts, [ends.0.inner, ends.1.inner]);
+    let selected = |_: &Passes<WholeNet>, circuit, _: (f64, f64)| circuit_of(circuit);
+    let found = over_input(described, &net, curves, ends, over.how(), &selected);
+    let values_of = |(point, circuits): (curve_points::ChangePoint<WholeNet>, Vec<usize>)| {
+        let values = described.outer_values(net.values(&point.at), net.balls(&point.at));
+        (values, circuits, point.rays.len() + point.lost, point.finite)
+    };
+    let change_points = found.change_points.into_iter().map(values_of).collect();
+    let (circuits, reaches): (Vec<NetCircuit>, Vec<Reach>) = found.circuits.into_iter().unzip();
+    let turns = [ends.0, ends.1].map(|column| net.is_turn(column.inner));
+    let meeting = limits_meet(reaches.iter(), turns);
+    let mut motion = NetMotion {
+        motion_type: "",
+        search: found.search,
+        circuits,
+        change_points,
+        moving: found.moving,
+    };
+    motion.motion_type = motion_type(&motion, meeting);
+    Ok(motion)
 }
 
 /// The one circuit through a pose of a net, given by the columns of the description; its rows have a closed form where its `parts`, if these are given, do.
@@ -177,18 +188,38 @@ pub fn net_circuit_through(
     pose: &[f64],
     over: &Over,
 ) -> Result<NetThrough, NotFollowed> {
-    struct Circuit<'a>(Asked<'a>, Option<&'a [Part]>, Vec<f64>);
-    impl Sized for Circuit<'_> {
-        type Out = NetThrough;
-        fn parts(&self) -> Option<(&[Part], usize)> {
-            Some((self.1?, self.0.ends.0.inner))
-        }
-        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> NetThrough {
-            self.0.through(net, &self.2)
-        }
-    }
-    let pose = described.inner_values(pose);
-    sized(described, Circuit(Asked::new(described, over)?, parts, pose))
+    let ends = ends(described, over)?;
+    let net = whole(described, parts, ends.0)?;
+    let rough = net.at(&described.inner_values(pose));
+    let near = |at: &At<WholeNet>| {
+        let moved = net.difference(&rough, at);
+        moved.iter().all(|d| d.abs() < PUT_RIGHT) && described.closes(net.values(at), net.balls(at))
+    };
+    let Some(at) = settled(&net, ends.0.inner, &rough).filter(near) else {
+        return Ok(NetThrough::Apart(net.residual(&net.place(&rough))));
+    };
+    Ok(
+        match through::<_, _, NetRows>(described, &net, &at, ends, over.how()) {
+            // a pose so far out that the net hardly closes leaves nothing to tell
+            Some(Along::Circuit(circuit, kept)) if !circuit.rows.is_empty() => NetThrough::Circuit(
+                Box::new(circuit_of(*circuit).0),
+                Box::new(NetFollowed { net, kept }),
+            ),
+            Some(Along::InputRests(moving)) => NetThrough::InputRests(moving),
+            _ => NetThrough::Still,
+        },
+    )
+}
+
+/// A circuit that was followed over this input and output, once more at other inputs; `None` where none of them is in it.
+pub fn net_circuit_again(
+    described: &DescribedNet,
+    known: &NetFollowed,
+    over: &Over,
+) -> Result<Option<NetCircuit>, NotFollowed> {
+    let NetFollowed { net, kept } = known;
+    let circuit = again(described, net, kept, ends(described, over)?, over.how());
+    Ok(Some(circuit_of(circuit).0).filter(|circuit| !circuit.rows.is_empty()))
 }
 
 /// d(output)/d(input) at a pose, given by the columns of the description, where both rest; `None` where one of them moves.
@@ -198,107 +229,23 @@ pub fn ratio_at_rest(
     input: usize,
     output: usize,
 ) -> Result<Option<f64>, NotFollowed> {
-    struct Ratio(Vec<f64>, [usize; 2]);
-    impl Sized for Ratio {
-        type Out = Option<f64>;
-        fn run<const C: usize, const R: usize, const B: usize>(self, net: &SizedNet<C, R, B>) -> Option<f64> {
-            let node = curve::node_at(net, &net.at(&self.0))?;
-            let [input, output] = self.1;
-            let rests = |c: usize| node.rates[0][c].abs() < RESTS;
-            (rests(input) && rests(output)).then(|| node.rates[1][output] / node.rates[1][input])
-        }
-    }
-    let column = |outer| described.followed(outer).ok_or(NotFollowed::NoColumn);
-    let ends = [column(input)?.inner, column(output)?.inner];
+    let ends = [followed(described, input)?, followed(described, output)?];
+    let net = whole(described, None, ends[0])?;
+    let Some(node) = curve::node_at(&net, &net.at(&described.inner_values(pose))) else {
+        return Ok(None);
+    };
+    let [first, last] = ends.map(|column| column.inner);
+    let rests = |c: usize| node.rates[0][c].abs() < RESTS;
     let factor = described.inward(input) / described.inward(output);
-    let ratio = sized(described, Ratio(described.inner_values(pose), ends))?;
-    Ok(ratio.map(|ratio| ratio * factor))
+    Ok((rests(first) && rests(last)).then(|| node.rates[1][last] / node.rates[1][first] * factor))
 }
 
-/// A motion of a net that is wanted.
-struct Asked<'a> {
-    described: &'a DescribedNet,
-    ends: (Column, Column),
-    over: Over<'a>,
-}
-
-impl<'a> Asked<'a> {
-    fn new(described: &'a DescribedNet, over: &Over<'a>) -> Result<Self, NotFollowed> {
-        let column = |outer| described.followed(outer).ok_or(NotFollowed::NoColumn);
-        let ends = (column(over.input)?, column(over.output)?);
-        Ok(Self { described, ends, over: *over })
-    }
-
-    fn motion<const C: usize, const R: usize, const B: usize>(
-        &self,
-        net: &SizedNet<C, R, B>,
-        parts: Option<&[Part]>,
-    ) -> NetMotion {
-        let curves = whole_curves(self.described, net, parts, [self.ends.0.inner, self.ends.1.inner]);
-        let turns = [self.ends.0, self.ends.1].map(|column| net.is_turn(column.inner));
-        let (mut motion, reaches) = self.over(net, curves);
-        let meeting = limits_meet(reaches.iter(), turns);
-        motion.motion_type = motion_type(&motion, meeting);
-        motion
-    }
-
-    /// The circuits of curves, their common type aside, and how far each goes.
-    fn over<const C: usize, const R: usize, const B: usize>(
-        &self,
-        net: &SizedNet<C, R, B>,
-        curves: Curves<SizedNet<C, R, B>>,
-    ) -> (NetMotion, Vec<Reach>) {
-        let Over { samples, speed, law, .. } = self.over;
-        let selected = |_: &Passes<SizedNet<C, R, B>>, circuit, _: (f64, f64)| circuit_of(circuit);
-        let how = (samples, speed, law);
-        let over = over_input(self.described, net, curves, self.ends, how, &selected);
-        let values_of = |(point, circuits): (curve_points::ChangePoint<SizedNet<C, R, B>>, Vec<usize>)| {
-            let values = self
-                .described
-                .outer_values(net.values(&point.at), net.balls(&point.at));
-            (values, circuits, point.rays.len() + point.lost, point.finite)
-        };
-        let change_points = over.change_points.into_iter().map(values_of).collect();
-        let (circuits, reaches) = over.circuits.into_iter().unzip();
-        let motion = NetMotion {
-            motion_type: "",
-            search: over.search,
-            circuits,
-            change_points,
-            moving: over.moving,
-        };
-        (motion, reaches)
-    }
-
-    fn through<const C: usize, const R: usize, const B: usize>(
-        &self,
-        net: &SizedNet<C, R, B>,
-        pose: &[f64],
-    ) -> NetThrough {
-        let input = self.ends.0.inner;
-        let rough = net.at(pose);
-        let near = |at: &At<SizedNet<C, R, B>>| {
-            let moved = net.difference(&rough, at);
-            moved.iter().all(|d| d.abs() < PUT_RIGHT) && self.described.closes(net.values(at), net.balls(at))
-        };
-        let Some(at) = settled(net, input, &rough).filter(near) else {
-            return NetThrough::Apart(net.residual(&net.place(&rough)));
-        };
-        let mut curves = Curves::new(&[input, self.ends.1.inner]);
-        curves.take(net, &[at], input);
-        curves.finish(net);
-        let own = std::mem::take(&mut curves.curves);
-        let Some(curve) = through(net, own, &at, input) else {
-            return NetThrough::Still;
-        };
-        curves.curves = vec![curve];
-        let (motion, _) = self.over(net, curves);
-        match (motion.circuits.into_iter().next(), motion.moving) {
-            (Some(circuit), _) => NetThrough::Circuit(Box::new(circuit)),
-            (None, Some(moving)) => NetThrough::InputRests(moving),
-            (None, None) => NetThrough::Still,
-        }
-    }
+/// The input and the output as they are followed.
+fn ends(described: &DescribedNet, over: &Over) -> Result<(Column, Column), NotFollowed> {
+    Ok((
+        followed(described, over.input)?,
+        followed(described, over.output)?,
+    ))
 }
 
 /// A circuit, and how far it goes.

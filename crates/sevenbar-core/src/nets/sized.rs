@@ -8,7 +8,7 @@
 use super::dyad_quads::made;
 use super::dyad_rows::DyadRows;
 use super::modes::Part;
-use super::net::{Net, on};
+use super::net::{MOST_COLUMNS, Net, on};
 use super::rows::Row;
 use super::series::{Series, rotating};
 use super::square::Square;
@@ -33,6 +33,9 @@ pub(super) struct SizedNet<const C: usize, const R: usize, const B: usize> {
     /// Its rows in closed form, if it is made of dyads.
     explicit: Option<DyadRows>,
 }
+
+/// One size for all nets: each costs as much code as the chain's, and one of twice as many columns twice the time.
+pub(super) type WholeNet = SizedNet<MOST_COLUMNS, { MOST_COLUMNS - 1 }, 5>;
 
 /// What a row says of the cycle that it closes.
 struct Cycle {

@@ -7,7 +7,7 @@ use super::dyads::{Dyad, Pair};
 use super::modes::{Part, Stage};
 use super::net::Net;
 use super::rows::{On, Row};
-use super::sized::SizedNet;
+use super::sized::WholeNet;
 use super::steps::{Move, Step};
 use crate::loops::circuits::known_curves::Curves;
 use crate::loops::equation::closed::{Closed, Explicits};
@@ -22,8 +22,6 @@ const Z: Vec3 = [0.0, 0.0, 1.0];
 
 /// The joints of a dyad, and the steps at which it hangs.
 type Hung = ([Pair; 3], [On; 2]);
-
-type Whole = SizedNet<17, 16, 5>;
 
 fn at(x: f64, y: f64) -> Vec3 {
     [x, y, 0.0]
@@ -82,8 +80,8 @@ fn slide(angle: f64) -> Pair {
 /// Asserts that all rows over the first column are those of Newton's method, and returns the share of them that had a closed form.
 fn compared(net: &Net, parts: &[Part], name: &str) -> f64 {
     let independent = super::freedoms::freedoms(net).independent;
-    let general = Whole::new(net, &independent);
-    let explicit = Whole::new(net, &independent).made_of(parts, 0, net.size);
+    let general = WholeNet::new(net, &independent);
+    let explicit = WholeNet::new(net, &independent).made_of(parts, 0, net.size);
     let mut curves = Curves::new(&[0]);
     curves.take(&general, &[general.at(&net.drawn())], 0);
     curves.finish(&general);
@@ -117,7 +115,7 @@ fn compared(net: &Net, parts: &[Part], name: &str) -> f64 {
         });
         let law: Vec<[f64; 4]> = law.into_iter().chain(near).collect();
         let step = (high - low) / 97.0;
-        type Both = [Vec<OfCircuit<Whole>>; 2];
+        type Both = [Vec<OfCircuit<WholeNet>>; 2];
         let pairs: [Both; 2] = [
             [one.rows(low, step), other.rows(low, step)],
             [
@@ -350,7 +348,7 @@ fn nets_of_pins_may_be_closed_at_any_pin_of_a_dyad() {
     for chords in [[0, 1], [1, 2], [2, 0], [0, 0], [2, 2], [1, 1]] {
         let (net, parts) = closed_at(chords);
         let independent = super::freedoms::freedoms(&net).independent;
-        let whole = Whole::new(&net, &independent);
+        let whole = WholeNet::new(&net, &independent);
         let dyads = DyadRows::of(&whole.net, &parts, 0, net.size, 0.0).unwrap();
         assert!(dyads.pins.is_some(), "{chords:?}");
         let share = compared(&net, &parts, &format!("{chords:?}"));
@@ -380,7 +378,7 @@ fn rows_one_by_one_are_those_of_four_at_once() {
     for pairs in cases {
         let (net, parts) = net_of(&[(pairs, [Some(0), None])], hinge(0.0, 0.0), 0.3);
         let independent = super::freedoms::freedoms(&net).independent;
-        let whole = Whole::new(&net, &independent).made_of(&parts, 0, net.size);
+        let whole = WholeNet::new(&net, &independent).made_of(&parts, 0, net.size);
         let besides = (17 - whole.used()) as f64;
         let dyads = DyadRows::of(&whole.net, &parts, 0, net.size, besides).unwrap();
         let drawn = whole.at(&net.drawn());
@@ -390,7 +388,7 @@ fn rows_one_by_one_are_those_of_four_at_once() {
         let mut made = Explicits::none();
         whole.explicit(&on, &values, &given, &mut made);
         for (k, value) in values.into_iter().enumerate() {
-            let row = OfCircuit::<Whole>::explicit(0, &made, k);
+            let row = OfCircuit::<WholeNet>::explicit(0, &made, k);
             let one = dyads.row(
                 &on.signs,
                 [value, given[0], given[1] / 2.0, given[2] / 6.0],

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 
@@ -152,25 +153,31 @@ def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
     `frames` (n, links, 4, 4) are those of the links, as `poses` gives them. A joint that slides is where it
     is drawn on both, whatever it reads there.
     """
+    return frames_on(linkage, frames, 0), frames_on(linkage, frames, 1)
+
+
+def frames_on(linkage: Loop, frames: Floats, side: Literal[0, 1]) -> Floats:
+    """Those on the link before each joint (0), or on the link after it (1)."""
     if linkage.net is None:
-        before, after = np.empty((2, *frames.shape))
-        before[:, 0], after[:, -1] = linkage.base, linkage.ground
-        after[:, :-1] = frames[:, :-1]
-        for i, link in enumerate(linkage.links):
-            before[:, i + 1] = product(frames[:, i], link)
+        result = np.empty(frames.shape)
+        if side:
+            result[:, :-1], result[:, -1] = frames[:, :-1], linkage.ground
+        else:
+            result[:, 0] = linkage.base
+            for i, link in enumerate(linkage.links):
+                result[:, i + 1] = product(frames[:, i], link)
     else:
-        links = np.array(linkage.graph.between) - 1
-        before, after = (frames[:, links[:, side]] @ linkage.frames[:, side] for side in (0, 1))
+        links = np.array(linkage.graph.between)[:, side] - 1
+        result = frames[:, links] @ linkage.frames[:, side]
     for i, joint in enumerate(linkage.joints):
-        if joint.value:
-            side = after if joint.backwards else before
-            side[:, i] = side[:, i] @ joint.to_drawn
-    return before, after
+        if joint.value and joint.backwards == side:
+            result[:, i] = result[:, i] @ joint.to_drawn
+    return result
 
 
 def opening(linkage: Loop, frames: Floats, q: Floats) -> Floats:
     """How far the frames (n, links, 4, 4) of the links leave the loop open, (n, 4, 4): of the last joint."""
-    before, _ = joint_frames(linkage, frames)
+    before = frames_on(linkage, frames, 0)
     closing = before[:, -1] @ linkage.joints[-1].motion(q[:, linkage.places[-1]])
     return np.abs(closing - linkage.ground)
 

@@ -344,7 +344,7 @@ class Loop(Drawable):
             total += float(np.linalg.norm(places[:, None] - places, axis=-1).max())
         return total
 
-    @property
+    @cached_property
     def size(self) -> float:
         """The size [length], as the core has it: all links' lengths, and pitches by radian; 1 if none."""
         size = self.length + sum(abs(joint.pitch) / math.tau for joint in self.joints)

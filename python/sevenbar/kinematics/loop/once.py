@@ -11,18 +11,22 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-def once_for(place: int) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """A function whose result is kept for its argument at this place, which must not be in the result."""
+def once_for(place: int, by: int | None = None) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """A function whose result is kept for its argument at this place, which must not be in the result.
+
+    For each value of the argument at the place `by`, if that is given, one.
+    """
 
     def kept(function: Callable[P, T]) -> Callable[P, T]:
-        results: WeakKeyDictionary[Any, T] = WeakKeyDictionary()
+        results: WeakKeyDictionary[Any, dict[Any, T]] = WeakKeyDictionary()
 
         @wraps(function)
         def found(*given: P.args, **named: P.kwargs) -> T:
-            owner = given[place]
-            if owner not in results:
-                results[owner] = function(*given, **named)
-            return results[owner]
+            own = results.setdefault(given[place], {})
+            value = None if by is None else given[by]
+            if value not in own:
+                own[value] = function(*given, **named)
+            return own[value]
 
         return found
 

@@ -18,6 +18,7 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits.poses import drawn_frames
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Z
+from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.solvers.general import AGREE
 from sevenbar.kinematics.solvers.plane_and_sphere import across, net_frames
 
@@ -203,6 +204,7 @@ def as_one(linkage: Loop, driven: int, link: int) -> int:
     return max(pair) if link in pair and len(linkage.joints[driven].columns) == 1 else link
 
 
+@once_for(0, by=1)
 def order_of(linkage: Loop, column: int) -> Order:
     """The order in which a linkage is solved with one column held; of a single loop that is one block."""
     parts = Parts(linkage)

@@ -11,10 +11,11 @@ from typing import cast
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.loop.geometry import Loop
 from sevenbar.kinematics.loop.joints import Y, Z
+from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.nets.chords import Triple, joint_rows, rod_row, three
 from sevenbar.kinematics.nets.one_loop import RawLoop, one_loop
 from sevenbar.kinematics.nets.order import LinkBlock, Parts, as_one
-from sevenbar.kinematics.nets.tree import RawRow, Tree
+from sevenbar.kinematics.nets.tree import NetParts, RawRow, Tree
 
 #: The steps that carry two links, `None` of the ground.
 On = tuple[int | None, int | None]
@@ -37,7 +38,8 @@ FEET = ("R", "P", "U")
 RawPart = RawDyad | RawBlock | RawBody | RawLoop
 
 
-def parts_of(linkage: Loop, tree: Tree) -> list[RawPart] | None:
+@once_for(1)
+def parts_of(linkage: Loop, tree: Tree) -> NetParts | None:
     """The blocks of a net in the order in which they are solved.
 
     `None` where one has no solver, or the driven joint has more than one freedom.
@@ -55,7 +57,7 @@ def parts_of(linkage: Loop, tree: Tree) -> list[RawPart] | None:
         if part is None:
             return None
         parts.append(part)
-    return parts
+    return tree.core.parts(parts)
 
 
 def _planar(linkage: Loop, tree: Tree, block: LinkBlock) -> RawDyad | RawBlock | None:

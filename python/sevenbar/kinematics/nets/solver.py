@@ -12,7 +12,8 @@ from sevenbar.kinematics.loop.mobility import Mobility
 from sevenbar.kinematics.nets.modes import net_modes
 from sevenbar.kinematics.nets.order import Parts, order_of
 from sevenbar.kinematics.nets.parts import parts_of
-from sevenbar.kinematics.nets.tree import CoreCircuit, NetRows, Tree
+from sevenbar.kinematics.nets.tree import CoreCircuit, NetFollowed, NetRows, Tree
+from sevenbar.kinematics.solvers.followed_last import FollowedLast
 from sevenbar.kinematics.solvers.general import AGREE, at_rest, no_circuit
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ class NetSolver:
     def __init__(self, linkage: Solvable) -> None:
         self._linkage = linkage
         self._trees: dict[tuple[int, int], Tree] = {}
+        self._found: dict[int, Mobility] = {}
+        self._last = FollowedLast[NetFollowed]()
 
     def __reduce__(self) -> tuple[type[NetSolver], tuple[Solvable]]:
         return NetSolver, (self._linkage,)
@@ -44,6 +47,11 @@ class NetSolver:
         Redundant constraints are those by which a part moves in a plane or about a point, cycle by cycle, and
         how many there are besides.
         """
+        if column not in self._found:
+            self._found[column] = self._mobility(column)
+        return self._found[column]
+
+    def _mobility(self, column: int) -> Mobility:
         linkage = self._linkage
         tree = Tree(linkage, (linkage.joint_of(column),))
         _, repeated, free = tree.core.freedoms()
@@ -106,6 +114,11 @@ class NetSolver:
         """The one circuit through a pose (columns,)."""
         linkage, tree = self._linkage, self._tree(column, output)
         table = None if law is None else law.table
+        if (known := self._last.of(pose, column, output)) is not None:
+            again = tree.core.circuit_again(known, column, output, samples, speed, table)
+            if again is None:
+                raise no_circuit(linkage, column, None, linkage.size)
+            return self._circuit(0, again, (column, output), speed, law)
         parts = parts_of(linkage, tree)
         raw = tree.followed(
             lambda core: core.circuit_through(parts, pose, column, output, samples, speed, table)
@@ -113,7 +126,9 @@ class NetSolver:
         match raw:
             case ():
                 raise no_circuit(linkage, column, None, linkage.size)
-            case tuple() as circuit:
+            case tuple() as found:
+                circuit, followed = found
+                self._last.keep(followed, pose, column, output)
                 return self._circuit(0, circuit, (column, output), speed, law)
             case other:
                 raise no_circuit(linkage, column, other, linkage.size)

@@ -32,7 +32,9 @@ IF_LOOSE = "join links by more joints or rods"
 #: A row as the core takes it: its kind, the steps of its links, its vectors and its number.
 RawRow = tuple[str, tuple[int | None, int | None], tuple[Triple, Triple], float]
 
-#: The rows of a circuit as the core has them, and a circuit with its rows.
+#: What a net is made of, a circuit as it was followed, its rows as the core has them, and it with its rows.
+NetParts = _core.NetParts
+NetFollowed = _core.NetFollowed
 NetRows = _core.NetRows
 CoreCircuit = tuple[_core.RawCircuit, NetRows]
 
@@ -65,7 +67,7 @@ def freedoms_of(linkage: Loop, joint: int, *, outwards: bool) -> list[Freedom]:
     return result
 
 
-@dataclass
+@dataclass(eq=False)
 class Tree:
     """The steps of a net's tree, each a column; `carrier` is the step of each link, `None` of the ground.
 

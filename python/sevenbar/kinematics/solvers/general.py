@@ -24,6 +24,7 @@ from sevenbar.kinematics.loop.no_length import no_length
 from sevenbar.kinematics.loop.once import once_for
 from sevenbar.kinematics.loop.rigid import axis_to_z, inverse, placed
 from sevenbar.kinematics.loop.single import check_single
+from sevenbar.kinematics.solvers.followed_last import FollowedLast
 
 if TYPE_CHECKING:
     from sevenbar.kinematics.loop.law import Law
@@ -53,8 +54,7 @@ class GeneralLoop:
             linkage.drawn_pose if linkage.drawn_pose.any() else None,
         )  # fmt: skip
         self._found: dict[int, Mobility] = {}
-        #: The circuit followed last, by the pose, input and output it is for.
-        self._last: tuple[tuple[bytes, int, int], _core.Followed] | None = None
+        self._last = FollowedLast[_core.Followed]()
         held = (parts.columns[joint] for word, joint, _ in self._core.idle if "between-balls" not in word)
         for column in held:
             if linkage.drawn_pose[column]:
@@ -203,10 +203,8 @@ class GeneralLoop:
     ) -> Circuit:
         """The one circuit through a pose (columns,)."""
         table = None if law is None else law.table
-        asked, last = (pose.tobytes(), column, output), self._last
-        if last is not None and last[0] == asked:
-            # the same once more, as searches along a circuit ask: what was followed is known
-            again = self._core.circuit_again(last[1], column, output, samples, speed, table)
+        if (known := self._last.of(pose, column, output)) is not None:
+            again = self._core.circuit_again(known, column, output, samples, speed, table)
             return self._circuit(0, again, (column, output), speed, law)
         raw = self._solve(
             column, partial(self._core.circuit_through, pose, column, output, samples, speed, table)
@@ -216,7 +214,7 @@ class GeneralLoop:
                 raise no_circuit(self._linkage, column, None, self.size)
             case tuple() as found:
                 circuit, followed = found
-                self._last = (asked, followed)
+                self._last.keep(followed, pose, column, output)
                 return self._circuit(0, circuit, (column, output), speed, law)
             case other:
                 raise no_circuit(self._linkage, column, other, self.size)

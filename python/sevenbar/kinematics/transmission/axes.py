@@ -20,7 +20,7 @@ import numpy as np
 from sevenbar.arrays import Floats, Integers
 from sevenbar.kinematics.circuits.circuit import Circuit
 from sevenbar.kinematics.circuits.motion import Solvable
-from sevenbar.kinematics.circuits.poses import joint_frames, poses_along
+from sevenbar.kinematics.circuits.poses import frames_on, poses_along
 from sevenbar.kinematics.loop.geometry import Loop, moved_by
 from sevenbar.kinematics.solvers.general import Steps, steps_of
 
@@ -132,16 +132,17 @@ def _twists(screws: Floats, rates: Floats) -> Floats:
 def axes_along(loop: Loop, circuit: Circuit, rows: Integers | None = None) -> Axes:
     """The axes of the joints on all rows of a circuit, or on some; NaN where it has no pose."""
     rows = np.arange(len(circuit.time)) if rows is None else rows
-    before, _ = joint_frames(loop, poses_along(loop, circuit, rows))
+    before = frames_on(loop, poses_along(loop, circuit, rows), 0)
     directions, places = [], []
     for i, (joint, own) in enumerate(zip(loop.joints, loop.places, strict=True)):
         now = before[:, i]
         steps = joint.steps(circuit.q[rows, own])
-        for step, values in steps[:1] if joint.row.is_screw or joint.row.is_ball else steps:
-            now = now @ joint.before(step)
+        whole = joint.row.is_screw or joint.row.is_ball
+        for number, (step, _) in enumerate(steps[:1] if whole else steps):
+            now = now @ moved_by(*steps[number - 1]) if number else now
+            now = now @ joint.before(step) if step.tilted else now
             directions.append(now[:, :3, step.axis])
             places.append(now[:, :3, 3])
-            now = now @ moved_by(step, values)
     return Axes(steps_of(loop), np.stack(directions), np.stack(places))
 
 

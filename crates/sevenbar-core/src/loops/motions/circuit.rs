@@ -70,7 +70,7 @@ impl Circuit {
         // one without rows is no circuit, so a course is never of none
         if !self.rows.is_empty() {
             self.course = Some(Course {
-                followed: Followed::of(passes),
+                followed: Followed { kept: Kept::of(passes), still: None },
                 grid,
                 offsets: self.rows.offsets.clone(),
                 speed: self.rows.speed,
@@ -130,29 +130,27 @@ impl Limits {
     }
 }
 
-/// A circuit as it was followed, on which rows at any inputs are made.
+/// What is kept of a circuit that was followed: rows of it at any inputs are made of that.
 #[derive(Clone, Debug)]
-pub struct Followed {
-    curve: Curve,
+pub(crate) struct Kept<S: Closed = Chain> {
+    curve: Curve<S>,
     input: usize,
     passes: Vec<Pass>,
-    limits: Vec<Node>,
-    pub(super) still: Option<Still>,
+    limits: Vec<Node<S>>,
 }
 
-impl Followed {
-    pub(super) fn of(passes: &Passes) -> Self {
+impl<S: Closed> Kept<S> {
+    pub(super) fn of(passes: &Passes<S>) -> Self {
         Self {
             curve: passes.curve.clone(),
             input: passes.input,
             passes: passes.passes.clone(),
             limits: passes.limits.clone(),
-            still: None,
         }
     }
 
     /// The passes, of the chain that they were followed in.
-    pub(super) fn passes<'a>(&self, chain: &'a Chain) -> Passes<'a> {
+    pub(super) fn passes<'a>(&self, chain: &'a S) -> Passes<'a, S> {
         Passes {
             chain,
             curve: self.curve.clone(),
@@ -161,6 +159,14 @@ impl Followed {
             limits: self.limits.clone(),
         }
     }
+}
+
+/// A circuit of a loop as it was followed.
+#[derive(Clone, Debug)]
+pub struct Followed {
+    pub(super) kept: Kept,
+    /// The joint that was held.
+    pub(super) still: Option<Still>,
 }
 
 /// A circuit on a grid of inputs whose rows are computed when they are wanted, and may be dropped again.
@@ -180,7 +186,7 @@ impl Course {
         let still = self.followed.still;
         let linkage = followed(linkage, still);
         let chain = linkage.reduced.chain.as_ref();
-        let rows = chain.map(|chain| grid_rows(&self.followed.passes(chain), self.grid));
+        let rows = chain.map(|chain| grid_rows(&self.followed.kept.passes(chain), self.grid));
         Rows {
             rows: rows.unwrap_or_default(),
             offsets: self.offsets.clone(),

@@ -10,3 +10,4 @@ pub(crate) mod row;
 mod row_lanes;
 pub(crate) mod row_store;
 pub(crate) mod rows;
+pub(crate) mod through;

@@ -1,7 +1,7 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
-use super::circuit::{Circuit, Followed, Limit, Limits, OverInput, Reach, Wanted, circuit, grid};
-use super::met_twice::{Held, HeldMotions, held_at};
+use super::circuit::{Circuit, Limit, Limits, OverInput, Reach, Wanted, circuit, grid};
+use super::met_twice::{Held, HeldMotions};
 use super::passes::Passes;
 use super::row::Row;
 use super::row_store::RowStore;
@@ -10,19 +10,14 @@ use crate::loops::circuits::change_points as curve_points;
 use crate::loops::circuits::curve::Curve;
 use crate::loops::circuits::found::{Found, Search};
 use crate::loops::circuits::known_curves::Curves;
-use crate::loops::circuits::on_curve::lies_on;
 use crate::loops::circuits::search::curves;
 use crate::loops::description::described_loop::{Column, Described, Loop};
-use crate::loops::description::holding::{self, column_at_rest};
-use crate::loops::description::joint_values::{configuration, joint_values};
-use crate::loops::equation::closed::{At, Closed};
+use crate::loops::description::holding::column_at_rest;
+use crate::loops::description::joint_values::joint_values;
+use crate::loops::equation::closed::Closed;
 use crate::loops::equation::rotations::short_way;
 use crate::loops::mobility::singular_place::SAME_LIMIT;
 use crate::loops::modes::finder::Completeness;
-use crate::loops::modes::polish::{Settled, polish};
-
-/// How far a joint of a given pose [rad, or relative to the size] may be moved to close the loop.
-pub(crate) const PUT_RIGHT: f64 = 0.05;
 
 /// A circuit of less extent [rad, or relative to the size] is nearly an isolated pose: its other joints move about as little as the one
 /// whose limits meet.
@@ -58,19 +53,6 @@ pub struct Motion {
     pub change_points: Vec<ChangePoint>,
     /// Columns that move with the input at rest, if the loop moves somewhere so.
     pub moving: Option<Vec<usize>>,
-}
-
-/// What goes through a pose.
-#[derive(Clone, Debug)]
-pub enum Through {
-    /// The loop closes near the pose, and moves: its circuit, and what makes rows of it at other inputs.
-    Circuit(Box<Circuit>, Box<Followed>),
-    /// It does not close near it; how far it is from closing, relative to the size or radians.
-    Apart(f64),
-    /// It closes and no motion could be followed.
-    Still,
-    /// It moves with the input at rest: the columns that do.
-    InputRests(Vec<usize>),
 }
 
 /// What a motion is computed over.
@@ -351,117 +333,16 @@ pub(crate) fn common_type(
     })
 }
 
-/// The one circuit through a pose, given by its joint values and closed by Newton's method with the input held.
-///
-/// `None` where one of the columns is no joint of one freedom that moves.
-pub fn circuit_through(
-    linkage: &Loop,
-    values: &[f64],
-    input: usize,
-    output: usize,
-    samples: usize,
-    speed: f64,
-    law: Option<&[[f64; 4]]>,
-) -> Option<Through> {
-    let chain = linkage.reduced.chain.as_ref()?;
-    let (driver, follower) = ends(linkage, input, output)?;
-    let rough = configuration(linkage, values);
-    let Some(Settled { at: pose, .. }) = polish(chain, driver.inner, &rough, PUT_RIGHT).filter(|s| s.agrees)
-    else {
-        return Some(Through::Apart(chain.residual(&chain.place(&rough))));
-    };
-    let wished: Vec<usize> = [driver.inner, follower.inner]
-        .into_iter()
-        .filter(|&c| c < chain.columns)
-        .collect();
-    let mut curves = Curves::new(&wished);
-    curves.take(chain, &[pose], driver.inner);
-    curves.finish(chain);
-    let Some(curve) = through(chain, curves.curves, &pose, driver.inner) else {
-        let Some(Held { still, linkage, curves }) = held_at(linkage, &pose) else {
-            return Some(Through::Still);
-        };
-        if linkage.inner(input).is_none() {
-            return Some(Through::InputRests(moving(&linkage, &curves.curves)));
-        }
-        let found = circuit_through(&linkage, values, input, output, samples, speed, law)?;
-        return Some(match found {
-            Through::Circuit(circuit, mut followed) => {
-                followed.still = Some(still);
-                Through::Circuit(Box::new(circuit.holding(still, &linkage, output)), followed)
-            }
-            other => other,
-        });
-    };
-    if curve.rests(driver.inner) {
-        return Some(Through::InputRests(moving(linkage, &[curve])));
-    }
-    let Some(passes) = Passes::new(chain, curve, driver.inner) else {
-        return Some(Through::Still);
-    };
-    let circuit = on_passes(linkage, &passes, (driver, follower), samples, speed, law);
-    Some(Through::Circuit(
-        Box::new(circuit),
-        Box::new(Followed::of(&passes)),
-    ))
-}
-
-/// A circuit that was followed, once more at other inputs; `None` where a column is no joint of one freedom.
-pub fn circuit_again(
-    linkage: &Loop,
-    known: &Followed,
-    input: usize,
-    output: usize,
-    samples: usize,
-    speed: f64,
-    law: Option<&[[f64; 4]]>,
-) -> Option<Circuit> {
-    let own = holding::followed(linkage, known.still);
-    let chain = own.reduced.chain.as_ref()?;
-    let ends = ends(&own, input, output)?;
-    let circuit = on_passes(&own, &known.passes(chain), ends, samples, speed, law);
-    Some(match known.still {
-        Some(still) => circuit.holding(still, &own, output),
-        None => circuit,
-    })
-}
-
 /// Input and output as the chain has them; an output that rests where a joint is held is the next.
-fn ends(linkage: &Loop, input: usize, output: usize) -> Option<(Column, Column)> {
+pub(super) fn ends(linkage: &Loop, input: usize, output: usize) -> Option<(Column, Column)> {
     let follower = linkage
         .inner(output)
         .or_else(|| column_at_rest(linkage, output))?;
     Some((linkage.inner(input)?, follower))
 }
 
-/// The circuit of passes that stand by themselves, with its rows.
-fn on_passes(
-    linkage: &Loop,
-    passes: &Passes,
-    (driver, follower): (Column, Column),
-    samples: usize,
-    speed: f64,
-    law: Option<&[[f64; 4]]>,
-) -> Circuit {
-    let grid = grid(passes.chain, std::slice::from_ref(passes), samples);
-    let wanted = Wanted { driver, follower, grid, speed, law };
-    circuit::<_, _, Vec<_>>(linkage, passes, &wanted).into()
-}
-
-/// Of the curves that were found from a pose the one it lies on, not one beyond a change point; where several meet there one on which
-/// the input moves.
-pub(crate) fn through<S: Closed>(
-    chain: &S,
-    curves: Vec<Curve<S>>,
-    pose: &At<S>,
-    input: usize,
-) -> Option<Curve<S>> {
-    let fits = |curve: &Curve<S>| (lies_on(chain, curve, pose), !curve.rests(input));
-    curves.into_iter().max_by_key(fits)
-}
-
 /// The columns that move along some of the curves.
-fn moving<S: Closed, D: Described>(linkage: &D, curves: &[Curve<S>]) -> Vec<usize> {
+pub(super) fn moving<S: Closed, D: Described>(linkage: &D, curves: &[Curve<S>]) -> Vec<usize> {
     let moves = |c: usize| curves.iter().any(|curve| !curve.rests(c));
     (0..linkage.columns())
         .filter(|&column| linkage.followed_column(column).is_some_and(moves))
