@@ -6,13 +6,13 @@
 //! Source: docs/theory_nets.md, (19) to (22).
 
 use super::before::Before;
-use super::body_family::{BodyFamily, Held, Holds, Triple, UNKNOWNS, halves, pose};
-use super::complex_members::ComplexPose;
+use super::body_family::{BodyFamily, Held, Holds};
+use super::dual_quaternions::{Triple, UNKNOWNS, halves, pose};
 use super::hinged::{OnStep, Ways, hinged};
 use super::monodromy::{Ends, REAL};
 use super::net::Net;
 use super::rows::{On, Row};
-use super::steps::{Move, Placement};
+use super::steps::{ComplexPose, Move, Placement};
 use super::unfolded::turn_towards;
 use crate::loops::equation::closure::Solution;
 use crate::loops::equation::rotations::squared_up;

@@ -4,10 +4,9 @@
 
 use super::before::{Ahead, ahead};
 use super::body_block::Leg;
-use super::complex_members::ComplexPose;
-use super::complex_pieces::{Held, Known, Own, Solved};
+use super::complex_known::{Held, Known, Own, Solved};
 use super::rows::On;
-use super::steps::{Move, Placement};
+use super::steps::{ComplexPose, Move, Placement};
 use crate::loops::equation::rotations::{cross, dot3};
 use crate::rigid::{Vec3, cross as crossed, dot};
 use num_complex::Complex64;

@@ -7,7 +7,7 @@
 
 use super::branch_ranges::{Inputs, turned};
 use super::monodromy::{FAR, Family, Starts, carried};
-use super::steps::Placement;
+use super::steps::ComplexPose;
 use crate::loops::equation::closure::Solution;
 use crate::loops::equation::lanes::Lanes;
 use crate::loops::modes::continuation::Homotopy;
@@ -19,9 +19,6 @@ use std::array::from_fn;
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::sync::Arc;
-
-/// A pose with complex entries.
-pub(super) type ComplexPose = Placement<Complex64>;
 
 /// The numbers of a member.
 pub(super) type Member<const D: usize> = Vec<[Complex64; D]>;

@@ -4,7 +4,8 @@
 //!
 //! Source: docs/theory_nets.md, (23).
 
-use super::body_family::{Held, Holds, Triple};
+use super::body_family::{Held, Holds};
+use super::dual_quaternions::Triple;
 use super::steps::Move;
 use crate::number::Number;
 use crate::rigid::{Pose, Vec3, add, dot, sub};

@@ -1,6 +1,6 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `monodromy`, `planar_family`, `planar_block`, `body_family`, `hinged`, `body_block`, `loop_block`, `modes`, `in_plane`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `complex_members`, `complex_pieces`, `complex_legs`, `piece_branch_points`, `account`, `seeds`, `motion`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `in_plane`, `monodromy`, `planar_family`, `planar_block`, `dual_quaternions`, `body_family`, `hinged`, `body_block`, `loop_block`, `modes`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `complex_known`, `complex_members`, `complex_legs`, `complex_pieces`, `piece_branch_points`, `account`, `seeds`, `motion`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
@@ -10,10 +10,12 @@ mod before;
 mod body_block;
 mod body_family;
 mod branch_ranges;
+mod complex_known;
 mod complex_legs;
 mod complex_members;
 mod complex_pieces;
 mod described;
+mod dual_quaternions;
 mod dyad_branch_points;
 mod dyad_quads;
 mod dyad_rows;

@@ -6,7 +6,8 @@
 //! Source: docs/theory_nets.md, (29).
 
 use super::branch_ranges::{Counted, FUNCTIONS, Functions, Inputs, SUMS, Values, turned};
-use super::complex_pieces::{Held, Known, Piece, Solved, Solver};
+use super::complex_known::{Held, Known, Solved};
+use super::complex_pieces::{Piece, Solver};
 use super::modes::Part;
 use super::monodromy::{FAR, REAL};
 use super::net::Net;

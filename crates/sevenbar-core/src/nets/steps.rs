@@ -92,7 +92,10 @@ impl<N: Number> Placement<N> {
     }
 }
 
-impl Placement<Complex64> {
+/// A pose with complex entries.
+pub(super) type ComplexPose = Placement<Complex64>;
+
+impl ComplexPose {
     /// The image of a place that is any.
     pub fn image(&self, x: &[Complex64; 3]) -> [Complex64; 3] {
         from_fn(|i| self.translation[i] + dot3(&self.rotation[i], x))
