@@ -24,7 +24,7 @@ NODES = 16
 NEARLY_REAL = 1e-4
 
 #: Where the first coefficient is so many times as great as all others together there is no root: no wave is
-#: greater than 1, or than 1.09 where a root still counts, up to the degree 40; more are not asked for.
+#: greater than 1, or than 1.09 where a root still counts, up to the degree 40; no more are sought.
 OUTWEIGHS = 1.1
 
 #: A root beyond an end by no more than this is at the end; otherwise rounding could lose a root between two

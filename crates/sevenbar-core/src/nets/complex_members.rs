@@ -52,12 +52,12 @@ impl<const D: usize> ReadByInput<D> {
         let read: Option<Vec<Member<D>>> = (0..READ)
             .map(|k| at(inputs.part(k as f64 / READ as f64)))
             .collect();
-        let own = Self { inputs, read: read? };
+        let members = Self { inputs, read: read? };
         let agrees = |part: f64| {
             let value = inputs.part(part);
-            at(value).is_some_and(|read| are_same(&read, &own.at(value.into())))
+            at(value).is_some_and(|read| are_same(&read, &members.at(value.into())))
         };
-        COMPARED.into_iter().all(agrees).then_some(own)
+        COMPARED.into_iter().all(agrees).then_some(members)
     }
 
     /// The member at a complex input.
@@ -196,10 +196,10 @@ impl<F: Family<N, D>, const N: usize, const D: usize> CarriedMembers<F, N, D> {
         if count.is_some_and(|count| count != solutions.len()) {
             return None;
         }
-        let own = (member.to_vec(), solutions.clone());
+        let next = (member.to_vec(), solutions.clone());
         match last.get_mut(way) {
-            Some(last) => *last = own,
-            None => last.push(own),
+            Some(last) => *last = next,
+            None => last.push(next),
         }
         Some(solutions)
     }

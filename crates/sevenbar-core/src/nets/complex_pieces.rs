@@ -89,11 +89,11 @@ impl<F: Family<N, D>, const N: usize, const D: usize> Members<F, N, D> {
             Some(read) => read.at(known.input),
             None => at_poses(&known.poses, |poses| at(&held.before(poses)))?,
         };
-        let found = self.carried.solved(way, &member)?;
-        let (meets, sums) = self.carried.measured(&member, &found);
+        let all = self.carried.solved(way, &member)?;
+        let (meets, sums) = self.carried.measured(&member, &all);
         let mut finite = Complex64::ONE;
-        let mut solutions = Vec::with_capacity(found.len());
-        for x in &found {
+        let mut solutions = Vec::with_capacity(all.len());
+        for x in &all {
             let (mut own, factor) = own(&member, x)?;
             finite = turned(finite, factor);
             held.weld(known, &mut own);
@@ -285,7 +285,8 @@ fn on_step(block: &BodyBlock, held: &Held, known: &Known) -> Option<Solved> {
         let root = (c * c - square).sqrt();
         let turn = |root: Complex64| (root - c) / (a - Complex64::I * b);
         let by = [root, -root].map(|root| -Complex64::I * turn(root).ln());
-        (by, -root * root / square, square)
+        // no part of its own size, which is zero somewhere
+        (by, -root * root, square)
     };
     let base = step.parent.map_or(Placement::still(), |p| known.poses[p]);
     let placed = |by: Complex64| vec![(own, base.then(&step.moved(by + step.reads)))];

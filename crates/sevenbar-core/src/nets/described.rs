@@ -48,7 +48,7 @@ pub struct DescribedNet {
     columns: Vec<Outer>,
     /// What all columns of the description are the sums of, where all are: hinges that turn about one direction with all between their links.
     sums: Option<Vec<Sum>>,
-    /// Its freedoms, which it takes longer to find than to follow a circuit, once they were asked for.
+    /// Its freedoms, which it takes longer to find than to follow a circuit.
     freedoms: OnceLock<Freedoms>,
 }
 

@@ -132,7 +132,7 @@ impl<'a> Pieces<'a> {
         let mut ways = vec![Way::new()];
         for &piece in before {
             let longer = ways.iter().flat_map(|way| {
-                let own: Vec<[usize; 2]> = way
+                let earlier: Vec<[usize; 2]> = way
                     .iter()
                     .filter(|selected| self.placed[piece].before.contains(&selected.piece))
                     .map(|selected| [selected.piece, selected.solution])
@@ -141,7 +141,7 @@ impl<'a> Pieces<'a> {
                     other
                         .iter()
                         .map(|s| [s.piece, s.solution])
-                        .eq(own.iter().copied())
+                        .eq(earlier.iter().copied())
                 };
                 let at = self.placed[piece]
                     .ways
@@ -163,8 +163,8 @@ impl<'a> Pieces<'a> {
     fn known(&self, first: &Known, way: &Way, solved: &[Vec<Solved>]) -> Known {
         let mut known = first.clone();
         for selected in way {
-            let own = &solved[selected.piece][selected.way].solutions[selected.solution];
-            for (step, pose) in own {
+            let steps = &solved[selected.piece][selected.way].solutions[selected.solution];
+            for (step, pose) in steps {
                 known.poses[*step] = *pose;
             }
         }
@@ -185,8 +185,8 @@ impl<'a> Pieces<'a> {
     /// Whether the poses of a way are real to this [relative to the size].
     fn is_real(&self, way: &Way, solved: &[Vec<Solved>], part: f64) -> bool {
         way.iter().all(|selected| {
-            let own = &solved[selected.piece][selected.way].solutions[selected.solution];
-            own.iter().all(|(_, pose)| self.held.is_nearly_real(pose, part))
+            let steps = &solved[selected.piece][selected.way].solutions[selected.solution];
+            steps.iter().all(|(_, pose)| self.held.is_nearly_real(pose, part))
         })
     }
 
@@ -195,8 +195,8 @@ impl<'a> Pieces<'a> {
         let first = self.held.known(at);
         let mut solved: Vec<Vec<Solved>> = Vec::new();
         for k in 0..self.placed.len() {
-            let own = self.solved(k, &first, &solved)?;
-            solved.push(own);
+            let piece = self.solved(k, &first, &solved)?;
+            solved.push(piece);
         }
         Some(solved)
     }

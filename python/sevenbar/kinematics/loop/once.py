@@ -22,11 +22,11 @@ def once_for(place: int, by: int | None = None) -> Callable[[Callable[P, T]], Ca
 
         @wraps(function)
         def found(*given: P.args, **named: P.kwargs) -> T:
-            own = results.setdefault(given[place], {})
+            by_value = results.setdefault(given[place], {})
             value = None if by is None else given[by]
-            if value not in own:
-                own[value] = function(*given, **named)
-            return own[value]
+            if value not in by_value:
+                by_value[value] = function(*given, **named)
+            return by_value[value]
 
         return found
 

@@ -126,8 +126,8 @@ class NetSolver:
         match raw:
             case ():
                 raise no_circuit(linkage, column, None, linkage.size)
-            case tuple() as found:
-                circuit, followed = found
+            case tuple() as result:
+                circuit, followed = result
                 self._last.keep(followed, pose, column, output)
                 return self._circuit(0, circuit, (column, output), speed, law)
             case other:

@@ -1,4 +1,4 @@
-"""The circuit that a solver followed last: searches along a circuit ask for it again at other inputs."""
+"""The circuit that a solver followed last: searches along a circuit need it again at other inputs."""
 
 from __future__ import annotations
 

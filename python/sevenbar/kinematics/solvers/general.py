@@ -212,8 +212,8 @@ class GeneralLoop:
         match raw:
             case ():
                 raise no_circuit(self._linkage, column, None, self.size)
-            case tuple() as found:
-                circuit, followed = found
+            case tuple() as result:
+                circuit, followed = result
                 self._last.keep(followed, pose, column, output)
                 return self._circuit(0, circuit, (column, output), speed, law)
             case other:
