@@ -53,7 +53,7 @@ pub(super) trait Functions {
     fn last(&self) -> &[usize] {
         &[]
     }
-    /// The factors of these, and whether each is of a real way.
+    /// The factors of these, and whether each is of a real way, in the order of the last call near by; `None` where it is lost.
     fn factors(&self, _at: Complex64) -> Option<Vec<(Complex64, bool)>> {
         None
     }
@@ -252,6 +252,8 @@ impl Ranges<'_> {
         let [a, b] = range.ends.map(Complex64::from);
         let mut turned: Vec<f64> = Vec::new();
         let mut real = Vec::new();
+        // the order of a call far off may be lost
+        self.0.factors(a);
         let mut last = self.0.factors(a)?;
         for (from, to, pieces) in [(a, a + up, UP), (a + up, b + up, ARC), (b + up, b, UP)] {
             let at = |k: usize| from + (to - from) * (k as f64 / pieces as f64);

@@ -16,7 +16,7 @@ use crate::rigid::Pose;
 use crate::vectors::{LANES, Plain, Reals, Vector};
 use num_complex::Complex64;
 use std::array::from_fn;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -163,6 +163,8 @@ pub(super) struct CarriedMembers<F, const N: usize, const D: usize> {
     starts: Arc<Starts<N, D>>,
     /// Where solutions were found last.
     last: RefCell<Vec<Solved<N, D>>>,
+    /// How often they were found anew, in another order.
+    restarts: Cell<usize>,
 }
 
 impl<F: Family<N, D>, const N: usize, const D: usize> CarriedMembers<F, N, D> {
@@ -170,7 +172,12 @@ impl<F: Family<N, D>, const N: usize, const D: usize> CarriedMembers<F, N, D> {
     pub fn of(family: F, starts: Arc<Starts<N, D>>) -> Option<Self> {
         starts
             .certified
-            .then(|| Self { family, starts, last: RefCell::default() })
+            .then(|| Self { family, starts, last: RefCell::default(), restarts: Cell::default() })
+    }
+
+    /// How often solutions were found anew: each time they may be in another order.
+    pub fn restarts(&self) -> usize {
+        self.restarts.get()
     }
 
     /// All solutions of a member for one way: found at first, then carried from where it was; `None` where some are lost.
@@ -185,6 +192,7 @@ impl<F: Family<N, D>, const N: usize, const D: usize> CarriedMembers<F, N, D> {
             None => Vec::new(),
         };
         let solutions = if solutions.is_empty() || count.is_some_and(|count| solutions.len() < count) {
+            self.restarts.set(self.restarts.get() + 1);
             let ends = self.starts.ends(&self.family, member);
             if ends.left_over > 0 && count.is_none() {
                 return None;

@@ -211,6 +211,15 @@ impl Solver<'_> {
         matches!(self, Self::Planar(..) | Self::Body(..))
     }
 
+    /// How often its solutions were found anew, in another order.
+    pub fn restarts(&self) -> usize {
+        match self {
+            Self::Planar(_, _, members) => members.carried.restarts(),
+            Self::Body(_, _, members) => members.carried.restarts(),
+            Self::Dyad(..) | Self::OnStep(_) | Self::Leg(_) => 0,
+        }
+    }
+
     /// Whether two of these solutions that might be real nearly meet, where the links at which it hangs have real poses; they were found last.
     pub fn nearly_meet(&self, solved: &Solved, way: usize) -> bool {
         match self {

@@ -6,12 +6,13 @@
 //! Source: docs/theory_nets.md, (29).
 
 use super::branch_ranges::{Counted, FUNCTIONS, Functions, Inputs, SUMS, Values, turned};
-use super::complex_known::{Held, Known, Solved};
+use super::complex_known::{Held, Known, Own, Solved};
 use super::complex_pieces::{Piece, Solver};
 use super::modes::Part;
 use super::monodromy::{FAR, REAL};
 use super::net::Net;
 use num_complex::Complex64;
+use std::cell::RefCell;
 
 /// A complex input at which solutions are found first.
 const FIRST: Complex64 = Complex64::new(0.713, 0.31);
@@ -45,6 +46,8 @@ struct Placed<'a> {
     sums: Option<usize>,
     /// Whether others hang at it.
     carries: bool,
+    /// Where the two solutions in closed form were last, in each way.
+    last: RefCell<Vec<Vec<Own>>>,
 }
 
 /// The pieces of a net.
@@ -59,6 +62,36 @@ struct Pieces<'a> {
 pub(super) fn counted(net: &Net, parts: &[Part], driven: usize, inputs: Inputs) -> Option<Counted> {
     let held = Held { net, driven, inputs };
     Some(Counted::of(&Pieces::of(held, parts)?, inputs))
+}
+
+impl Placed<'_> {
+    /// Lists two solutions of a root in the order of those that were last: a root is taken with either sign.
+    fn keep_in_order(&self, way: usize, solutions: &mut [Own]) {
+        if self.sums.is_some() || solutions.len() != 2 {
+            return;
+        }
+        let mut last = self.last.borrow_mut();
+        match last.get_mut(way) {
+            Some(last) => {
+                let apart = |k: usize, j: usize| distance(&solutions[k], &last[j]);
+                if apart(0, 1) + apart(1, 0) < apart(0, 0) + apart(1, 1) {
+                    solutions.swap(0, 1);
+                }
+                last.clone_from_slice(solutions);
+            }
+            None => last.push(solutions.to_vec()),
+        }
+    }
+}
+
+/// How far apart the links of two solutions are turned and placed, all together.
+fn distance(a: &Own, b: &Own) -> f64 {
+    let pairs = a.iter().zip(b);
+    let apart = pairs.flat_map(|((_, a), (_, b))| {
+        let turned = a.rotation.iter().flatten().zip(b.rotation.iter().flatten());
+        turned.chain(a.translation.iter().zip(&b.translation))
+    });
+    apart.map(|(a, b)| (a - b).norm()).sum()
 }
 
 impl<'a> Pieces<'a> {
@@ -91,6 +124,7 @@ impl<'a> Pieces<'a> {
                 functions: has_functions.then_some(functions),
                 sums: is_member.then_some(sums),
                 carries,
+                last: RefCell::default(),
             });
             functions += if has_functions { 2 } else { 0 };
             sums += if is_member { FAR } else { 0 };
@@ -177,7 +211,9 @@ impl<'a> Pieces<'a> {
         let ways = placed.ways.iter().enumerate();
         let all = ways.map(|(n, way)| {
             let known = self.known(first, way, solved);
-            placed.solver.solved(&self.held, &known, n)
+            let mut all = placed.solver.solved(&self.held, &known, n)?;
+            placed.keep_in_order(n, &mut all.solutions);
+            Some(all)
         });
         all.collect()
     }
@@ -230,16 +266,17 @@ impl Functions for Pieces<'_> {
     }
 
     fn factors(&self, at: Complex64) -> Option<Vec<(Complex64, bool)>> {
+        let restarts = || -> usize { self.placed.iter().map(|placed| placed.solver.restarts()).sum() };
+        let before = restarts();
         let solved = self.all(at)?;
+        if restarts() > before {
+            return None;
+        }
         let is_last = |placed: &Placed| placed.functions.is_some_and(|k| self.last.contains(&k));
-        let pieces = self
-            .placed
-            .iter()
-            .zip(&solved)
-            .filter(|(placed, _)| is_last(placed));
-        let factors = pieces.flat_map(|(placed, all)| {
+        // those of the others turn steadily, too, so that their solutions stay in order
+        let factors = self.placed.iter().zip(&solved).flat_map(|(placed, all)| {
             let ways = placed.ways.iter().zip(all);
-            ways.map(|(way, own)| (own.meets, self.is_real(way, &solved, REAL)))
+            ways.map(|(way, own)| (own.meets, is_last(placed) && self.is_real(way, &solved, REAL)))
         });
         Some(factors.collect())
     }
