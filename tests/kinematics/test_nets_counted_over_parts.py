@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.errors import RequestError
 
 TURN = 2 * math.pi
 
@@ -177,3 +178,14 @@ def test_the_count_is_the_same_however_a_net_is_written(blocks, seed, circuits, 
         rod["at"] = [list(size * (by @ at)) for at in rod["at"]]
     motion = made.linkage().motion(36)
     assert (motion.completeness, len(motion)) == ("counted", circuits)
+
+
+def test_a_block_that_closes_nowhere_at_a_general_input_is_not_counted():
+    made = Chain(38)
+    made.block(1)
+    made.dyad(2)
+    # the plate turns about a place of the ground, and two links hold it
+    same = {joint["name"]: joint for joint in made.joints}
+    same["b11b"]["at"] = same["b11a"]["at"]
+    with pytest.raises(RequestError, match="joint 'crank' stands still while others move"):
+        made.linkage().motion(36)

@@ -119,11 +119,12 @@ impl<'a> Held<'a> {
 }
 
 impl Solved {
-    /// Whether no two solutions are one, nor any at infinity.
+    /// Whether there are solutions, of which no two are one, nor any at infinity.
     pub fn is_regular(&self) -> bool {
-        [self.meets, self.finite]
-            .iter()
-            .all(|x| x.is_finite() && x.norm() > NOTHING)
+        !self.solutions.is_empty()
+            && [self.meets, self.finite]
+                .iter()
+                .all(|x| x.is_finite() && x.norm() > NOTHING)
     }
 
     /// In closed form: by a root that vanishes where two meet, as a part of its greatest.

@@ -133,7 +133,7 @@ impl<'a> Pieces<'a> {
             }
             let results = own.solved(k, &known, &solved)?;
             count += results.iter().map(|all| all.solutions.len()).sum::<usize>();
-            if count > MOST_SOLUTIONS || results.iter().any(|all| !all.is_regular()) {
+            if count > MOST_SOLUTIONS || !results.iter().all(Solved::is_regular) {
                 return None;
             }
             solved.push(results);
