@@ -59,7 +59,8 @@ def modes_by_hand(places, angle):
 def passes(circuit, angle):
     """How often a circuit passes an input, in any turn."""
     values = circuit.q[:, circuit.input_column]
-    first = values[:1] + (0.0 if circuit.turns_back else TURN * round((values[-1] - values[0]) / TURN))
+    # it may turn back and go round, too
+    first = values[:1] + TURN * round((values[-1] - values[0]) / TURN)
     turns = np.floor((np.append(values, first) - angle) / TURN)
     return int(np.abs(np.diff(turns)).sum())
 

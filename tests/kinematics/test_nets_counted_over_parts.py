@@ -9,11 +9,10 @@ import math
 
 import numpy as np
 import pytest
+from test_nets_counted import TURN, passes
 
 import sevenbar as sb
 from sevenbar.errors import RequestError
-
-TURN = 2 * math.pi
 
 
 class Chain:
@@ -79,13 +78,6 @@ def chain(blocks, seed):
 
 def dead_centres(motion):
     return [d.input for circuit in motion for d in circuit.dead_centres if d.kind == "input"]
-
-
-def passes(circuit, angle):
-    """How often a circuit passes an input, in any turn."""
-    values = circuit.q[:, circuit.input_column]
-    first = values[:1] + TURN * round((values[-1] - values[0]) / TURN)
-    return int(np.abs(np.diff(np.floor((np.append(values, first) - angle) / TURN))).sum())
 
 
 def check(linkage, motion):

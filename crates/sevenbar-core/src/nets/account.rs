@@ -1,6 +1,6 @@
 //! The account of a net's branch points set against the curves that are known.
 //!
-//! Source: docs/theory_nets.md, (24) to (27).
+//! Source: docs/theory_nets.md, (24) to (29).
 
 use super::branch_ranges::{Counted, Inputs};
 use super::dyad_branch_points::{BranchPoints, Zero};
