@@ -30,7 +30,7 @@ loops::circuits: curve follow walked_again on_curve turnings join meetings spher
 loops::motions: row row_store row_lanes passes extremes rows circuit met_twice motion through measures
 loops
 
-nets: order series square steps rows net freedoms joints before unfolded dyads in_plane monodromy planar_family planar_block dual_quaternions body_family hinged body_block loop_block modes dyad_sides pin_rows dyad_rows branch_ranges dyad_branch_points dyad_quads sized net_rows plane_points described search complex_known complex_members complex_legs complex_pieces piece_branch_points account seeds motion
+nets: order series square steps rows net freedoms joints before unfolded dyads in_plane monodromy planar_family planar_block dual_quaternions body_family hinged two_turns body_block loop_block modes dyad_sides pin_rows dyad_rows branch_ranges dyad_branch_points dyad_quads sized net_rows plane_points described search complex_known complex_members complex_legs complex_pieces piece_branch_points account seeds motion
 """
 
 

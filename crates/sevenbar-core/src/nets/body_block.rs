@@ -13,6 +13,7 @@ use super::monodromy::{Ends, REAL};
 use super::net::Net;
 use super::rows::{On, Row};
 use super::steps::{ComplexPose, Move, Placement};
+use super::two_turns::TwoTurns;
 use super::unfolded::turn_towards;
 use crate::loops::equation::closure::Solution;
 use crate::loops::equation::rotations::squared_up;
@@ -193,29 +194,22 @@ impl Leg {
 }
 
 /// The turns about a first axis after a second, through one place, that take a vector to another as long: two ways, one where they meet.
-fn two_turns([first, second]: [Vec3; 2], from: Vec3, to: Vec3) -> Vec<Vec<f64>> {
-    // between them it is as far along the second axis as before, and along the first as after
-    let across = cross(first, second);
-    let (cosine, square) = (dot(first, second), dot(across, across));
-    let (along_first, along_second) = (dot(first, to), dot(second, from));
-    let a = (along_first - cosine * along_second) / square;
-    let b = (along_second - cosine * along_first) / square;
-    let length = dot(from, from);
-    let left = (length - a * along_first - b * along_second) / square;
-    if left < -ROUNDING * length / square {
+fn two_turns(axes: [Vec3; 2], from: Vec3, to: Vec3) -> Vec<Vec<f64>> {
+    let turns = TwoTurns::of(axes, &from, &to);
+    if turns.square < -ROUNDING * dot(from, from) / turns.sine_square {
         return Vec::new();
     }
-    let height = left.max(0.0).sqrt();
+    let height = turns.square.max(0.0).sqrt();
     let heights = if height > 0.0 {
         vec![height, -height]
     } else {
         vec![0.0]
     };
     let way = |height: f64| {
-        let between: Vec3 = std::array::from_fn(|i| a * first[i] + b * second[i] + height * across[i]);
+        let between = turns.between(height);
         vec![
-            turn_towards(first, between, to),
-            turn_towards(second, from, between),
+            turn_towards(axes[0], between, to),
+            turn_towards(axes[1], from, between),
         ]
     };
     heights.into_iter().map(way).collect()

@@ -7,8 +7,9 @@ use super::body_block::Leg;
 use super::complex_known::{Held, Known, Own, Solved};
 use super::rows::On;
 use super::steps::{ComplexPose, Move, Placement};
+use super::two_turns::TwoTurns;
 use crate::loops::equation::rotations::{cross, dot3};
-use crate::rigid::{Vec3, cross as crossed, dot};
+use crate::rigid::Vec3;
 use num_complex::Complex64;
 use std::array::from_fn;
 
@@ -70,12 +71,17 @@ impl ComplexLeg<'_> {
                 one,
             )),
             [_, second] => {
-                let axes = [axis, steps[second].axis];
-                let (ways, root) = two_turns(axes, &from, &to);
-                let solutions = ways.iter().map(|way| placed(way)).collect();
+                let other = steps[second].axis;
+                let turns = TwoTurns::of([axis, other], &from, &to);
+                let height = turns.square.sqrt();
+                let way = |height: Complex64| {
+                    let between = turns.between(height);
+                    placed(&[turn(axis, &between, &to), turn(other, &from, &between)])
+                };
+                let solutions = vec![way(height), way(-height)];
                 // a part of its own length would be infinite where that is zero
                 let size = held.net.size * held.net.size;
-                Some(Solved::in_closed_form(solutions, root / size, one))
+                Some(Solved::in_closed_form(solutions, turns.square / size, one))
             }
             _ => None,
         }
@@ -93,25 +99,4 @@ fn turn(axis: Vec3, from: &ComplexVector, to: &ComplexVector) -> Complex64 {
     let sine = along(axis, &cross(from, to));
     let square = dot3(from, from) - up_from * up_from;
     -Complex64::I * ((cosine + Complex64::I * sine) / square).ln()
-}
-
-/// The turns of (22), and the square of its height.
-fn two_turns(
-    [first, second]: [Vec3; 2],
-    from: &ComplexVector,
-    to: &ComplexVector,
-) -> ([[Complex64; 2]; 2], Complex64) {
-    let across = crossed(first, second);
-    let (cosine, square) = (dot(first, second), dot(across, across));
-    let (along_first, along_second) = (along(first, to), along(second, from));
-    let a = (along_first - cosine * along_second) / square;
-    let b = (along_second - cosine * along_first) / square;
-    let length = dot3(from, from);
-    let left = (length - a * along_first - b * along_second) / square;
-    let height = left.sqrt();
-    let way = |height: Complex64| {
-        let between: ComplexVector = from_fn(|i| a * first[i] + b * second[i] + height * across[i]);
-        [turn(first, &between, to), turn(second, from, &between)]
-    };
-    ([way(height), way(-height)], left)
 }
