@@ -4,6 +4,7 @@ mod along;
 mod batches;
 mod forces;
 mod loops;
+mod net_parts;
 mod nets;
 mod numbers;
 mod rows;
@@ -81,7 +82,9 @@ mod _core {
     #[pymodule_export]
     use super::loops::Loop;
     #[pymodule_export]
-    use super::nets::{Net, NetFollowed, NetParts, NetRows, biconnected_parts, net_blocks};
+    use super::net_parts::NetParts;
+    #[pymodule_export]
+    use super::nets::{Net, NetFollowed, NetRows, biconnected_parts, net_blocks};
     #[pymodule_export]
     use super::numbers::{Carried, LoopWord, Numbers, Product};
     #[pymodule_export]
