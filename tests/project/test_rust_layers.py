@@ -24,13 +24,13 @@ loops::mobility: rank idle singular_place at_rest
 loops::numbers: twists factors word numbered_loop slopes
 loops::forces: acting stations reactions
 loops::description: spun spin_axis reduce described_loop holding joint_values
-loops::modes: completeness phases continuation straight circle poles geometry starts chain_closure polish many_starts curves_at_input finder assembly
+loops::modes: completeness phases continuation straight circle poles geometry starts chain_closure complex_links polish many_starts curves_at_input finder assembly
 loops::branch_points: locating other_input afar survey sectors counting
 loops::circuits: curve follow walked_again on_curve turnings join meetings sphere change_points found arcs known_curves search
 loops::motions: row row_store row_lanes passes extremes rows circuit met_twice motion through measures
 loops
 
-nets: order series square steps rows net freedoms joints before unfolded dyads in_plane monodromy planar_family planar_block dual_quaternions body_family hinged two_turns body_block loop_block modes dyad_sides pin_rows dyad_rows branch_ranges dyad_branch_points dyad_quads sized net_rows plane_points described search complex_known complex_members complex_legs complex_pieces piece_branch_points account seeds motion
+nets: order series square steps rows net freedoms joints before unfolded dyads in_plane monodromy planar_family planar_block dual_quaternions body_family hinged two_turns body_block loop_block modes dyad_sides pin_rows dyad_rows branch_ranges dyad_branch_points dyad_quads sized net_rows plane_points described search complex_known complex_members complex_legs complex_loops complex_pieces piece_branch_points account seeds motion
 """
 
 

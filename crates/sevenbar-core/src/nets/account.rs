@@ -43,7 +43,9 @@ impl<'a> Account<'a> {
         parts: &[Part],
         input: usize,
     ) -> Option<Self> {
-        let in_space = parts.iter().any(|part| matches!(part, Part::Body(_)));
+        let in_space = parts
+            .iter()
+            .any(|part| matches!(part, Part::Body(_) | Part::Loop(_)));
         let inputs = if sized.is_turn(input) {
             Inputs::Turn
         } else {

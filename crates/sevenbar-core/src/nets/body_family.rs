@@ -171,12 +171,6 @@ impl Family<UNKNOWNS, 3> for BodyFamily {
         (determinant / first.powu(3), others.map(|other| other / first))
     }
 
-    fn mirrored(&self, z: &Solution<UNKNOWNS>) -> Solution<UNKNOWNS> {
-        let mirrored = z.map(|z| z.conj());
-        let scale = dot(&SCALE, &mirrored);
-        mirrored.map(|z| z / scale)
-    }
-
     fn far(&self, z: &Solution<UNKNOWNS>) -> f64 {
         let (x, _) = halves(z);
         let size: f64 = z.iter().map(Complex64::norm_sqr).sum();

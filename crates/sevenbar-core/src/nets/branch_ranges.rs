@@ -47,8 +47,9 @@ pub(super) enum Inputs {
 pub(super) trait Functions {
     /// The functions at a complex input; `None` where not all solutions are known.
     fn values(&self, at: Complex64) -> Option<Values>;
-    /// Whether it is known that no mode is near to a branch point in the smallest range about an input.
-    fn is_clear(&self, input: f64) -> bool;
+    /// How many pairs of modes become one in the smallest range between two inputs, each at one branch point of these functions; `None` where it
+    /// is not known, or a pair might do so twice.
+    fn meeting(&self, ends: [f64; 2], of: &[bool; FUNCTIONS]) -> Option<usize>;
     /// Which of them vanish where nothing else depends on what meets there.
     fn last(&self) -> &[usize] {
         &[]
@@ -373,9 +374,14 @@ impl Ranges<'_> {
             let [from, to] = range.ends;
             let wide = to - from;
             // not at its ends, which may themselves be branch points
-            let clear = || [from - wide, to + wide].iter().all(|at| self.0.is_clear(*at));
-            if wide >= SMALL || !clear() {
-                account.leave_open(range.ends, (!infinite).then_some(zeros));
+            let of = numbers
+                .filter(|_| !infinite)
+                .map_or([true; FUNCTIONS], |n| n.of.map(|x| x != 0));
+            let meeting = (wide < SMALL).then(|| self.0.meeting([from - wide, to + wide], &of));
+            match meeting.flatten() {
+                Some(0) => (),
+                Some(pairs) if !infinite && zeros == pairs as i64 => account.real += pairs,
+                _ => account.leave_open(range.ends, (!infinite).then_some(zeros)),
             }
             return;
         }

@@ -2,7 +2,7 @@
 //!
 //! Source: docs/theory_nets.md, (29).
 
-use super::before::Before;
+use super::before::{Ahead, Before, ahead};
 use super::branch_ranges::Inputs;
 use super::modes::at_first;
 use super::monodromy::FAR;
@@ -90,6 +90,25 @@ impl<'a> Held<'a> {
     pub fn is_nearly_real(&self, pose: &ComplexPose, part: f64) -> bool {
         let turned = pose.rotation.iter().flatten().all(|x| x.im.abs() < part);
         turned && pose.translation.iter().all(|x| x.im.abs() < part * self.net.size)
+    }
+
+    /// Whether no link of two solutions is farther off than this [relative to the size, or to itself].
+    pub fn are_near(&self, a: &Own, b: &Own, part: f64) -> bool {
+        let near = |a: Complex64, b: Complex64, unit: f64| (a - b).norm() < part * (unit + a.norm());
+        a.iter().zip(b).all(|((_, a), (_, b))| {
+            let mut turned = a.rotation.iter().flatten().zip(b.rotation.iter().flatten());
+            let mut moved = a.translation.iter().zip(&b.translation);
+            turned.all(|(a, b)| near(*a, *b, 1.0)) && moved.all(|(a, b)| near(*a, *b, self.net.size))
+        })
+    }
+
+    /// The pose of a link against another that is the same one, or that the held step welds to it; `None` of any other.
+    pub fn offset(&self, known: &Known, on: On, link: usize) -> Option<ComplexPose> {
+        Some(match ahead(on, link, self.driven, self.from())? {
+            Ahead::Not => Placement::still(),
+            Ahead::ByHeld => known.moved,
+            Ahead::BehindHeld => known.moved.inverse(),
+        })
     }
 
     /// The link that the held step welds to one of these, with that one.

@@ -2,11 +2,10 @@
 //!
 //! Source: docs/theory_nets.md, (22) and (29).
 
-use super::before::{Ahead, ahead};
 use super::body_block::Leg;
 use super::complex_known::{Held, Known, Own, Solved};
 use super::rows::On;
-use super::steps::{ComplexPose, Move, Placement};
+use super::steps::{Move, Placement};
 use super::two_turns::TwoTurns;
 use crate::loops::equation::rotations::{cross, dot3};
 use crate::rigid::Vec3;
@@ -33,17 +32,10 @@ impl ComplexLeg<'_> {
         let leg = self.leg;
         let (first, last) = (*leg.steps.first()?, *leg.steps.last()?);
         let on = |on: On| on.map_or(Placement::still(), |step| known.poses[step]);
-        let offset = |on: On, link: usize| -> Option<ComplexPose> {
-            Some(match ahead(on, link, held.driven, held.from())? {
-                Ahead::Not => Placement::still(),
-                Ahead::ByHeld => known.moved,
-                Ahead::BehindHeld => known.moved.inverse(),
-            })
-        };
         let base = on(held.net.steps[first].parent);
-        let ball = offset(leg.on[0], last)?.carry(&leg.ball);
+        let ball = held.offset(known, leg.on[0], last)?.carry(&leg.ball);
         let goal = on(Some(self.link))
-            .then(&offset(leg.on[1], self.link)?)
+            .then(&held.offset(known, leg.on[1], self.link)?)
             .carry(&leg.ball);
         let goal = base.inverse().image(&goal);
         let steps = &held.net.steps;

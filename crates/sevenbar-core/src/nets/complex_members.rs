@@ -9,11 +9,9 @@ use super::branch_ranges::{Inputs, turned};
 use super::monodromy::{FAR, Family, Starts, carried};
 use super::steps::ComplexPose;
 use crate::loops::equation::closure::Solution;
-use crate::loops::equation::lanes::Lanes;
-use crate::loops::modes::continuation::Homotopy;
-use crate::loops::modes::starts::{distinct, same};
+use crate::loops::modes::continuation::determinants;
+use crate::loops::modes::starts::distinct;
 use crate::rigid::Pose;
-use crate::vectors::{LANES, Plain, Reals, Vector};
 use num_complex::Complex64;
 use std::array::from_fn;
 use std::cell::{Cell, RefCell};
@@ -36,9 +34,6 @@ const SAME: f64 = 1e-10;
 
 /// Solutions that are nearer are one, to which two paths led.
 const MET: f64 = 1e-8;
-
-/// Solutions that are farther apart do not meet within a millionth of a radian.
-const NEAR: f64 = 0.03;
 
 /// Members at real inputs.
 pub(super) struct ReadByInput<const D: usize> {
@@ -220,39 +215,13 @@ impl<F: Family<N, D>, const N: usize, const D: usize> CarriedMembers<F, N, D> {
     ) -> (Complex64, [Complex64; FAR]) {
         let here = self.family.between(member, member);
         let (mut phase, mut sums) = (Complex64::ONE, [Complex64::ZERO; FAR]);
-        for some in solutions.chunks(LANES) {
-            let lanes: [Lanes<Plain>; N] = from_fn(|i| {
-                let part = |part: fn(&Complex64) -> f64| -> Reals {
-                    from_fn(|k| part(&some.get(k).unwrap_or(&some[0])[i]))
-                };
-                Lanes::load(&part(|z| z.re), &part(|z| z.im))
-            });
-            let (.., determinant) = here.linearise::<Plain, false>(&lanes, Lanes::one()).solve();
-            let [re, im] = [determinant.re, determinant.im].map(|v| v.store());
-            for (k, x) in some.iter().enumerate() {
-                let (meets, far) = self.family.measures(x, Complex64::new(re[k], im[k]));
-                phase = turned(phase, meets);
-                for (sum, far) in sums.iter_mut().zip(far) {
-                    *sum += far;
-                }
+        for (x, determinant) in solutions.iter().zip(determinants(&here, solutions)) {
+            let (meets, far) = self.family.measures(x, determinant);
+            phase = turned(phase, meets);
+            for (sum, far) in sums.iter_mut().zip(far) {
+                *sum += far;
             }
         }
         (phase, sums)
-    }
-
-    /// Whether two solutions found last for one way, of a real member, are near to each other that might be real.
-    pub fn nearly_meet(&self, way: usize) -> bool {
-        let last = self.last.borrow();
-        let Some((_, solutions)) = last.get(way) else {
-            return false;
-        };
-        let slides = self.family.slides();
-        let near = |a: &Solution<N>, b: &Solution<N>| same(&slides, a, b, NEAR);
-        let may_meet = |(k, one): (usize, &Solution<N>)| {
-            let mirrored = self.family.mirrored(one);
-            let mut others = solutions[k + 1..].iter().filter(|other| near(one, other));
-            others.any(|other| near(&mirrored, one) || near(&mirrored, other))
-        };
-        solutions.iter().enumerate().any(may_meet)
     }
 }

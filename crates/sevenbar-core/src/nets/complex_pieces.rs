@@ -1,6 +1,6 @@
 //! A piece of a net at complex poses of the links at which it hangs: all of its solutions, with what vanishes where two of them meet.
 //!
-//! A piece is a dyad, a link on one step with one row, a block that is a member of a family, or a leg of a link.
+//! A piece is a dyad, a link on one step with one row, a block that is a member of a family, a leg of a link, or a loop.
 //!
 //! Source: docs/theory_nets.md, (14), (22) to (24), (27) and (29).
 
@@ -10,12 +10,14 @@ use super::body_family::BodyFamily;
 use super::branch_ranges::turned;
 use super::complex_known::{Held, Known, Own, Solved};
 use super::complex_legs::ComplexLeg;
+use super::complex_loops::ComplexLoop;
 use super::complex_members::{CarriedMembers, Member, ReadByInput, are_quadrics, at_poses};
 use super::dual_quaternions::UNKNOWNS as BODY;
 use super::dyad_sides::{Joined, Poses};
 use super::dyads::Plane;
 use super::hinged::OnStep;
 use super::in_plane::InPlane;
+use super::loop_block::LoopBlock;
 use super::modes::{Part, Stage};
 use super::monodromy::Family;
 use super::net::{MOST_COLUMNS, Net};
@@ -33,6 +35,7 @@ enum What<'a> {
     Planar(&'a PlanarBlock),
     Body(&'a BodyBlock),
     Leg(ComplexLeg<'a>),
+    Loop(&'a LoopBlock),
 }
 
 /// A piece, the links that it places, and those at which it hangs.
@@ -49,10 +52,8 @@ pub(super) enum Solver<'a> {
     Planar(&'a PlanarBlock, Layout, Members<PlanarFamily, UNKNOWNS, 2>),
     Body(&'a BodyBlock, BodyFamily, Members<BodyFamily, BODY, 3>),
     Leg(ComplexLeg<'a>),
+    Loop(Box<ComplexLoop<'a>>),
 }
-
-/// A root of less, as a part of its greatest, may be zero within the smallest range.
-const CLEAR: f64 = 1e-3;
 
 /// Members of a family: by the input where no other piece comes before, or by the poses of known links.
 pub(super) struct Members<F, const N: usize, const D: usize> {
@@ -137,7 +138,10 @@ impl<'a> Piece<'a> {
                         add(What::Leg(ComplexLeg { leg, link }), vec![last], at);
                     }
                 }
-                Part::Loop(_) => return None,
+                Part::Loop(block) => {
+                    let links = block.links.iter().map(|link| link.on[0]).collect();
+                    add(What::Loop(block), links, block.ends.to_vec());
+                }
             }
         }
         Some(out)
@@ -150,11 +154,13 @@ impl<'a> Piece<'a> {
 
     /// What solves it, the `first` one or after others; `None` where it is no polynomial of what is known before it.
     pub fn solver(&self, held: &Held<'a>, known: &Known, is_first: bool) -> Option<Solver<'a>> {
+        let from = known;
         let known = (!is_first).then_some(known);
         // what the held step moves within a block is a polynomial of the input alone
         let welds = |count: usize| self.links.len() > count;
         match self.what {
             What::Leg(leg) => Some(Solver::Leg(leg)),
+            What::Loop(block) => ComplexLoop::of(block, held, from).map(|own| Solver::Loop(Box::new(own))),
             What::Dyad(stage) => {
                 let plane = Plane::across(stage.dyad.normal);
                 (!welds(2)).then(|| Solver::Dyad(Joined::of(stage, &plane, held.net.size), plane))
@@ -208,7 +214,7 @@ impl Solver<'_> {
 
     /// Whether it is a member of a family.
     pub fn is_member(&self) -> bool {
-        matches!(self, Self::Planar(..) | Self::Body(..))
+        matches!(self, Self::Planar(..) | Self::Body(..) | Self::Loop(_))
     }
 
     /// How often its solutions were found anew, in another order.
@@ -216,16 +222,8 @@ impl Solver<'_> {
         match self {
             Self::Planar(_, _, members) => members.carried.restarts(),
             Self::Body(_, _, members) => members.carried.restarts(),
+            Self::Loop(own) => own.restarts(),
             Self::Dyad(..) | Self::OnStep(_) | Self::Leg(_) => 0,
-        }
-    }
-
-    /// Whether two of these solutions that might be real nearly meet, where the links at which it hangs have real poses; they were found last.
-    pub fn nearly_meet(&self, solved: &Solved, way: usize) -> bool {
-        match self {
-            Self::Planar(_, _, members) => members.carried.nearly_meet(way),
-            Self::Body(_, _, members) => members.carried.nearly_meet(way),
-            Self::Dyad(..) | Self::OnStep(_) | Self::Leg(_) => solved.meets.norm() < CLEAR,
         }
     }
 
@@ -233,6 +231,7 @@ impl Solver<'_> {
     pub fn solved(&self, held: &Held, known: &Known, way: usize) -> Option<Solved> {
         match self {
             Self::Leg(leg) => leg.solved(held, known),
+            Self::Loop(own) => own.solved(held, known, way),
             Self::Dyad(joined, plane) => Some(dyad(joined, plane, held.net.size, &known.poses)),
             Self::OnStep(block) => on_step(block, held, known),
             Self::Planar(block, layout, members) => members.solved(

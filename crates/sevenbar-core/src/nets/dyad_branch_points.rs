@@ -87,6 +87,21 @@ impl<'a> BranchPoints<'a> {
         Zero(dyad, sides)
     }
 
+    /// Whether on all ways that close at an input no dyad is near to being stretched or folded.
+    fn is_clear(&self, input: f64) -> bool {
+        let stages = self.rows.stages();
+        let all: Vec<usize> = (0..stages.len()).collect();
+        ways(&all).iter().all(|sides| {
+            for k in 0..stages.len() {
+                let [root, _] = self.pair(k, sides, input.into());
+                if root.re < CLEAR {
+                    return root.re < -CLEAR;
+                }
+            }
+            true
+        })
+    }
+
     /// Whether a dyad is another one on some ways of one before it.
     fn depends(&self, k: usize, before: usize, ways: &[Sides]) -> bool {
         let differs = |a: Complex64, b: Complex64| (a - b).norm() > SAME * (a.norm() + b.norm());
@@ -129,19 +144,8 @@ impl Functions for BranchPoints<'_> {
         Some(out)
     }
 
-    /// Whether, on all ways that close at an input, no dyad is near to being stretched or folded.
-    fn is_clear(&self, input: f64) -> bool {
-        let stages = self.rows.stages();
-        let all: Vec<usize> = (0..stages.len()).collect();
-        ways(&all).iter().all(|sides| {
-            for k in 0..stages.len() {
-                let [root, _] = self.pair(k, sides, input.into());
-                if root.re < CLEAR {
-                    return root.re < -CLEAR;
-                }
-            }
-            true
-        })
+    fn meeting(&self, ends: [f64; 2], _of: &[bool; FUNCTIONS]) -> Option<usize> {
+        ends.iter().all(|at| self.is_clear(*at)).then_some(0)
     }
 }
 

@@ -48,7 +48,7 @@ pub struct LoopBlock {
 
 /// Directions of the held joint's axis, not as people draw, each tried where solutions are lost with those before; and how far from the first joint
 /// it is, relative to the size.
-const HELD: [Vec3; 3] = [
+pub(super) const HELD: [Vec3; 3] = [
     [0.362_738_1, -0.528_417_9, 0.767_616_4],
     [-0.811_370_2, 0.236_914_8, 0.534_378_1],
     [0.137_951_3, 0.917_260_4, -0.373_614_9],
@@ -87,9 +87,7 @@ impl LoopBlock {
         let mut fixed = vec![*frames.first()?];
         fixed.extend((1..frames.len()).map(|k| between(k - 1).then(&frames[k])));
         let held_about = |axis: Vec3| {
-            let (axis, origin) = (unit(axis), self.steps.first()?.origin);
-            let away = add(origin, scale([axis[1], axis[2], axis[0]], AWAY * before.size));
-            let held = frame(axis, self.centre.unwrap_or(away));
+            let held = self.held_frame(axis, before.size)?;
             let mut fixed = fixed.clone();
             fixed[0] = held.inverse().then(&fixed[0]);
             let linkage = Loop::new(&kinds, first.then(&held), last.then(frames.last()?), &fixed);
@@ -136,6 +134,13 @@ impl LoopBlock {
         Some(Together { poses, completeness })
     }
 
+    /// The frame as drawn of the joint that is held, about an axis of this direction.
+    pub(super) fn held_frame(&self, axis: Vec3, size: f64) -> Option<Pose> {
+        let (axis, origin) = (unit(axis), self.steps.first()?.origin);
+        let away = add(origin, scale([axis[1], axis[2], axis[0]], AWAY * size));
+        Some(frame(axis, self.centre.unwrap_or(away)))
+    }
+
     /// The poses of its links at values of its columns.
     fn placed(&self, first: &Pose, welds: &[Pose], values: &[f64]) -> Vec<Pose> {
         let (mut at, mut column) = (*first, 0);
@@ -156,7 +161,7 @@ impl LoopBlock {
 }
 
 impl LoopStep {
-    fn frame(&self) -> Pose {
+    pub(super) fn frame(&self) -> Pose {
         if self.kind == Kind::Ball {
             Pose { translation: self.origin, ..Pose::turning(ball_rotation(&BALL)) }
         } else {
@@ -188,7 +193,7 @@ impl LoopLink {
 }
 
 /// A frame with z along an axis.
-fn frame(axis: Vec3, origin: Vec3) -> Pose {
+pub(super) fn frame(axis: Vec3, origin: Vec3) -> Pose {
     let x = unit(cross(axis, most_perpendicular_axis(axis)));
     let y = cross(axis, x);
     let rotation = std::array::from_fn(|i| [x[i], y[i], axis[i]]);

@@ -1,6 +1,6 @@
 //! Several loops as one equation `e(q) = 0`: a tree of links closed by the rows of chords, `A = de/dq`, and the order in which blocks are solved.
 //!
-//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `in_plane`, `monodromy`, `planar_family`, `planar_block`, `dual_quaternions`, `body_family`, `hinged`, `two_turns`, `body_block`, `loop_block`, `modes`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `complex_known`, `complex_members`, `complex_legs`, `complex_pieces`, `piece_branch_points`, `account`, `seeds`, `motion`.
+//! From below: `order`, `series`, `square`, `steps`, `rows`, `net`, `freedoms`, `joints`, `before`, `unfolded`, `dyads`, `in_plane`, `monodromy`, `planar_family`, `planar_block`, `dual_quaternions`, `body_family`, `hinged`, `two_turns`, `body_block`, `loop_block`, `modes`, `dyad_sides`, `pin_rows`, `dyad_rows`, `branch_ranges`, `dyad_branch_points`, `dyad_quads`, `sized`, `net_rows`, `plane_points`, `described`, `search`, `complex_known`, `complex_members`, `complex_legs`, `complex_loops`, `complex_pieces`, `piece_branch_points`, `account`, `seeds`, `motion`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
@@ -12,6 +12,7 @@ mod body_family;
 mod branch_ranges;
 mod complex_known;
 mod complex_legs;
+mod complex_loops;
 mod complex_members;
 mod complex_pieces;
 mod described;

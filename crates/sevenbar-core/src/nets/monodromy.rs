@@ -8,7 +8,9 @@
 
 use crate::loops::equation::closure::{Slides, Solution};
 use crate::loops::modes::completeness::Completeness;
-use crate::loops::modes::continuation::{BRISK, CAREFUL, FIRST_STEP, Homotopy, Pace, Place, Way, follow};
+use crate::loops::modes::continuation::{
+    BRISK, CAREFUL, FIRST_STEP, Homotopy, Pace, Place, Way, follow, one_step,
+};
 use crate::loops::modes::many_starts::SAME_MODE;
 use crate::loops::modes::starts::{SAME_GENERAL, distinct};
 use crate::random::Random;
@@ -39,8 +41,6 @@ pub(super) trait Family<const N: usize, const D: usize> {
     /// Of a solution where the rows' columns have this determinant: a number that vanishes where two solutions meet, and some that grow without
     /// bound wherever that one does. The product of it over all solutions, and the sums of the others, are real for a real member.
     fn measures(&self, x: &Solution<N>, determinant: Complex64) -> (Complex64, [Complex64; FAR]);
-    /// The solution that a real member has besides, or the same one: it is real then.
-    fn mirrored(&self, x: &Solution<N>) -> Solution<N>;
     /// How far a solution is, as a logarithm: it grows without bound along a path to infinity.
     fn far(&self, x: &Solution<N>) -> f64;
 }
@@ -306,20 +306,12 @@ pub(super) fn carried<F: Family<N, D>, const N: usize, const D: usize>(
     (from, solutions): (&[[Complex64; D]], &[Solution<N>]),
     to: &[[Complex64; D]],
 ) -> Vec<Solution<N>> {
-    // a way begins with this part of itself
-    let beyond = |a: Complex64, b: Complex64| a + (b - a) / FIRST_STEP;
     let far: Vec<[Complex64; D]> = from
         .iter()
         .zip(to)
-        .map(|(a, b)| std::array::from_fn(|d| beyond(a[d], b[d])))
+        .map(|(a, b)| std::array::from_fn(|d| a[d] + (b[d] - a[d]) / FIRST_STEP))
         .collect();
-    let places: Vec<Place<N>> = solutions
-        .iter()
-        .map(|x| Place::start(x, Complex64::ZERO))
-        .collect();
-    let way = [straight(0.0, FIRST_STEP, true)];
-    let ends = follow(&family.between(from, &far), &places, &[&way], BRISK);
-    ends.iter().flatten().map(|place| *place.solution()).collect()
+    one_step(&family.between(from, &far), solutions)
 }
 
 /// The solutions that arrive at the end of a way between general members.

@@ -23,6 +23,12 @@ const MOST_SOLUTIONS: usize = 400;
 /// A link whose pose has smaller imaginary parts may be where a real one is [relative to the size].
 const NEARLY_REAL: f64 = 1e-3;
 
+/// Solutions that are farther apart [relative to the size] do not meet within a millionth of a radian.
+const NEAR: f64 = 0.03;
+
+/// Two solutions are real, or each the conjugate of the other, if what is imaginary of their difference, or real, is a smaller part of it.
+const CLEAR: f64 = 0.01;
+
 /// The solution that was selected of a piece, in one of its ways.
 #[derive(Clone, Copy)]
 struct Selected {
@@ -58,6 +64,13 @@ struct Pieces<'a> {
     last: Vec<usize>,
 }
 
+/// Two solutions of a piece that are near to each other, the one of them, and whether both are real.
+struct Pair {
+    piece: usize,
+    own: Own,
+    is_real: bool,
+}
+
 /// The account of the branch points of an input of a net; `None` where not all of its solutions are known over the complex numbers.
 pub(super) fn counted(net: &Net, parts: &[Part], driven: usize, inputs: Inputs) -> Option<Counted> {
     let held = Held { net, driven, inputs };
@@ -84,14 +97,23 @@ impl Placed<'_> {
     }
 }
 
-/// How far apart the links of two solutions are turned and placed, all together.
-fn distance(a: &Own, b: &Own) -> f64 {
-    let pairs = a.iter().zip(b);
-    let apart = pairs.flat_map(|((_, a), (_, b))| {
+/// By how much the links of two solutions differ in all numbers of their poses.
+fn differences<'a>(a: &'a Own, b: &'a Own) -> impl Iterator<Item = Complex64> + 'a {
+    a.iter().zip(b).flat_map(|((_, a), (_, b))| {
         let turned = a.rotation.iter().flatten().zip(b.rotation.iter().flatten());
-        turned.chain(a.translation.iter().zip(&b.translation))
-    });
-    apart.map(|(a, b)| (a - b).norm()).sum()
+        let all = turned.chain(a.translation.iter().zip(&b.translation));
+        all.map(|(a, b)| a - b)
+    })
+}
+
+/// How far apart two solutions are, all together, and in their real and imaginary parts.
+fn distance(a: &Own, b: &Own) -> f64 {
+    differences(a, b).map(Complex64::norm).sum()
+}
+
+fn apart(a: &Own, b: &Own) -> [f64; 2] {
+    let add = |[re, im]: [f64; 2], by: Complex64| [re + by.re.abs(), im + by.im.abs()];
+    differences(a, b).fold([0.0; 2], add)
 }
 
 impl<'a> Pieces<'a> {
@@ -226,6 +248,42 @@ impl<'a> Pieces<'a> {
         })
     }
 
+    /// The pairs of these pieces that might be real at an input; `None` where it is not known whether one is.
+    fn near_pairs(&self, input: f64, of: &[bool; FUNCTIONS]) -> Option<Vec<Pair>> {
+        let solved = self.all(input.into())?;
+        let mut pairs = Vec::new();
+        let is_near_real = |own: &Own| own.iter().all(|(_, pose)| self.held.is_nearly_real(pose, NEAR));
+        for (piece, (placed, all)) in self.placed.iter().zip(&solved).enumerate() {
+            if !placed.functions.is_some_and(|k| of[k]) {
+                continue;
+            }
+            let real_ways = placed
+                .ways
+                .iter()
+                .zip(all)
+                .filter(|(way, _)| self.is_real(way, &solved, NEARLY_REAL));
+            for (_, Solved { solutions, .. }) in real_ways {
+                for (k, one) in solutions.iter().enumerate().filter(|(_, one)| is_near_real(one)) {
+                    for other in solutions[k + 1..]
+                        .iter()
+                        .filter(|other| self.held.are_near(one, other, NEAR))
+                    {
+                        let [re, im] = apart(one, other);
+                        let is_real = if im < CLEAR * re {
+                            true
+                        } else if re < CLEAR * im {
+                            false
+                        } else {
+                            return None;
+                        };
+                        pairs.push(Pair { piece, own: one.clone(), is_real });
+                    }
+                }
+            }
+        }
+        Some(pairs)
+    }
+
     /// The solutions of all pieces.
     fn all(&self, at: Complex64) -> Option<Vec<Vec<Solved>>> {
         let first = self.held.known(at);
@@ -281,16 +339,18 @@ impl Functions for Pieces<'_> {
         Some(factors.collect())
     }
 
-    /// Whether no two solutions are near to each other that might be real.
-    fn is_clear(&self, input: f64) -> bool {
-        let Some(solved) = self.all(input.into()) else {
-            return false;
+    /// Of pairs that are near to each other at both inputs, and real at one of them.
+    fn meeting(&self, ends: [f64; 2], of: &[bool; FUNCTIONS]) -> Option<usize> {
+        let [first, last] = ends.map(|input| self.near_pairs(input, of));
+        let (first, last) = (first?, last?);
+        let meets = |pair: &Pair| {
+            let mut same = last
+                .iter()
+                .filter(|other| other.piece == pair.piece && self.held.are_near(&other.own, &pair.own, NEAR));
+            let other = same.next()?;
+            (same.next().is_none() && other.is_real != pair.is_real).then_some(())
         };
-        let mut pieces = self.placed.iter().zip(&solved);
-        pieces.all(|(placed, all)| {
-            let mut ways = placed.ways.iter().zip(all).enumerate();
-            let nearly_meet = |n: usize, own: &Solved| placed.solver.nearly_meet(own, n);
-            ways.all(|(n, (way, own))| !(nearly_meet(n, own) && self.is_real(way, &solved, NEARLY_REAL)))
-        })
+        let all: Option<Vec<()>> = first.iter().map(meets).collect();
+        all.filter(|all| all.len() == last.len()).map(|all| all.len())
     }
 }

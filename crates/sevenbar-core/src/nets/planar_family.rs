@@ -185,16 +185,6 @@ impl Family<UNKNOWNS, 2> for PlanarFamily {
         (determinant, WEIGHTS.map(sum))
     }
 
-    fn mirrored(&self, x: &Solution) -> Solution {
-        std::array::from_fn(|i| {
-            if i < self.turns {
-                x[i].conj().inv()
-            } else {
-                x[i].conj()
-            }
-        })
-    }
-
     /// Of the unknown that is farthest from where it began.
     fn far(&self, x: &Solution) -> f64 {
         let slides = self.slides();

@@ -109,6 +109,15 @@ impl ComplexPose {
     }
 }
 
+impl From<&Pose> for ComplexPose {
+    fn from(pose: &Pose) -> Self {
+        Self {
+            rotation: pose.rotation.map(|row| row.map(Complex64::from)),
+            translation: pose.translation.map(Complex64::from),
+        }
+    }
+}
+
 impl From<Placement<f64>> for Pose {
     fn from(placement: Placement<f64>) -> Self {
         Self { rotation: placement.rotation, translation: placement.translation }

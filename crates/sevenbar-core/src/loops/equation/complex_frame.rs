@@ -6,11 +6,12 @@ use num_complex::Complex64;
 /// A rigid motion with complex entries: the images of the axes, and of the origin.
 #[derive(Clone, Copy)]
 pub(crate) struct Frame {
-    axes: [[Complex64; 3]; 3],
-    origin: [Complex64; 3],
+    pub axes: [[Complex64; 3]; 3],
+    pub origin: [Complex64; 3],
 }
 
 /// `Rz(before) T(shift) Rx(twist) Rz(after)`, each angle `t` as `e^(i t)`.
+#[derive(Clone, Copy)]
 pub(crate) struct NormalForm {
     pub before: Complex64,
     pub shift: [Complex64; 3],
@@ -20,6 +21,22 @@ pub(crate) struct NormalForm {
 
 /// Below this sine of its twist a transform counts as a turn about z; the rest is rounding.
 pub(crate) const NO_TWIST: f64 = 1e-13;
+
+impl NormalForm {
+    /// The same motion by turns that differ by half ones, if these are nearer to those of another.
+    pub fn near(self, other: &Self) -> Self {
+        if (self.before - other.before).norm() <= (self.before + other.before).norm() {
+            return self;
+        }
+        let [x, y, z] = self.shift;
+        Self {
+            before: -self.before,
+            shift: [-x, -y, z],
+            twist: self.twist.inv(),
+            after: -self.after,
+        }
+    }
+}
 
 fn cosine_sine(z: Complex64) -> (Complex64, Complex64) {
     let inverse = z.inv();

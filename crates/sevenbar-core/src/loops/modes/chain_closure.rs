@@ -24,11 +24,21 @@ pub(super) struct Closure {
 impl Closure {
     /// From the transforms after the joints, the first unknown one's first and the input's last.
     pub fn of(transforms: &[Pose; JOINTS], slides: &Slides, input: Joint) -> Self {
+        Self::with_any(transforms, slides, input, &[false; JOINTS])
+    }
+
+    /// The same where some links may be any, so that nothing of them is of the class.
+    pub fn with_any(
+        transforms: &[Pose; JOINTS],
+        slides: &Slides,
+        input: Joint,
+        any: &[bool; JOINTS],
+    ) -> Self {
         let form = Form::of(transforms.each_ref());
         let mut given = [input == Joint::Slide; JOINTS];
         given[..UNKNOWNS].copy_from_slice(slides);
-        if let Some(form) = form.with_zeros(&given) {
-            let class = Class::of(slides, Some(form.pattern(&given, input != Joint::Turn)));
+        if let Some(form) = form.with_zeros(&given, any) {
+            let class = Class::of(slides, Some(form.pattern(&given, any, input != Joint::Turn)));
             // without solutions that stand alone a class leads nowhere
             if class.count() > 0 {
                 return Self { form, class };

@@ -9,8 +9,9 @@ use super::phases::{FACTORS, PhaseLanes, Phases, Watch};
 use crate::loops::equation::closure::{Linear, Slides, Solution, UNKNOWNS, infinite, moved, size};
 use crate::loops::equation::lanes::Lanes;
 use crate::stopping;
-use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
+use crate::vectors::{LANES, LaneKernel, Plain, Reals, Vector, dispatch};
 use num_complex::Complex64;
+use std::array::from_fn;
 
 /// The limits that set the length of steps.
 #[derive(Clone, Copy, Debug)]
@@ -131,6 +132,39 @@ pub(crate) fn follow<H: Homotopy<N>, const N: usize>(
         dispatch(Follow { homotopy, starts, ways, each, pace, ends: &mut ends });
     }
     ends
+}
+
+/// The solutions that arrive after the first step of a way from 0 to 1: in one step, where that will do.
+pub(crate) fn one_step<H: Homotopy<N>, const N: usize>(way: &H, starts: &[Solution<N>]) -> Vec<Solution<N>> {
+    let step = Way {
+        direction: Complex64::ONE,
+        length: FIRST_STEP,
+        end: FIRST_STEP.into(),
+        settle: true,
+    };
+    let places: Vec<Place<N>> = starts.iter().map(|x| Place::start(x, Complex64::ZERO)).collect();
+    let ends = follow(way, &places, &[&[step]], BRISK);
+    ends.iter().flatten().map(|place| *place.solution()).collect()
+}
+
+/// The determinants of the joints' columns at solutions where a way ends.
+pub(crate) fn determinants<H: Homotopy<N>, const N: usize>(
+    way: &H,
+    solutions: &[Solution<N>],
+) -> Vec<Complex64> {
+    let mut out = Vec::with_capacity(solutions.len());
+    for some in solutions.chunks(LANES) {
+        let lanes: [Lanes<Plain>; N] = from_fn(|i| {
+            let part = |part: fn(&Complex64) -> f64| -> Reals {
+                from_fn(|k| part(&some.get(k).unwrap_or(&some[0])[i]))
+            };
+            Lanes::load(&part(|z| z.re), &part(|z| z.im))
+        });
+        let (.., determinant) = way.linearise::<Plain, false>(&lanes, Lanes::one()).solve();
+        let [re, im] = [determinant.re, determinant.im].map(|v| v.store());
+        out.extend((0..some.len()).map(|k| Complex64::new(re[k], im[k])));
+    }
+    out
 }
 
 impl<const N: usize> Place<N> {

@@ -67,14 +67,19 @@ impl Form {
         std::array::from_fn(|i| self.before[i] * self.after[(i + JOINTS - 1) % JOINTS])
     }
 
-    /// The same closure with each frame where Denavit and Hartenberg place it, and rounded numbers made exact; `None` if that is far away.
-    pub fn with_zeros(mut self, slides: &[bool; JOINTS]) -> Option<Self> {
+    /// The same closure with each frame where Denavit and Hartenberg place it, and rounded numbers made exact, but for links that may be any;
+    /// `None` if that is far away.
+    pub fn with_zeros(mut self, slides: &[bool; JOINTS], any: &[bool; JOINTS]) -> Option<Self> {
         for _ in 0..ROUNDS {
             for link in 0..JOINTS {
-                self.move_frame_after(link, slides)?;
+                let next = (link + 1) % JOINTS;
+                if !(any[link] || slides[next] && any[next]) {
+                    self.move_frame_after(link, slides)?;
+                }
             }
         }
-        for (shift, twist) in self.shifts.iter_mut().zip(&mut self.twists) {
+        let links = self.shifts.iter_mut().zip(&mut self.twists);
+        for ((shift, twist), _) in links.zip(any).filter(|(_, any)| !**any) {
             for x in shift {
                 *x = if x.abs() < ROUNDING { 0.0 } else { *x };
             }
@@ -119,13 +124,15 @@ impl Form {
         Some(())
     }
 
-    /// The class of a closure, given which joints slide.
-    pub fn pattern(&self, slides: &[bool; JOINTS], input_advances: bool) -> Pattern {
+    /// The class of a closure, given which joints slide, and which links may be any.
+    pub fn pattern(&self, slides: &[bool; JOINTS], any: &[bool; JOINTS], input_advances: bool) -> Pattern {
         let zeros = self.zeros();
+        let fixed = |i: usize| slides[i] && !any[i] && !any[(i + JOINTS - 1) % JOINTS];
+        let quarters_unless = |any: bool, turn: Complex64| if any { None } else { quarters(turn) };
         Pattern {
-            twists: self.twists.map(quarters),
-            turns: std::array::from_fn(|i| slides[i].then(|| quarters(zeros[i])).flatten()),
-            shifts: self.shifts.map(|s| s.map(|x| x != 0.0)),
+            twists: std::array::from_fn(|i| quarters_unless(any[i], self.twists[i])),
+            turns: std::array::from_fn(|i| quarters_unless(!fixed(i), zeros[i])),
+            shifts: std::array::from_fn(|i| self.shifts[i].map(|x| any[i] || x != 0.0)),
             input_advances,
         }
     }

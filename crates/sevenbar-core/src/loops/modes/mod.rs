@@ -4,6 +4,7 @@ pub(crate) mod assembly;
 mod chain_closure;
 pub(crate) mod circle;
 pub(crate) mod completeness;
+pub(crate) mod complex_links;
 pub(crate) mod continuation;
 mod curves_at_input;
 pub(crate) mod finder;

@@ -4,7 +4,7 @@
 //!
 //! Source: docs/theory.md, (6).
 
-use super::continuation::{Homotopy, Pace, Place, ROUNDING, Way, follow};
+use super::continuation::{FIRST_STEP, Homotopy, Pace, Place, ROUNDING, Way, follow, one_step};
 use crate::loops::equation::closure::{
     JOINTS, Linear, Parameters, Slides, Solution, UNKNOWNS, cosine_sine, cross, turn,
 };
@@ -13,10 +13,10 @@ use crate::vectors::Vector;
 use num_complex::Complex64;
 
 /// Twists, shifts, turns and the input's slide go from the one to the other while the parameter goes from 0 to 1.
-struct Straight<'a> {
-    slides: &'a Slides,
-    from: &'a Parameters,
-    to: &'a Parameters,
+pub(super) struct Straight<'a> {
+    pub slides: &'a Slides,
+    pub from: &'a Parameters,
+    pub to: &'a Parameters,
 }
 
 /// Where the solutions of one closure lead to another; `None` where a path does not arrive at a finite regular solution.
@@ -38,6 +38,28 @@ pub(super) fn carried(
     ends.iter()
         .map(|end| end.as_ref().map(|place| *place.solution()))
         .collect()
+}
+
+/// The parameters on the straight line from some to others, these being at 1.
+pub(super) fn along(from: &Parameters, to: &Parameters, at: Complex64) -> Parameters {
+    let between = |a: Complex64, b: Complex64| a + (b - a) * at;
+    Parameters {
+        twists: std::array::from_fn(|i| between(from.twists[i], to.twists[i])),
+        shifts: std::array::from_fn(|i| std::array::from_fn(|k| between(from.shifts[i][k], to.shifts[i][k]))),
+        turns: std::array::from_fn(|i| between(from.turns[i], to.turns[i])),
+        slide: between(from.slide, to.slide),
+    }
+}
+
+/// Where the solutions of one closure lead to another near by: in one step, where that will do; without those that do not arrive.
+pub(super) fn carried_near(
+    slides: &Slides,
+    from: &Parameters,
+    to: &Parameters,
+    starts: &[Solution],
+) -> Vec<Solution> {
+    let far = along(from, to, Complex64::from(1.0 / FIRST_STEP));
+    one_step(&Straight { slides, from, to: &far }, starts)
 }
 
 impl Homotopy for Straight<'_> {
