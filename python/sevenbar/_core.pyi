@@ -256,7 +256,9 @@ class Net:
     ) -> tuple[
         _Floats, _Floats, npt.NDArray[np.bool_], Literal["closed-form", "algebraic", "monodromy", "searched"]
     ]: ...
-    def searched_modes(self, column: int, value: float) -> tuple[_Floats, _Floats, npt.NDArray[np.bool_]]: ...
+    def searched_modes(
+        self, column: int, value: float
+    ) -> tuple[_Floats, _Floats, npt.NDArray[np.bool_], npt.NDArray[np.bool_]]: ...
     def motion(
         self,
         parts: NetParts | None,

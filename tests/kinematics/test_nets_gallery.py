@@ -222,3 +222,15 @@ def test_links_with_more_than_two_joints_have_a_face_in_the_plane_alone():
     # the upper triangle of Jansen's leg, Klann's coupler with its elbow
     assert (corners("jansen"), corners("klann")) == ([3], [3])
     assert (corners("double_wishbone"), corners("planar_4r")) == ([], [])
+
+
+@pytest.mark.parametrize("angle", [1, 4, 100, 250])
+def test_poses_on_a_curve_are_no_modes_however_few_a_search_finds(angle):
+    # the inversor's arms lie on each other, and its crank turns them with the far corner held to one of them
+    inversor = sb.load("peaucellier")
+    modes = inversor.assembly_modes(f"{angle} deg", input="left corner.2")
+    assert modes.on_curve is not None
+    crank, corner = (inversor.columns.index(name) for name in ("crank", "corner Q"))
+    assert np.allclose(modes.q[0, crank], -modes.q[1, crank])
+    assert len(modes) == 2
+    assert np.ptp(modes.q[:, corner]) < 1e-9

@@ -153,7 +153,7 @@ def searched_modes(linkage, column, value):
     from sevenbar.kinematics.nets.tree import Tree
 
     tree = Tree(linkage, (linkage.column_of(column).joint,), order_of(linkage, column))
-    q, _, isolated = tree.core.searched_modes(column, value)
+    q, _, isolated, _ = tree.core.searched_modes(column, value)
     return q[isolated]
 
 

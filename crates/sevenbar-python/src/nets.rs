@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 use sevenbar_core::nets::{
     self, DescribedNet, Edge, Facing, Move, NetCircuit, NetJoint, NetThrough, NotFollowed, Over, Reading,
-    Row, Step, Unbalanced,
+    Row, Standing, Step, Unbalanced,
 };
 use sevenbar_core::rigid::{Pose, Vec3};
 
@@ -255,7 +255,8 @@ impl Net {
         ))
     }
 
-    /// Joint values (m, columns), closure errors (m,) of the modes that are found from many places with a column at a value, and which are isolated.
+    /// Joint values (m, columns), closure errors (m,) of the poses that are found from many places with a column at a value; which are isolated,
+    /// and which are on a curve of poses.
     fn searched_modes<'py>(
         &self,
         py: Python<'py>,
@@ -265,12 +266,14 @@ impl Net {
         let found = working(py, || nets::searched_modes(&self.0, column, value))?.map_err(not_followed)?;
         let values: Vec<f64> = found.iter().flat_map(|mode| mode.0.iter().copied()).collect();
         let residuals: Vec<f64> = found.iter().map(|mode| mode.1).collect();
-        let isolated: Vec<bool> = found.iter().map(|mode| mode.2).collect();
+        let standing =
+            |wanted: Standing| -> Vec<bool> { found.iter().map(|mode| mode.2 == wanted).collect() };
         let shape = [found.len(), self.0.column_count()];
         Ok((
             PyArray1::from_vec(py, values).reshape(shape)?,
             residuals.into_pyarray(py),
-            isolated.into_pyarray(py),
+            standing(Standing::Isolated).into_pyarray(py),
+            standing(Standing::OnCurve).into_pyarray(py),
         ))
     }
 
@@ -396,10 +399,11 @@ impl Net {
     }
 }
 
-/// Joint values and closure errors of modes, and which are isolated.
+/// Joint values and closure errors of poses; which are isolated, and which are on a curve.
 type SearchedModes<'py> = (
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<bool>>,
     Bound<'py, PyArray1<bool>>,
 );
 

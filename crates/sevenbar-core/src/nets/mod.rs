@@ -66,4 +66,5 @@ pub use net_rows::{NetRow, NetRows};
 pub use order::{Block, Edge, Unbalanced, biconnected_parts, blocks};
 pub use planar_block::{BlockJoint, PlanarBlock};
 pub use rows::Row;
+pub use search::Standing;
 pub use steps::{Move, Step};

@@ -9,7 +9,7 @@ use super::freedoms::Freedoms;
 use super::modes::Part;
 use super::net::MOST_COLUMNS;
 use super::net_rows::NetRows;
-use super::search::{STARTS, is_isolated, searched, settled};
+use super::search::{STARTS, Standing, searched, settled, standing};
 use super::seeds::whole_curves;
 use super::sized::WholeNet;
 use crate::loops::circuits::change_points as curve_points;
@@ -127,8 +127,8 @@ fn followed(described: &DescribedNet, column: usize) -> Result<Column, NotFollow
     described.followed(column).ok_or(NotFollowed::NoColumn)
 }
 
-/// A mode that is found: the columns of the description, its closure error, whether it is isolated.
-pub type FoundMode = (Vec<f64>, f64, bool);
+/// A mode that is found: the columns of the description, its closure error, how it stands to others.
+pub type FoundMode = (Vec<f64>, f64, Standing);
 
 /// The modes that are found from many places with a column at a value [rad, or length].
 pub fn searched_modes(
@@ -145,7 +145,7 @@ pub fn searched_modes(
         (
             values,
             net.residual(&net.place(at)),
-            is_isolated(&net, held.inner, at),
+            standing(&net, held.inner, at),
         )
     };
     Ok(found.iter().map(values_of).collect())

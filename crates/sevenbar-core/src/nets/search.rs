@@ -2,6 +2,7 @@
 
 use super::sized::SizedNet;
 use crate::loops::equation::closed::{At, Closed, input_row};
+use crate::loops::modes::curves_at_input::runs_on;
 use crate::loops::modes::many_starts::{anywhere, same};
 use crate::loops::modes::polish::CLOSED;
 use crate::loops::singular_values;
@@ -20,18 +21,39 @@ const LONGEST: f64 = 1.0;
 /// anywhere near by.
 const ISOLATED: f64 = 1e-5;
 
-/// Whether a pose with a column held is isolated.
-pub(super) fn is_isolated<const C: usize, const R: usize, const B: usize>(
+/// How a pose with a column held stands to the others that close.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// None is near by.
+    Isolated,
+    /// Modes meet, or nearly.
+    Meeting,
+    /// A curve of them leads through it.
+    OnCurve,
+}
+
+/// How a pose with a column held stands to the others that close.
+pub(super) fn standing<const C: usize, const R: usize, const B: usize>(
     net: &SizedNet<C, R, B>,
     held: usize,
     at: &At<SizedNet<C, R, B>>,
-) -> bool {
-    let screws = net.place(at).screws;
-    let passive = (0..net.used()).filter(|&c| c != held);
-    let columns: Vec<Vec<f64>> = passive.map(|c| screws[c][..net.used() - 1].to_vec()).collect();
-    let (values, _) = singular_values(&columns);
+) -> Standing {
+    let screws = |at: &At<SizedNet<C, R, B>>| -> Vec<Vec<f64>> {
+        let screws = net.place(at).screws;
+        let used = screws[..net.used()].iter();
+        used.map(|screw| screw[..net.used() - 1].to_vec()).collect()
+    };
+    let mut passive = screws(at);
+    passive.remove(held);
+    let (values, _) = singular_values(&passive);
     let ends = values.first().zip(values.last());
-    ends.is_some_and(|(greatest, least)| *least > ISOLATED * greatest)
+    if ends.is_some_and(|(greatest, least)| *least > ISOLATED * greatest) {
+        Standing::Isolated
+    } else if runs_on(net, held, at, screws) {
+        Standing::OnCurve
+    } else {
+        Standing::Meeting
+    }
 }
 
 /// The closed pose that Newton's method leads to with a column held; `None` where it leads to none.

@@ -17,9 +17,6 @@ from sevenbar.kinematics.nets.tree import Tree
 NEAR = 1e-5
 NEAR_SINGULAR = 5e-5
 
-#: Most places where modes meet; more are of a curve of poses that all close.
-MOST_MEETING = 12
-
 
 def net_modes(linkage: Loop, tree: Tree, column: int, value: float) -> Modes:
     """Every assembly mode at one value of a column [rad, or length] of a net whose blocks have a solver.
@@ -48,13 +45,11 @@ def net_modes(linkage: Loop, tree: Tree, column: int, value: float) -> Modes:
 
 
 def _searched(linkage: Loop, tree: Tree, column: int, value: float) -> Modes:
-    q, residual, isolated = tree.followed(lambda core: core.searched_modes(column, value))
-    singular = _apart(linkage, q[~isolated], NEAR_SINGULAR)
-    # a few are where modes meet, many lie on a curve
-    is_curve = len(singular) > MOST_MEETING
-    others = np.flatnonzero(~isolated)[singular]
-    place = np.flatnonzero(isolated) if is_curve else np.append(np.flatnonzero(isolated), others)
-    curve = q[others[0]] if is_curve else None
+    q, residual, isolated, on_curve = tree.followed(lambda core: core.searched_modes(column, value))
+    meeting = np.flatnonzero(~isolated & ~on_curve)
+    meeting = meeting[_apart(linkage, q[meeting], NEAR_SINGULAR)]
+    curve = q[on_curve][0] if on_curve.any() else None
+    place = np.append(np.flatnonzero(isolated), meeting)
     rank = place[_ranked(q[place])]
     residual = residual[rank] * linkage.size
     return Modes(q[rank], residual, "searched", linkage.columns, value, on_curve=curve)

@@ -6,7 +6,7 @@ pub(crate) mod circle;
 pub(crate) mod completeness;
 pub(crate) mod complex_links;
 pub(crate) mod continuation;
-mod curves_at_input;
+pub(crate) mod curves_at_input;
 pub(crate) mod finder;
 mod geometry;
 pub(crate) mod many_starts;

@@ -6,8 +6,10 @@
 //! joints could close must be closed to rounding, in every loop.
 
 use crate::loops::equation::chain::{Chain, Configuration};
-use crate::loops::equation::closed::Closed;
-use crate::loops::equation::dense::{COLUMNS, Columns, Factored, ROWS, least_squares, singular_values};
+use crate::loops::equation::closed::{At, Closed};
+use crate::loops::equation::dense::{
+    Array, COLUMNS, Columns, Factored, ROWS, least_squares, singular_values,
+};
 use crate::loops::mobility::rank::{rank, unyielding};
 use crate::stopping;
 
@@ -99,18 +101,14 @@ pub(crate) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
 
 /// The same where joints have freedoms to spare: each step is the shortest of those that lead as near. No input is `held` where any pose
 /// will do.
-pub(super) fn polish_with_spare(
-    chain: &Chain,
-    held: Option<usize>,
-    rough: &Configuration,
-) -> Option<Configuration> {
+pub(super) fn polish_with_spare<S: Closed>(of: &S, held: Option<usize>, rough: &At<S>) -> Option<At<S>> {
     let mut at = *rough;
     let mut best = f64::INFINITY;
     let mut looked = f64::INFINITY;
     for step in 0..MOST_WITH_SPARE {
         stopping::piece();
-        let placed = chain.place(&at);
-        let residual = chain.residual(&placed);
+        let placed = of.place(&at);
+        let residual = of.residual(&placed);
         // a pose that closes by a square is as near as rounding lets it come, not where it first closes
         if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
             return Some(at);
@@ -126,22 +124,19 @@ pub(super) fn polish_with_spare(
             }
             looked = best;
         }
-        let mut columns = chain.screws(&at);
+        let mut columns = of.screws(&at);
         if let Some(input) = held {
             columns[input].fill(0.0);
         }
-        let by = least_squares(&columns, &placed.error.map(|e| -e), chain.no_rank());
+        let by = least_squares(&columns, placed.error.map(|e| -e).as_ref(), of.no_rank());
         let longest = by.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
         if !longest.is_finite() {
             return None;
         }
         let factor = if longest > 1.0 { 1.0 / longest } else { 1.0 };
-        let mut moved = [0.0; COLUMNS];
-        for (m, b) in moved.iter_mut().zip(&by) {
-            *m = b * factor;
-        }
-        at = chain.moved(&at, &moved);
-        at.square_up(chain.ball_count());
+        let moved = S::Columns::padded(&by, 0.0).map(|b| b * factor);
+        at = of.moved(&at, &moved);
+        at.square_up(of.ball_count());
     }
     None
 }
