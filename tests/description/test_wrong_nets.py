@@ -132,6 +132,23 @@ name = "lever"
 at = [200, 0]
 links = ["frame", "lever"]
 """
+FOUR_BAR = """format = 1
+ground = "frame"
+[[joint]]
+kind = "R"
+at = [0, 0, 0]
+axis = [0, 0, 1]
+between = ["frame", "crank"]
+[[pin]]
+at = [100, 80]
+links = ["crank", "coupler"]
+[[pin]]
+at = [10, 40]
+links = ["coupler", "rocker"]
+[[pin]]
+at = [90, 0]
+links = ["frame", "rocker"]
+"""
 HUB = """format = 1
 ground = "frame"
 [drive]
@@ -306,8 +323,13 @@ OF_FILES = [
     (WATT.replace('"coupler"', '"co\\nupler"', 1), "pin[2].links: 'co\\nupler' is not the name of a link; give printable text in quotes, at most 200 characters"),
     (WATT.replace('"coupler"', '"' + "x" * 201 + '"', 1), "is not the name of a link; give printable text in quotes, at most 200 characters"),
     (but(WATT, ('name = "crank"', 'name = "  "')), "pin[1].name: '  ' is not a name; give printable text in quotes"),
-    (but(WATT, ("at = [10, 40]", "x = 10\ny = 40")), "pin[2].at: is missing; give x and y, as in [40, 0]"),
-    (but(WATT, ('links = ["crank", "coupler"]', 'link = ["crank", "coupler"]')), "pin[2].links: is missing; give the names of two or more"),
+    (but(WATT, ("at = [10, 40]", "x = 10\ny = 40")), "pin[2].at: is missing; give x and y, as in [40, 0]; not known here: x, y"),
+    (but(WATT, ('links = ["crank", "coupler"]', 'link = ["crank", "coupler"]')), "pin[2].links: is missing; give the names of two or more, as in [\"frame\", \"crank\"]; not known here: link"),
+    (but(HUB, ('between = ["frame", "lower arm"]', 'betwen = ["frame", "lower arm"]')), "joint[1].between: is missing; where one joint says which two links it is between, all do; not known here: betwen"),
+    (but(FOUR_BAR, ("at = [10, 40]", 'at = [10, 40]\ncolour = "red"')), "pin[2].colour: is not known here; allowed: at, links, name"),
+    (but(FOUR_BAR, ("at = [10, 40]", "at = [10, 40]\naxis = [0, 0, 1]")), "pin[2].axis: is not of a pin, a hinge about z"),
+    # it may be one loop, but for the slip
+    (but(FOUR_BAR, ('"frame", "rocker"', '"frame", "rockr"'), ('kind = "R"', 'kind = "R"\nlonger = 2')), "pin[3].links: 'rockr' is named only here, and 'rocker' only at pin[2]; give them one name, or each another joint"),
     (but(WATT, ('links = ["crank", "coupler"]', 'links = "crank-coupler"')), "'crank-coupler' is one text; give the links that turn on the pin, as a list: [\"frame\", \"crank\"]"),
     (but(HUB, ("at = [0, 0, 0]", "x = 0\ny = 0\nz = 0")), "joint[1].at: is missing; needed here: kind, at, between; not known here: x, y, z"),
     (but(HUB, ("at = [[120, 60, 80], [110, 340, 90]]", "from = [120, 60, 80]\nto = [110, 340, 90]")), "rod[1].at: is missing; needed here: between, at; not known here: from, to"),

@@ -29,6 +29,9 @@ from sevenbar.kinematics.loop.graph import Graph
 #: Keys of a whole file that only links by name need.
 OWN_KEYS = ("ground", "pin")
 
+#: Keys of a pin.
+PIN_KEYS = {"at", "links", "name"}
+
 #: A pin in a slot, seen from the link with the pin and from that with the slot.
 OTHER_SLOT = {"K": "L", "L": "K"}
 
@@ -211,7 +214,15 @@ def named_links(raw: Mapping[str, Any], source: str = "") -> NamedLinks:
         # of wrong files only
         from sevenbar.description.net_schema import value_flaws
 
-        raise DescriptionError(_one_each(links.problems, value_flaws(raw, source)), source)
+        of_values = value_flaws(raw, source)
+        of_links = [_with_unknown_keys(problem, of_values) for problem in links.problems]
+        raise DescriptionError(_one_each(of_links, of_values), source)
+    if links.is_loop and any(pin.keys() - PIN_KEYS for pin in entries(raw, "pin")):
+        from sevenbar.description.net_schema import value_flaws
+
+        # the loop's joints have no key of their pins but these
+        of_pins = [flaw for flaw in value_flaws(raw, source) if flaw.place.startswith("pin[")]
+        raise DescriptionError(of_pins, source)
     return links
 
 
@@ -221,6 +232,17 @@ def in_loop_order(raw: Mapping[str, Any], source: str = "") -> Mapping[str, Any]
         return raw
     links = named_links(raw, source)
     return links.loop_tables() if links.is_loop else raw
+
+
+def _with_unknown_keys(problem: Problem, of_values: list[Problem]) -> Problem:
+    """A problem of a key that is missing, with the unknown keys of its table that it does not name."""
+    from sevenbar.description.mistakes import NOT_KNOWN
+
+    alike = next((other.message for other in of_values if other.place == problem.place), "")
+    _, words, keys = alike.partition(NOT_KNOWN)
+    if not words or f"in place of {keys}" in problem.message:
+        return problem
+    return Problem(problem.place, problem.message + words + keys)
 
 
 def _one_each(of_links: list[Problem], of_values: list[Problem]) -> list[Problem]:

@@ -14,6 +14,9 @@ from sevenbar.errors import Problem, bare, shown, suggestion
 #: What pydantic adds to the keys and numbers of a place.
 _NO_PLACE = ("tuple",)
 
+#: What leads to the unknown keys of a table that lacks one.
+NOT_KNOWN = "; not known here: "
+
 #: What to say of the key `value` in rows.
 ROW_READS = "is of joints as drawn; a row reads its own angle, or offset of P, so leave it out"
 
@@ -53,7 +56,7 @@ class FileForms:
                 message = str(detail["ctx"]["message"])
             case "missing":
                 message = _missing(location, owner)
-                message += f"; not known here: {', '.join(map(bare, besides))}" if besides else ""
+                message += f"{NOT_KNOWN}{', '.join(map(bare, besides))}" if besides else ""
             case "extra_forbidden":
                 near = suggestion(str(location[-1]), owner.model_fields if owner else ())
                 home = not_covered(location[-1], of_joint=location[0] == "joint" and len(location) > 1)

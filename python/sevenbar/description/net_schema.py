@@ -136,6 +136,9 @@ _NOT_OF_NETS: dict[tuple[str, ...], str] = {
 def check_net(raw: Mapping[str, Any], context: Mapping[str, Any], *, source: str = "") -> NetForm:
     """The checked form of a net's tables; `DescriptionError` with every problem of the file."""
     form, problems = _checked(raw, context)
+    # whether it is one loop is not known of a file with flaws in its links
+    longer = [i for i, table in enumerate(entries(raw, "joint"), 1) if "longer" in table]
+    problems += [Problem(f"joint[{i}].longer", _NOT_OF_NETS["joint", "longer"]) for i in longer]
     if form is None or problems:
         raise DescriptionError(problems, source)
     return form
@@ -154,8 +157,6 @@ def _checked(raw: Mapping[str, Any], context: Mapping[str, Any]) -> tuple[NetFor
     for i, table in enumerate(entries(raw, "joint"), 1):
         if table.get("kind") in JOINT_KINDS:
             problems += [Problem(f"joint[{i}].{name}", message) for name, message in wrong_keys(table)]
-        if "longer" in table:
-            problems.append(Problem(f"joint[{i}].longer", _NOT_OF_NETS["joint", "longer"]))
     for i, joint in enumerate(form.joint if form else (), 1):
         problems += slots_aslant(joint.kind, joint.axes, f"joint[{i}]")
     return form, problems
