@@ -15,8 +15,11 @@ _MODES = {
     "counted": "all modes over the complex numbers",
     "algebraic": "all modes over the complex numbers",
     "monodromy": "modes over the complex numbers by triangles, from two seeds until ten brought none",
-    "searched": "modes by search from many starts, screws within one turn to each side",
+    "searched": "modes by search from many starts",
 }
+
+#: Of a linkage with screws.
+_WITH_SCREWS = "modes by search from many starts, screws within one turn to each side"
 
 #: Why circuits were not counted; a search says so itself.
 _UNCOUNTED = {
@@ -49,7 +52,8 @@ def how_found(motion: Motion) -> str:
     if not search.values:
         return say("from the drawn pose only")
     joints = say(" and of ").join(search.columns) or say("a turn of a ball")
-    modes = say(_MODES[search.completeness])
+    has_screws = search.completeness == "searched" and any(j.kind == "H" for j in motion.linkage.joints)
+    modes = say(_WITH_SCREWS if has_screws else _MODES[search.completeness])
     parts = [say("{modes} at {count} values of {joints}", modes=modes, count=search.values, joints=joints)]
     if search.freedoms is None:
         parts.append(say("there are none"))
@@ -105,14 +109,15 @@ def _counted(motion: Motion) -> str:
             many = say("{dead_centres} and {count} complex", dead_centres=many, count=others)
         return say("branch points of {joint} are all accounted for: {points}", joint=count.joint, points=many)
     unit = motion.linkage.unit_of(count.joint)
-    ranges_open = []
-    for each in count.open[:MOST_RANGES]:
+    ranges_open: dict[str, None] = {}
+    for each in count.open:
         what = say("some") if each.missing is None else f"{each.missing}"
         if each.missing is not None and each.missing < 0:
             what = say("{count} too many", count=-each.missing)
-        ranges_open.append(say("{what} {place}", what=what, place=_place(each, unit)))
-    ranges = say(", ").join(ranges_open)
-    if len(count.open) > MOST_RANGES:
+        # one that reads as another is of another mode of the same links
+        ranges_open[say("{what} {place}", what=what, place=_place(each, unit))] = None
+    ranges = say(", ").join(list(ranges_open)[:MOST_RANGES])
+    if len(ranges_open) > MOST_RANGES:
         ranges = say("{ranges} and elsewhere", ranges=ranges)
     return say(
         "branch points of {joint} are not all accounted for: {ranges}", joint=count.joint, ranges=ranges
