@@ -127,7 +127,7 @@ fn followed(described: &DescribedNet, column: usize) -> Result<Column, NotFollow
     described.followed(column).ok_or(NotFollowed::NoColumn)
 }
 
-/// A mode that is found: the columns of the description, its closure error, how it stands to others.
+/// A mode that is found: the columns of the description, its closure error, whether others are near it.
 pub type FoundMode = (Vec<f64>, f64, Standing);
 
 /// The modes that are found from many places with a column at a value [rad, or length].

@@ -21,7 +21,7 @@ const LONGEST: f64 = 1.0;
 /// anywhere near by.
 const ISOLATED: f64 = 1e-5;
 
-/// How a pose with a column held stands to the others that close.
+/// Whether others are near a pose that closes with a column held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
     /// None is near by.
@@ -32,7 +32,7 @@ pub enum Standing {
     OnCurve,
 }
 
-/// How a pose with a column held stands to the others that close.
+/// Whether others are near a pose that closes with a column held.
 pub(super) fn standing<const C: usize, const R: usize, const B: usize>(
     net: &SizedNet<C, R, B>,
     held: usize,

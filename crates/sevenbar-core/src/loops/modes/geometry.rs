@@ -67,7 +67,7 @@ impl Form {
         std::array::from_fn(|i| self.before[i] * self.after[(i + JOINTS - 1) % JOINTS])
     }
 
-    /// The same closure with each frame where Denavit and Hartenberg place it, and rounded numbers made exact, but for links that may be any;
+    /// The same closure with each frame where Denavit and Hartenberg place it, and rounded numbers made exact, except links that may be any;
     /// `None` if that is far away.
     pub fn with_zeros(mut self, slides: &[bool; JOINTS], any: &[bool; JOINTS]) -> Option<Self> {
         for _ in 0..ROUNDS {
