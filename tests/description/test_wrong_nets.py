@@ -328,7 +328,7 @@ OF_FILES = [
     (but(HUB, ('between = ["frame", "lower arm"]', 'betwen = ["frame", "lower arm"]')), "joint[1].between: is missing; where one joint says which two links it is between, all do; not known here: betwen"),
     (but(FOUR_BAR, ("at = [10, 40]", 'at = [10, 40]\ncolour = "red"')), "pin[2].colour: is not known here; allowed: at, links, name"),
     (but(FOUR_BAR, ("at = [10, 40]", "at = [10, 40]\naxis = [0, 0, 1]")), "pin[2].axis: is not of a pin, a hinge about z"),
-    # it may be one loop, but for the slip
+    # it may be one loop, except for the slip
     (but(FOUR_BAR, ('"frame", "rocker"', '"frame", "rockr"'), ('kind = "R"', 'kind = "R"\nlonger = 2')), "pin[3].links: 'rockr' is named only here, and 'rocker' only at pin[2]; give them one name, or each another joint"),
     (but(WATT, ('links = ["crank", "coupler"]', 'links = "crank-coupler"')), "'crank-coupler' is one text; give the links that turn on the pin, as a list: [\"frame\", \"crank\"]"),
     (but(HUB, ("at = [0, 0, 0]", "x = 0\ny = 0\nz = 0")), "joint[1].at: is missing; needed here: kind, at, between; not known here: x, y, z"),

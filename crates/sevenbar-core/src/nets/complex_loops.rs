@@ -220,14 +220,14 @@ impl<'a> ComplexLoop<'a> {
 
     /// Solutions of which no two put the links in the same places.
     fn each_once(&self, held: &Held, known: &Known, placed: &Placed, all: &[Solution]) -> Vec<Solution> {
-        let mut kept: Vec<(Solution, Own)> = Vec::new();
+        let mut distinct: Vec<(Solution, Own)> = Vec::new();
         for x in all {
             let own = self.own(held, known, placed, x);
-            if kept.iter().all(|(_, other)| !held.are_near(&own, other, MET)) {
-                kept.push((*x, own));
+            if distinct.iter().all(|(_, other)| !held.are_near(&own, other, MET)) {
+                distinct.push((*x, own));
             }
         }
-        kept.into_iter().map(|(x, _)| x).collect()
+        distinct.into_iter().map(|(x, _)| x).collect()
     }
 }
 
